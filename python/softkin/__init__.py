@@ -17,7 +17,7 @@ from .page import PageView
 from .robot import Robot, load
 from .runs import FollowRun, PathRun, Waypoint
 from .session import Session
-from .shape import ActuatorState, Contact, Deformation, Fibre, MagneticLoad, Reaction, SelfOverlap, Shape
+from .shape import ActuatorState, Contact, Deformation, Fibre, Layer, MagneticLoad, Reaction, SelfOverlap, Shape
 from .solver import Progress, Solver
 from .table import Table
 from .walk import WalkRun, WalkStep
@@ -36,6 +36,7 @@ __all__ = [
     "Hull",
     "InvalidInput",
     "KinematicMap",
+    "Layer",
     "MagneticLoad",
     "MapAnswer",
     "MapCheck",

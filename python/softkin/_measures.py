@@ -139,6 +139,25 @@ class Fibre:
 
 
 @dataclass(frozen=True)
+class Layer:
+    """What a sheet carries."""
+
+    name: str
+    largest_N_mm: float
+    """largest principal tension per width [N/mm], at `at_mm`"""
+    least_N_mm: float
+    """the least [N/mm]; below 0: pressed"""
+    at_mm: Floats
+    """(3,) where the tension is largest [mm]"""
+    strain: float
+    """largest principal stretch minus 1 [-]"""
+    wrinkled: float
+    """share of its area that carries along one direction alone [-]"""
+    slack: float
+    """share of its area that carries nothing [-]"""
+
+
+@dataclass(frozen=True)
 class Contact:
     """What presses on a part of a robot; physical formulation."""
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from . import _core, neighbours
 from ._arrays import Floats
 from ._core import Shape as CoreShape
-from ._measures import ActuatorState, Contact, Deformation, Fibre, MagneticLoad, Reaction, SelfOverlap
+from ._measures import ActuatorState, Contact, Deformation, Fibre, Layer, MagneticLoad, Reaction, SelfOverlap
 from ._of_robot import parsed
 from ._saving import Saving
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     import meshio
     import pyvista
 
-__all__ = ["ActuatorState", "Contact", "Deformation", "Fibre", "MagneticLoad", "NotConverged", "Reaction"]
+__all__ = ["ActuatorState", "Contact", "Deformation", "Fibre", "Layer", "MagneticLoad", "NotConverged", "Reaction"]
 __all__ += ["SelfOverlap", "Shape", "Views"]
 
 _LOAD_UNITS = {"pneumatic": "kPa", "cable": "N", "dea": "kV"}
@@ -175,6 +175,14 @@ class Shape(Saving[CoreShape]):
         return {
             name: Fibre(name, mean, largest, least, np.array(at), stretch, slack)
             for name, (mean, largest, least), at, stretch, slack in self._core.fibres
+        }
+
+    @cached_property
+    def layers(self) -> dict[str, Layer]:
+        """By name; empty without `layers` in the scene, and where a map answered."""
+        return {
+            name: Layer(name, largest, least, np.array(at), strain, wrinkled, slack)
+            for name, (largest, least), at, (strain, wrinkled, slack) in self._core.layers
         }
 
     @property

@@ -131,6 +131,20 @@ void bind_fields(nb::class_<Shape>& type) {
           },
           "Name, mean, largest and least tension [N], where the largest is [mm], stretch and slack share of each.")
       .def_prop_ro(
+          "layers",
+          [](const Shape& s) {
+            using Three = std::array<double, 3>;
+            std::vector<std::tuple<std::string, std::array<double, 2>, Three, Three>> all;
+            for (std::size_t l = 0; l < s.record().layers.size(); ++l) {
+              const LayerForces& of = s.record().layers[l];
+              all.emplace_back(s.model().layers[l]->name, std::array{of.largest_N_mm, of.least_N_mm},
+                               array_of(of.where), std::array{of.strain, of.wrinkled, of.slack});
+            }
+            return all;
+          },
+          "Name, largest and least tension [N/mm], where the first is [mm], largest strain, shares wrinkled and slack "
+          "of each.")
+      .def_prop_ro(
           "contacts",
           [](const Shape& s) {
             using Three = std::array<double, 3>;

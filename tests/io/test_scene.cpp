@@ -3,6 +3,7 @@
 #include <chrono>
 #include <random>
 #include <softkin/io/file.hpp>
+#include <softkin/model/layer.hpp>
 
 #include "scene_fixtures.hpp"
 #include "support/patience.hpp"
@@ -470,7 +471,7 @@ TEST(Scene, ExamplesOfTheManualAreScenes) {
     const std::string text = manual.substr(begin, manual.find("```", begin) - begin);
     specs.push_back(parse_scene(text, "robots/scene.yaml", files));
   }
-  ASSERT_EQ(specs.size(), 10u);
+  ASSERT_EQ(specs.size(), 11u);
   EXPECT_EQ(specs[0].actuators.size(), 3u);
   EXPECT_EQ(specs[0].markers.size(), 2u);
   EXPECT_EQ(specs[0].formulation, Formulation::target_shape);
@@ -487,7 +488,38 @@ TEST(Scene, ExamplesOfTheManualAreScenes) {
   EXPECT_EQ(specs[7].actuators[0].sheath_friction, 0.05);
   EXPECT_EQ(specs[7].actuators[0].sheath_turns_degrees, 270);
   EXPECT_EQ(specs[8].fibres.size(), 2u);
-  EXPECT_EQ(specs[9].contact.value().obstacles.size(), 2u);
+  ASSERT_EQ(specs[9].layers.size(), 2u);
+  EXPECT_TRUE(specs[9].layers[0]->bending);
+  EXPECT_EQ(specs[10].contact.value().obstacles.size(), 2u);
+}
+
+TEST(Scene, Layers) {
+  const RobotSpec spec = parse(
+      "softkin: 1\nunits: {length: cm}\nmesh: {file: a.msh}\nlayers:\n"
+      "  - {name: paper, region: belly, thickness: 0.01, youngs_modulus: 2000, poisson_ratio: 0.25, bending: true}\n"
+      "  - {name: cloth, region: back, thickness: 0.05, tension_only: true, direction: [0, 2, 0], density: 900,\n"
+      "     orthotropic: {e1: 30, e2: 2, g12: 0.6, nu12: 0.3}}\n");
+  ASSERT_EQ(spec.layers.size(), 2u);
+  const LayerSpec &paper = *spec.layers[0], &cloth = *spec.layers[1];
+  EXPECT_EQ(paper.name, "paper");
+  EXPECT_EQ(paper.origin.line, 5u);
+  EXPECT_EQ(std::get<std::string>(std::get<RegionRef>(paper.where).region), "belly");
+  EXPECT_NEAR(paper.thickness_mm, 0.1, 1e-12);
+  EXPECT_EQ(paper.e1, 2000);
+  EXPECT_EQ(paper.e2, 2000);
+  EXPECT_EQ(paper.g12, 800);
+  EXPECT_EQ(paper.nu12, 0.25);
+  EXPECT_TRUE(paper.bending);
+  EXPECT_FALSE(paper.tension_only);
+  EXPECT_FALSE(paper.direction);
+  EXPECT_EQ(cloth.e1, 30);
+  EXPECT_EQ(cloth.e2, 2);
+  EXPECT_EQ(cloth.g12, 0.6);
+  EXPECT_EQ(cloth.nu12, 0.3);
+  EXPECT_EQ(cloth.direction.value(), Vec3(0, 2, 0));
+  EXPECT_EQ(cloth.density, 900);
+  EXPECT_TRUE(cloth.tension_only);
+  EXPECT_FALSE(cloth.bending);
 }
 
 /// 0: parsed, 1: refused. Anything else escapes and fails the test.

@@ -43,6 +43,34 @@ TEST(SceneRefusals, Tractions) {
   });
 }
 
+TEST(SceneRefusals, Layers) {
+  expect_all_refused({
+      {"layers: [{region: r, thickness: 1, youngs_modulus: 1, poisson_ratio: 0.3}]\n", "'name'", 1},
+      {"layers: [{name: a, thickness: 1, youngs_modulus: 1, poisson_ratio: 0.3}]\n", "'region', 'surface'", 1},
+      {"layers: [{name: a, region: r, youngs_modulus: 1, poisson_ratio: 0.3}]\n", "'thickness'", 1},
+      {"layers: [{name: a, region: r, thickness: 1, poisson_ratio: 0.3}]\n", "'youngs_modulus', 'orthotropic'", 1},
+      {"layers: [{name: a, region: r, thickness: 1, youngs_modulus: 1}]\n", "'poisson_ratio'", 1},
+      {"layers: [{name: a, region: r, thickness: 1, youngs_modulus: 1, poisson_ratio: 0.6}]\n", "at most 0.5, not 0.6",
+       1},
+      {"layers: [{name: a, region: r, thickness: 1, orthotropic: {e1: 1, e2: 1, g12: 1, nu12: 0}}]\n",
+       "needs its 'direction'", 1},
+      {"layers: [{name: a, region: r, thickness: 1, direction: [1, 0, 0], orthotropic: {e1: 1, e2: 0, g12: 1, nu12: "
+       "0}}]\n",
+       "greater than 0", 1},
+      {"layers: [{name: a, region: r, thickness: 1, poisson_ratio: 0.3, orthotropic: {e1: 1, e2: 1, g12: 1, nu12: "
+       "0}}]\n",
+       "has 'nu12'", 1},
+      {"layers: [{name: a, region: r, thickness: 1, direction: [0, 0, 0], youngs_modulus: 1, poisson_ratio: 0.3}]\n",
+       "must not be zero", 1},
+      {"layers: [{name: a, region: r, thickness: 1, bending: yes, youngs_modulus: 1, poisson_ratio: 0.3}]\n",
+       "'false', 'true'", 1},
+      {"layers: [{name: a, region: r, thickness: 1, stiffness: 1}]\n", "'stiffness'", 1},
+      {"layers:\n  - {name: a, region: r, thickness: 1, youngs_modulus: 1, poisson_ratio: 0.3}\n"
+       "  - {name: a, region: q, thickness: 1, youngs_modulus: 1, poisson_ratio: 0.3}\n",
+       "'a'", 3},
+  });
+}
+
 TEST(SceneRefusals, Fibres) {
   expect_all_refused({
       {"fibres: [{points: [[0, 0, 0], [1, 0, 0]], stiffness: 1}]\n", "'name'", 1},

@@ -31,5 +31,8 @@ struct Forces {
 void add_tractions(const Model& model, const State& state, Forces& forces);
 /// Threads: tension times what each vertex of a place lengthens it by.
 void add_fibres(const Model& model, const State& state, Forces& forces);
+/// Sheets: stresses of their strain, where they wrinkle along the direction in which nothing shears; moments times the
+/// differences of their angles.
+void add_layers(const Model& model, const State& state, Forces& forces);
 
 }  // namespace softkin::random_robots

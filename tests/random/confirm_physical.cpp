@@ -481,6 +481,7 @@ void confirm_physical(const Model& model, const Equilibrium& found, const State&
   add_magnets(model, found, forces);
   add_tractions(model, state, forces);
   add_fibres(model, state, forces);
+  add_layers(model, state, forces);
   for (Index v = 0; v < model.dead_load.rows(); ++v)
     forces.add(v, -static_cast<Real>(state.share) * model.dead_load.row(v).transpose().cast<Real>(), 0);
   if (!forces.sum.allFinite()) {

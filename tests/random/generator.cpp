@@ -81,6 +81,7 @@ RandomCase make_case(std::uint64_t seed) {
   make_friction(m);
   make_sealed(m);
   make_fibres(m);
+  make_layers(m);
   spoil_number(m);
   return std::move(m.made);
 }

@@ -72,6 +72,8 @@ void make_turns(Making& m);
 void make_tractions(Making& m);
 /// Threads through some robots and around them, before what is spoilt.
 void make_fibres(Making& m);
+/// Sheets on faces of the body.
+void make_layers(Making& m);
 void make_mixed(Making& m);
 /// Some chambers that would be commanded by volume are sealed with gas or liquid; after all that changes the mesh.
 void make_sealed(Making& m);

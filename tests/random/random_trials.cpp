@@ -1,4 +1,5 @@
 #include <Eigen/Geometry>
+#include <softkin/model/layer.hpp>
 
 #include "random/parts.hpp"
 
@@ -10,7 +11,8 @@ namespace {
 constexpr std::uint64_t draws_of_stiffness = 0x7374696666, draws_of_floor = 0x666C6F6F72,
                         draws_of_weights = 0x77656967687473, draws_of_turns = 0x7475726E73,
                         draws_of_tractions = 0x7472616374, draws_of_fibres = 0x666962726573,
-                        draws_of_mixed = 0x6D69786564, draws_of_sealed = 0x7365616C6564;
+                        draws_of_mixed = 0x6D69786564, draws_of_sealed = 0x7365616C6564,
+                        draws_of_layers = 0x6C6179657273;
 
 void scale(ElasticSpec& elastic, double by) {
   for (std::optional<double>* modulus : {&elastic.youngs_modulus, &elastic.shear_modulus, &elastic.bulk_modulus,
@@ -100,6 +102,26 @@ void make_fibres(Making& m) {
     if (draw.chance(0.9)) fibre.stiffness_N = draw.log_between(1e-3, 30) * m.modulus * size[1] * size[2];
     fibre.tension_only = draw.chance(0.4);
     m.made.spec.fibres.push_back(std::move(fibre));
+  }
+}
+
+void make_layers(Making& m) {
+  Draw draw(m.made.seed ^ draws_of_layers);
+  if (!draw.chance(m.physical ? 0.1 : 0.01) || (!m.mesh().prisms.empty() && draw.chance(0.8))) return;
+  const double across = std::min(m.size[1], m.size[2]);
+  for (int i = draw.whole(1, 2); i > 0; --i) {
+    LayerSpec layer;
+    layer.name = "layer" + std::to_string(i);
+    layer.where = RegionRef{std::string(draw.pick({"x_high", "z_high", "y_high", "z_low"})), {}};
+    layer.thickness_mm = draw.log_between(0.002, 0.05) * across;
+    layer.e1 = draw.log_between(1, 300) * m.modulus;
+    layer.e2 = draw.chance(0.5) ? layer.e1 : draw.log_between(0.05, 1) * layer.e1;
+    layer.nu12 = draw.between(-0.3, 0.45);
+    layer.g12 = layer.e1 == layer.e2 ? layer.e1 / (2 * (1 + layer.nu12)) : draw.between(0.1, 0.5) * layer.e2;
+    if (layer.e1 != layer.e2) layer.direction = Vec3(1, 0.7, 0.4);
+    layer.tension_only = draw.chance(0.3);
+    layer.bending = m.made.spec.quadratic && draw.chance(0.6);
+    m.made.spec.layers.push_back(std::make_shared<const LayerSpec>(layer));
   }
 }
 

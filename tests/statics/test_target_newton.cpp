@@ -231,7 +231,7 @@ TEST(TargetNewton, FreeChamberAlone) {
   ActuatorSpec air = testing::actuator("air", ActuatorKind::pneumatic, 0.5, 3, true);
   air.region = "body";
   for (const bool least_norm : {true, false}) {
-    air.distribution = shared(least_norm);
+    air.distribution = testing::shared(least_norm);
     spec.actuators = {air};
     const Model model = compile(spec);
     const Statics statics(model);

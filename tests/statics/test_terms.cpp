@@ -1,4 +1,5 @@
 #include <random>
+#include <softkin/model/layer.hpp>
 #include <softkin/statics/physical/contact_steps.hpp>
 
 #include "statics/contact_scenes.hpp"
@@ -15,7 +16,7 @@ namespace {
 using namespace testing;
 using physical::Term;
 
-constexpr int all_terms = 8;
+constexpr int all_terms = 9;
 
 /// Tetrahedra and prisms of two materials, a layer that is stretched, another one under voltage.
 RobotSpec layered_robot() {
@@ -77,6 +78,27 @@ RobotSpec threaded_robot(bool quadratic) {
   slack.tension_only = true;
   slack.way = std::vector<Vec3>{Vec3(0.1 * size.x(), 0.9 * size.y(), 0.1 * size.z()), 0.8 * size, 0.5 * size};
   spec.fibres = {thread, slack};
+  return spec;
+}
+
+/// A sheet that bends, and one that wrinkles, on tetrahedra of either order.
+RobotSpec sheeted_robot(bool quadratic) {
+  RobotSpec spec = physical_robot(block_mesh({2, 2, 1}, {20, 12, 6}));
+  spec.quadratic = quadratic;
+  for (const bool bending : {false, true}) {
+    LayerSpec layer;
+    layer.name = bending ? "plate" : "cloth";
+    layer.where = RegionRef{std::string(bending ? "z_high" : "z_low"), {}};
+    layer.thickness_mm = 0.8;
+    layer.e1 = 6;
+    layer.e2 = 2;
+    layer.g12 = 1.5;
+    layer.nu12 = 0.2;
+    layer.direction = Vec3(1, 0.4, 0);
+    layer.bending = bending && quadratic;
+    layer.tension_only = !bending;
+    spec.layers.push_back(std::make_shared<const LayerSpec>(layer));
+  }
   return spec;
 }
 
@@ -186,8 +208,12 @@ void expect_derivatives(const RobotSpec& spec, double shake, const Vec3& move, d
     EXPECT_LE((change - changed).norm(), 2e-4 * change.norm() + 1e-12 * exact.norm()) << what;
     const std::array<double, 4> sizes{exact.norm(), stiff.norm(), by_commands, change.norm()};
     const bool contact = count > 4 && t == count - 1 && sample.system.contact();
-    const bool fibres = t == 4 && !sample.model.fibres.empty();
-    auto& of_term = seen[contact ? all_terms - 1 : !term.conservative() ? all_terms - 2 : fibres ? all_terms - 3 : t];
+    const bool fibres = t == 4 && !sample.model.fibres.empty(), layers = t == 4 && !sample.model.layers.empty();
+    auto& of_term = seen[contact                ? all_terms - 1
+                         : !term.conservative() ? all_terms - 2
+                         : fibres               ? all_terms - 3
+                         : layers               ? all_terms - 4
+                                                : t];
     for (std::size_t i = 0; i < sizes.size(); ++i) of_term[i] = std::max(of_term[i], sizes[i]);
   }
 }
@@ -204,16 +230,19 @@ TEST(Terms, DerivativesAreThoseOfTheEnergies) {
   for (const bool quadratic : {false, true}) expect_derivatives(loaded_robot(quadratic), 0.1, Vec3::Zero(), 1e-4, seen);
   for (const bool quadratic : {false, true})
     expect_derivatives(threaded_robot(quadratic), 0.1, Vec3::Zero(), 1e-5, seen);
+  for (const bool quadratic : {false, true})
+    expect_derivatives(sheeted_robot(quadratic), 0.1, Vec3::Zero(), 1e-6, seen);
   expect_derivatives(body_on_floor({10, 10, 10}, 0.3), 1e-3, {0, 0, -0.03}, 2e-8, seen);
   for (const bool quadratic : {false, true})
     expect_derivatives(block_on_rough_floor(0.3, {0.2, 0, -0.03}, 2, quadratic), 1e-3, {0.01, 0, -0.03}, 2e-8, seen);
-  // body, dead and fading loads, what is done to bodies, magnets, fibres, tractions, contact: gradient, stiffness, by
-  // commands, by shares
+  // body, dead and fading loads, what is done to bodies, magnets, layers, fibres, tractions, contact: gradient,
+  // stiffness, by commands, by shares
   const std::array<std::array<bool, 4>, all_terms> has{{{true, true, true, true},
                                                         {true, false, false, true},
                                                         {true, false, false, true},
                                                         {true, true, true, true},
                                                         {true, true, true, true},
+                                                        {true, true, false, false},
                                                         {true, true, false, false},
                                                         {true, true, false, true},
                                                         {true, true, false, false}}};

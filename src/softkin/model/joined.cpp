@@ -5,6 +5,7 @@
 #include <softkin/model/compile/curving.hpp>
 #include <softkin/model/compile/parts.hpp>
 #include <softkin/model/joined.hpp>
+#include <softkin/model/layer.hpp>
 #include <softkin/model/magnetic_field.hpp>
 #include <softkin/model/mesh/mesh_joining.hpp>
 #include <softkin/model/names.hpp>
@@ -141,6 +142,17 @@ class Joiner {
     }
     return fibre;
   }
+  [[nodiscard]] LayerSpec full(LayerSpec layer) const {
+    layer.name = placed_.name + "." + layer.name;
+    layer.robot = placed_.name;
+    if (layer.direction) layer.direction = placed_.place.rotation * *layer.direction;
+    if (auto* surface = std::get_if<TriangleSurface>(&layer.where))
+      for (Index v = 0; v < surface->vertices.rows(); ++v)
+        surface->vertices.row(v) = placed_.place(vertex_at(surface->vertices, v)).transpose();
+    else
+      layer.where = full(std::get<RegionRef>(layer.where));
+    return layer;
+  }
   [[nodiscard]] PointRef full(const PointRef& point) const {
     if (const auto* name = std::get_if<std::string>(&point.point)) return {full(*name), point.origin};
     return {placed_.place(std::get<Vec3>(point.point)), point.origin, placed_.name};
@@ -236,6 +248,7 @@ class Joiner {
       all_.tractions.push_back(std::move(traction));
     }
     for (FibreSpec& fibre : robot_.fibres) all_.fibres.push_back(full(std::move(fibre)));
+    for (const auto& layer : robot_.layers) all_.layers.push_back(std::make_shared<const LayerSpec>(full(*layer)));
     for (const MarkerSpec& marker : robot_.markers) all_.markers.push_back(full(marker));
     for (FootSpec& foot : robot_.feet) {
       foot.marker = placed_.name + "." + foot.marker;
@@ -308,6 +321,7 @@ void add_common(RobotSpec& robots, RobotSpec common) {
   append_parts(robots.forces, common.forces);
   append_parts(robots.tractions, common.tractions);
   append_parts(robots.fibres, common.fibres);
+  append_parts(robots.layers, common.layers);
   append_parts(robots.markers, common.markers);
   append_parts(robots.feet, common.feet);
   robots.contact = std::move(common.contact);

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstdio>
+#include <softkin/model/layer.hpp>
 #include <softkin/model/magnetic_field.hpp>
 #include <softkin/model/mesh/quadratic_elements.hpp>
 #include <softkin/model/mesh/surface_tree.hpp>
@@ -93,6 +94,18 @@ class Hash {
   void put(const EmbeddedPoint& p) { add(p.vertices, p.weights); }
   void put(const FibrePlace& p) { add(p.vertices, p.slopes, p.length_mm); }
   void put(const Fibre& f) { add(f.name, f.stiffness_N, f.tension_only, f.places); }
+  void put(const Eigen::Vector2d& vector) { add(vector[0], vector[1]); }
+  void put(const Mat3& matrix) { add(Vec3(matrix.col(0)), Vec3(matrix.col(1)), Vec3(matrix.col(2))); }
+  void put(const LayerPlace& p) { add(p.vertices, p.slopes, p.area_mm2); }
+  void put(const Eigen::Matrix<double, 5, 1>& v) { add(v[0], v[1], v[2], v[3], v[4]); }
+  void put(const LayerBend& b) { add(b.vertices, b.parts, b.place.stiffness, b.place.rest); }
+  void put(const LayerJoint& j) {
+    for (const LayerJoint::Side& side : j.sides) add(side.vertices, side.parts);
+    add(j.joint.length, j.joint.penalty, j.joint.moment, j.joint.angle);
+  }
+  void put(const std::shared_ptr<const Layer>& l) {
+    add(l->name, l->thickness_mm, l->law.stiffness, l->law.tension_only, l->places, l->bends, l->joints);
+  }
   void put(const CableGap& gap) { add(gap.segment, gap.apex); }
   void put(const Marker& marker) {
     add(marker.name, marker.point);
@@ -243,6 +256,7 @@ std::string fingerprint_of(const Model& model) {
   if (!model.turns.empty()) hash.add(model.turns);
   if (!model.tractions.empty()) hash.add(model.tractions);
   if (!model.fibres.empty()) hash.add(model.fibres);
+  if (!model.layers.empty()) hash.add(model.layers);
   if (model.contact.any()) hash.add(model.contact, model.bodies);
   if (model.magnetism) {
     hash.add(model.magnetism->remanence, model.magnetism->sources);

@@ -77,6 +77,11 @@ std::string finding_text(const Model& model, const Finding& finding) {
       return "fibre '" + finding.name + "' carries " + number(v[0], 4) + " N in the mean, " + number(v[2], 4) + " to " +
              number(v[1], 4) + " N, the most at " + place_text(&v[3]) + " mm; it is " + number(v[6], 6) +
              " times as long as at rest" + (v[7] > 0 ? ", and slack in " + percent(v[7]) + " of it" : "");
+    case Kind::layer:
+      return "layer '" + finding.name + "' carries " + number(v[1], 4) + " to " + number(v[0], 4) +
+             " N/mm, the most at " + place_text(&v[2]) + " mm; it is stretched by up to " + percent(v[5]) +
+             (v[6] > 0 ? ", wrinkled in " + percent(v[6]) + " of its area" : "") +
+             (v[7] > 0 ? ", slack in " + percent(v[7]) : "");
     case Kind::self_overlap:
       return "warning: the shape passes through itself: " + counted(static_cast<std::size_t>(v[0]), "point") +
              " of its surface " + (v[0] == 1 ? "lies" : "lie") + " inside it, the deepest " +

@@ -6,7 +6,9 @@
 #include <softkin/core/error.hpp>
 #include <softkin/core/version.hpp>
 #include <softkin/io/base64.hpp>
+#include <softkin/model/layer.hpp>
 #include <softkin/model/magnetic_field.hpp>
+#include <softkin/model/mesh/borders.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/map_export_parts.hpp>
 #include <softkin/runs/map_tables.hpp>
@@ -137,11 +139,30 @@ std::vector<EmbeddedPoint> drawn_knots(const Model& model, const Fibre& fibre) {
   return knots;
 }
 
-/// Of cables and threads.
+/// Threads, and the borders of layers.
+std::vector<std::vector<EmbeddedPoint>> reinforcement_lines(const Model& model) {
+  std::vector<std::vector<EmbeddedPoint>> lines;
+  for (const Fibre& fibre : model.fibres) lines.push_back(drawn_knots(model, fibre));
+  for (const auto& layer : model.layers) {
+    std::vector<Triangle> triangles;
+    std::vector<std::array<Index, 3>> beside;
+    for (const CavityFace& face : layer->faces) {
+      triangles.push_back(face.corners);
+      beside.push_back(face.edges);
+    }
+    for (const std::vector<Index>& border : borders_of(triangles, beside)) {
+      lines.emplace_back();
+      for (const Index v : border) lines.back().push_back({{v}, {1}, 0});
+    }
+  }
+  return lines;
+}
+
+/// Of cables, threads and layers.
 std::vector<Index> line_vertices(const Model& model) {
   std::vector<Index> vertices;
-  for (const Fibre& fibre : model.fibres)
-    for (const EmbeddedPoint& point : drawn_knots(model, fibre))
+  for (const std::vector<EmbeddedPoint>& line : reinforcement_lines(model))
+    for (const EmbeddedPoint& point : line)
       vertices.insert(vertices.end(), point.vertices.begin(), point.vertices.end());
   for (const Actuator& actuator : model.actuators)
     if (actuator.kind == ActuatorKind::cable)
@@ -272,10 +293,10 @@ Json page_line(const std::vector<EmbeddedPoint>& embedded, const Numbering& numb
   return points;
 }
 
-Json page_fibres(const Model& model, const Numbering& number) {
+Json page_fibres(const std::vector<std::vector<EmbeddedPoint>>& lines, const Numbering& number) {
   Json list = Json::array();
-  for (const Fibre& fibre : model.fibres) {
-    Json points = page_line(drawn_knots(model, fibre), number);
+  for (const std::vector<EmbeddedPoint>& line : lines) {
+    Json points = page_line(line, number);
     for (Json& point : points)
       for (Json& weight : point["weights"]) weight = std::round(1e4 * weight.get<double>()) / 1e4;
     list.push_back({{"points", std::move(points)}});
@@ -342,7 +363,8 @@ std::string PageDocument::text(const MapData* map) const {
                   {"triangles", page_triangles(surface_.triangles, numbering)},
                   {"region", page_regions(model_, surface_)}}},
                 {"cables", page_cables(model_, numbering)}};
-  if (!model_.fibres.empty()) document["fibres"] = page_fibres(model_, numbering);
+  if (const auto lines = reinforcement_lines(model_); !lines.empty())
+    document["fibres"] = page_fibres(lines, numbering);
   add_what_is_around(model_, last_, drawn_, numbering, document);
   document["map"] = map == nullptr ? Json() : page_map(*map, model_, vertices_);
   std::string text = line_of(document);

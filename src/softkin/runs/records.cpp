@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <softkin/model/layer.hpp>
 #include <softkin/model/model.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/records.hpp>
@@ -83,6 +84,7 @@ StepRecord step_record(const Model& model, const Equilibrium& found, const Eleme
   if (deformation.contacts) record.contacts = deformation.contacts->pairs;
   record.magnetic = deformation.magnetic;
   record.fibres = deformation.fibres;
+  record.layers = deformation.layers;
   return record;
 }
 
@@ -288,6 +290,13 @@ std::vector<Finding> findings(const Model& model, const StepRecord& record) {
                      model.fibres[f].name,
                      {fibre.mean_N, fibre.largest_N, fibre.least_N, fibre.where.x(), fibre.where.y(), fibre.where.z(),
                       fibre.stretch, fibre.slack}});
+  }
+  for (std::size_t l = 0; l < record.layers.size(); ++l) {
+    const LayerForces& layer = record.layers[l];
+    found.push_back({Finding::Kind::layer,
+                     model.layers[l]->name,
+                     {layer.largest_N_mm, layer.least_N_mm, layer.where.x(), layer.where.y(), layer.where.z(),
+                      layer.strain, layer.wrinkled, layer.slack}});
   }
   add_forces(model, record, found);
   add_implausible(model, record, found);

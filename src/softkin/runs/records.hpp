@@ -50,6 +50,7 @@ struct StepRecord : SolveReport {
   std::optional<StressExtremes> stress{};             // physical; of a walk none
   std::vector<Reaction> reactions{};                  // the same, per support
   std::optional<MagneticLoad> magnetic{};             // where there is a magnetic field; of a walk none
+  std::vector<LayerForces> layers{};                  // of each; as fibres
   std::vector<FibreForces> fibres{};                  // of each; of a walk none, nor where a map answered
   std::optional<std::vector<PairForces>> contacts{};  // where the robot may touch anything; of a walk none
   std::optional<WorstPlace> worst{};                  // physical, where status is limit
@@ -110,6 +111,8 @@ struct Finding {
     rubbing,              // name: cable; values: tension at the motor and at its far end [N], share that sticks [-]
     fibre,                // name; values: mean, largest, least tension [N], where the largest is [mm] (3), length over
                           // that at rest [-], share that is slack [-]
+    layer,                // name; values: largest, least principal tension [N/mm], where the largest is [mm] (3),
+                          // largest strain [-], shares of its area that are wrinkled and slack [-]
     self_overlap,         // values: points inside, depth of the deepest and its place [mm]
     motionless,           // something is asked for and nothing moves; values: largest displacement [mm]
     far_strained,         // values: greatest strain [-]

@@ -10,6 +10,7 @@
 #include <softkin/runs/layer_json.hpp>
 #include <softkin/runs/record_log.hpp>
 #include <softkin/runs/records_json.hpp>
+#include <softkin/runs/reinforcement_json.hpp>
 #include <stdexcept>
 
 namespace softkin::runs {
@@ -121,28 +122,6 @@ Json magnetic_json(const MagneticLoad& load) {
   return {{"force_N", json_of(load.force)}, {"moment_N_mm", json_of(load.moment)}, {"center_mm", json_of(load.center)}};
 }
 
-Json fibres_json(const Model& model, const std::vector<FibreForces>& fibres) {
-  Json all = Json::array();
-  for (std::size_t f = 0; f < fibres.size(); ++f)
-    all.push_back({{"fibre", model.fibres[f].name},
-                   {"mean_N", known(fibres[f].mean_N)},
-                   {"largest_N", known(fibres[f].largest_N)},
-                   {"least_N", known(fibres[f].least_N)},
-                   {"at_mm", json_of(fibres[f].where)},
-                   {"stretch", known(fibres[f].stretch)},
-                   {"slack", known(fibres[f].slack)}});
-  return all;
-}
-
-std::vector<FibreForces> fibres_of(const Json& json) {
-  std::vector<FibreForces> fibres;
-  for (const Json& fibre : json)
-    fibres.push_back({number_or_nan(fibre.at("largest_N")), number_or_nan(fibre.at("least_N")),
-                      number_or_nan(fibre.at("mean_N")), point_of(fibre.at("at_mm")),
-                      number_or_nan(fibre.at("stretch")), number_or_nan(fibre.at("slack"))});
-  return fibres;
-}
-
 Json worst_json(const WorstPlace& worst) {
   return {{"kind", worst.prism ? "prism" : "tetrahedron"},
           {"element", worst.element},
@@ -210,6 +189,7 @@ Json physical_json(const Model& model, const StepRecord& record) {
     json["reactions"].push_back(reaction_json(model.supports[s], record.reactions[s]));
   if (model.magnetism) json["magnetic"] = record.magnetic ? magnetic_json(*record.magnetic) : Json();
   if (!record.fibres.empty()) json["fibres"] = fibres_json(model, record.fibres);
+  if (!record.layers.empty()) json["layers"] = layers_json(model, record.layers);
   if (model.contact.any()) json["contacts"] = contacts_json(model, record.contacts);
   if (model.contact.rubs()) json["friction_change"] = known(record.friction_change);
   if (!record.anchors.empty()) json["anchors"] = anchors_json(record.anchors);
@@ -231,6 +211,7 @@ void read_physical(const Model& model, const Json& json, StepRecord& record) {
       record.magnetic = {point_of(load.at("force_N")), point_of(load.at("moment_N_mm")),
                          point_of(load.at("center_mm"))};
   if (json.contains("fibres")) record.fibres = fibres_of(json.at("fibres"));
+  if (json.contains("layers")) record.layers = layers_of(json.at("layers"));
   if (json.contains("eyelets_mm")) record.eyelets = json.at("eyelets_mm").get<std::vector<double>>();
   if (!model.contact.any()) return;
   if (const Json& contacts = json.at("contacts"); !contacts.is_null()) record.contacts = contacts_of(model, contacts);

@@ -38,6 +38,14 @@ struct FibreForces {
   double slack = 0;                               // share of its length that carries nothing [-]
 };
 
+/// What a sheet is like in a shape.
+struct LayerForces {
+  double largest_N_mm = 0, least_N_mm = 0;  // principal tension per present width; below 0: pressed
+  Vec3 where = Vec3::Zero();                // the largest [mm]
+  double strain = 0;                        // largest principal stretch minus 1 [-]
+  double wrinkled = 0, slack = 0;           // shares of its area that carry along one direction alone, and not at all
+};
+
 /// Deformation of every element, tetrahedra first, then prisms (their strain at the centre). Of order 2: the least
 /// volume ratio, det F, at the corners and at the four points with which the energy is integrated, and the strain at
 /// that of the four where its magnitude is largest.
@@ -55,6 +63,7 @@ struct ElementDeformation {
   std::optional<MagneticLoad> magnetic;                // where there is a magnetic field
   std::vector<std::optional<TendonForces>> tendons{};  // per actuator where any cable rubs; of those
   std::vector<FibreForces> fibres{};                   // of each
+  std::vector<LayerForces> layers{};                   // the same
 };
 [[nodiscard]] ElementDeformation deformation_of(const Model& model, const Points& positions);
 

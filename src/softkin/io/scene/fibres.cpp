@@ -40,12 +40,12 @@ std::vector<Vec3> read_corners(const Context& context, const Node::Entry& way) {
   return corners;
 }
 
+}  // namespace
+
 bool is_true(const Map& map, std::string_view key) {
   const Node* node = map.find(key);
   return node != nullptr && choice(*node, {"false", "true"}) == 1;
 }
-
-}  // namespace
 
 FibreSpec read_fibre(const Context& context, const Node& node, Names& names) {
   const Map map(node, {"name", "points", "helix", "file", "stiffness", "inextensible", "tension_only", "region"});

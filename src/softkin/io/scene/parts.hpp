@@ -71,6 +71,9 @@ void read_mesh_of(const Context& context, const Map& scene, RobotSpec& spec);
 /// Keys `contact`, `obstacles` and `bodies`; none where none of them is there.
 [[nodiscard]] std::optional<ContactSpec> read_contact(const Context& context, const Map& scene);
 [[nodiscard]] FibreSpec read_fibre(const Context& context, const Node& node, Names& names);
+[[nodiscard]] std::shared_ptr<const LayerSpec> read_layer(const Context& context, const Node& node, Names& names);
+/// Of a node that may be left out: false.
+[[nodiscard]] bool is_true(const Map& map, std::string_view key);
 [[nodiscard]] double read_density(const Node& node);
 /// Target-shape keys, elastic constants, or both.
 [[nodiscard]] MaterialSpec read_material(const Context& context, const Node& node);

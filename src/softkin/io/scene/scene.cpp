@@ -140,7 +140,7 @@ void read_parts(const Context& context, const Map& map, RobotSpec& spec) {
     if (const Node* node = map.find(key))
       for (const auto& item : list(*node)) read(*item);
   };
-  Names forces, tractions, fibres, markers;
+  Names forces, tractions, fibres, layers, markers;
   if (const Node* node = map.find("regions")) spec.regions = read_regions(context, *node);
   each("materials", [&](const Node& item) { spec.materials.push_back(read_material(context, item)); });
   spec.formulation = formulation_of(context, map, spec.materials);
@@ -157,6 +157,7 @@ void read_parts(const Context& context, const Map& map, RobotSpec& spec) {
   each("forces", [&](const Node& item) { spec.forces.push_back(read_force(context, item, forces)); });
   each("tractions", [&](const Node& item) { spec.tractions.push_back(read_traction(context, item, tractions)); });
   each("fibres", [&](const Node& item) { spec.fibres.push_back(read_fibre(context, item, fibres)); });
+  each("layers", [&](const Node& item) { spec.layers.push_back(read_layer(context, item, layers)); });
   each("markers", [&](const Node& item) { spec.markers.push_back(read_marker(context, item, markers)); });
   if (const Node* node = map.find("feet"))
     for (const auto& item : list_of(2, *node)) spec.feet.push_back(read_foot(*item));
@@ -195,9 +196,9 @@ RobotSpec parse_scene(const scene::Node& root, const std::string& file_name, con
   scene::check_version(root, "softkin", "scenes", "a scene must be a map that begins with 'softkin: 1'",
                        "the scene needs key 'softkin', its version: 'softkin: 1'");
   const scene::Map map(
-      root, {"softkin",   "units",   "mesh",  "meshes",  "robots",    "formulation", "weights",   "regions",
-             "materials", "void",    "fixed", "rigid",   "actuators", "gravity",     "forces",    "tractions",
-             "fibres",    "markers", "feet",  "contact", "obstacles", "bodies",      "atmosphere"});
+      root, {"softkin",   "units",  "mesh",    "meshes", "robots",    "formulation", "weights", "regions",
+             "materials", "void",   "fixed",   "rigid",  "actuators", "gravity",     "forces",  "tractions",
+             "fibres",    "layers", "markers", "feet",   "contact",   "obstacles",   "bodies",  "atmosphere"});
   scene::Context context{std::filesystem::path(file_name).parent_path(), files};
   if (const scene::Node* node = map.find("units")) context.to_mm = scene::read_length_unit(*node);
   if (map.find("robots") != nullptr) return scene::read_several(context, map, file_name);

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <set>
 #include <softkin/model/compile/curving.hpp>
+#include <softkin/model/compile/layers.hpp>
 #include <softkin/model/compile/parts.hpp>
 
 namespace softkin {
@@ -156,6 +157,7 @@ Model compile(const RobotSpec& spec) {
   compile_feet(c);
   compile_loads(c);
   compile_fibres(c);
+  compile_layers(c);
   check_anchoring(c.model, c.origin);
   check_hinges(c.model, c.origin);
   doubt_units(c);

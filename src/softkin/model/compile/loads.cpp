@@ -3,6 +3,7 @@
 #include <cmath>
 #include <set>
 #include <softkin/model/compile/parts.hpp>
+#include <softkin/model/layer.hpp>
 #include <softkin/model/mesh/quadratic_elements.hpp>
 
 namespace softkin {
@@ -62,9 +63,11 @@ void check_density(Compilation& c) {
     for (const ElementRole& role : *roles) has_element[role.material] = true;
   bool any = c.spec.contact && std::any_of(c.spec.contact->bodies.begin(), c.spec.contact->bodies.end(),
                                            [](const BodySpec& body) { return body.density > 0; });
+  any = any ||
+        std::any_of(c.spec.layers.begin(), c.spec.layers.end(), [](const auto& layer) { return layer->density > 0; });
   for (std::size_t m = 0; m < has_element.size(); ++m)
     any = any || (has_element[m] && c.model.materials[m].density > 0);
-  if (!any) throw InvalidInput(c.origin, "there is gravity but no material has a density");
+  if (!any) throw InvalidInput(c.origin, "there is gravity but no material or layer has a density");
   for (std::size_t m = 0; m < has_element.size(); ++m)
     if (has_element[m] && c.model.materials[m].density == 0)
       c.model.notes.push_back("The material of region '" + c.model.materials[m].region +

@@ -42,6 +42,15 @@ double jacobian(const TetrahedronNodes& nodes, const Barycentric& l) {
   return (along.rightCols<3>().colwise() - along.col(0)).determinant();
 }
 
+std::array<TrianglePoint, 6> make_triangle_rule() {
+  constexpr double a = 0.44594849091596488632, of_a = 0.22338158967801146570 / 2;
+  constexpr double b = 0.09157621350977074346, of_b = 0.10995174365532186764 / 2;
+  return {triangle_point(a, a, of_a), triangle_point(1 - 2 * a, a, of_a), triangle_point(a, 1 - 2 * a, of_a),
+          triangle_point(b, b, of_b), triangle_point(1 - 2 * b, b, of_b), triangle_point(b, 1 - 2 * b, of_b)};
+}
+
+}  // namespace
+
 TrianglePoint triangle_point(double u, double v, double weight) {
   const double t = 1 - u - v;
   TrianglePoint point;
@@ -51,15 +60,6 @@ TrianglePoint triangle_point(double u, double v, double weight) {
   point.weight = weight;
   return point;
 }
-
-std::array<TrianglePoint, 6> make_triangle_rule() {
-  constexpr double a = 0.44594849091596488632, of_a = 0.22338158967801146570 / 2;
-  constexpr double b = 0.09157621350977074346, of_b = 0.10995174365532186764 / 2;
-  return {triangle_point(a, a, of_a), triangle_point(1 - 2 * a, a, of_a), triangle_point(a, 1 - 2 * a, of_a),
-          triangle_point(b, b, of_b), triangle_point(1 - 2 * b, b, of_b), triangle_point(b, 1 - 2 * b, of_b)};
-}
-
-}  // namespace
 
 TetrahedronNodes nodes_of(const Points& vertices, const Tetrahedron& element, const EdgeNodes& edge_nodes) {
   TetrahedronNodes nodes;

@@ -37,13 +37,16 @@ using Barycentric = Eigen::Vector4d;
 /// Nodes of a quadratic triangle: the corners, then those on its edges 01, 12, 20 [mm].
 using TriangleNodes = Eigen::Matrix<double, 6, 3>;
 
-/// A point of the six-point rule on the triangle, exact for polynomials of degree 4: shape functions and their
-/// derivatives with respect to the second and third barycentric coordinate.
+/// A point of a quadrature rule on the triangle: shape functions and their derivatives with respect to the second and
+/// third barycentric coordinate.
 struct TrianglePoint {
   Eigen::Matrix<double, 6, 1> shape, along_u, along_v;
-  double weight = 0;  // the weights sum to 1/2, the area of the reference triangle
+  double weight = 0;  // the weights of a rule sum to 1/2, the area of the reference triangle
 };
+[[nodiscard]] TrianglePoint triangle_point(double u, double v, double weight);
 
+/// Of six points, exact for polynomials of degree 4.
+///
 /// source  D. A. Dunavant, High degree efficient symmetrical Gaussian quadrature rules for the triangle, 1985
 [[nodiscard]] const std::array<TrianglePoint, 6>& triangle_rule();
 

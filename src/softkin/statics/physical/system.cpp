@@ -41,6 +41,10 @@ System::System(const Model& given, std::unique_ptr<const Pressures> pressures, c
     fibres_ = std::make_unique<Fibres>(model);
     fibres_->add_cliques(cliques_);
   }
+  if (!model.layers.empty()) {
+    layers_ = std::make_unique<Layers>(model);
+    layers_->add_cliques(cliques_);
+  }
   if (model.magnetism) magnets_ = std::make_unique<const Magnets>(model, body_.element_slots());
   if (like)
     share_layout(*like);
@@ -54,6 +58,7 @@ System::System(const Model& given, std::unique_ptr<const Pressures> pressures, c
   terms_ = {&body_, &dead_loads_, &fading_loads_, &surroundings_};
   if (tractions_) terms_.push_back(tractions_.get());
   if (fibres_) terms_.push_back(fibres_.get());
+  if (layers_) terms_.push_back(layers_.get());
   if (magnets_) terms_.push_back(magnets_.get());
   if (contacts_) terms_.push_back(contacts_.get());
 }

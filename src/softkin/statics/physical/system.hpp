@@ -5,6 +5,7 @@
 #include <softkin/statics/physical/body.hpp>
 #include <softkin/statics/physical/contacts.hpp>
 #include <softkin/statics/physical/fibres.hpp>
+#include <softkin/statics/physical/layers.hpp>
 #include <softkin/statics/physical/loads.hpp>
 #include <softkin/statics/physical/magnets.hpp>
 #include <softkin/statics/physical/placement.hpp>
@@ -191,6 +192,7 @@ class System {
   Surroundings surroundings_;
   std::unique_ptr<Tractions> tractions_;
   std::unique_ptr<Fibres> fibres_;
+  std::unique_ptr<Layers> layers_;
   std::unique_ptr<const Magnets> magnets_;
   std::unique_ptr<Contacts> contacts_;
   ActuatorLoads actuator_loads_;

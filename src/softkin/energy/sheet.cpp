@@ -1,0 +1,102 @@
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <softkin/energy/sheet.hpp>
+
+namespace softkin::energy {
+
+namespace {
+
+constexpr double pressed_share = 1e-6;
+
+SheetResponse plain(const SheetLaw& law, const Vec3& strain) {
+  const Vec3 stress = law.stiffness * strain;
+  return {strain.dot(stress) / 2, stress, law.stiffness, SheetState::taut};
+}
+
+/// A stress along one direction: t t^T as (11, 22, 12), its derivatives by the angle, and W = a^2 / (2 m) with them.
+struct Uniaxial {
+  Vec3 along, turned, twice;
+  double a, a1, a2, m, m1, m2;
+
+  Uniaxial(const SheetLaw& law, const Vec3& strain, double angle) {
+    const double c = std::cos(angle), s = std::sin(angle);
+    along = Vec3(c * c, s * s, c * s);
+    turned = Vec3(-2 * c * s, 2 * c * s, c * c - s * s);
+    twice = Vec3(-2 * (c * c - s * s), 2 * (c * c - s * s), -4 * c * s);
+    a = along.dot(strain);
+    a1 = turned.dot(strain);
+    a2 = twice.dot(strain);
+    const Vec3 soft = law.compliance * along;
+    m = along.dot(soft);
+    m1 = 2 * turned.dot(soft);
+    m2 = 2 * twice.dot(soft) + 2 * turned.dot(law.compliance * turned);
+  }
+  [[nodiscard]] double energy() const { return a * a / (2 * m); }
+  /// Its signed root, which is largest where the energy of a pull is.
+  [[nodiscard]] double root() const { return a / std::sqrt(m); }
+  /// What has the sign of the root's slope, and its own slope.
+  [[nodiscard]] double rise() const { return 2 * a1 * m - a * m1; }
+  [[nodiscard]] double rise_slope() const { return 2 * a2 * m + a1 * m1 - a * m2; }
+  [[nodiscard]] double curvature() const {
+    return (a1 * a1 + a * a2) / m - 2 * a * a1 * m1 / (m * m) - a * a * m2 / (2 * m * m) +
+           a * a * m1 * m1 / (m * m * m);
+  }
+};
+
+/// The direction that pulls most: the best of several, then Newton's method within its neighbours.
+double taut_direction(const SheetLaw& law, const Vec3& strain) {
+  constexpr int tried = 24, most_steps = 30;
+  const double apart = std::numbers::pi / tried;
+  double best = 0, most = Uniaxial(law, strain, 0).root();
+  for (int i = 1; i < tried; ++i)
+    if (const double root = Uniaxial(law, strain, i * apart).root(); root > most) {
+      most = root;
+      best = i * apart;
+    }
+  double low = best - apart, high = best + apart;
+  for (int i = 0; i < most_steps; ++i) {
+    const Uniaxial at(law, strain, best);
+    const double rise = at.rise(), slope = at.rise_slope();
+    (rise > 0 ? low : high) = best;
+    double next = slope < 0 ? best - rise / slope : (low + high) / 2;
+    if (!(next >= low && next <= high)) next = (low + high) / 2;
+    if (next == best) break;
+    best = next;
+  }
+  return best;
+}
+
+SheetResponse wrinkled(const SheetLaw& law, const Vec3& strain) {
+  const Uniaxial at(law, strain, taut_direction(law, strain));
+  SheetResponse out{at.energy(), at.a / at.m * at.along, at.along * at.along.transpose() / at.m, SheetState::wrinkled};
+  const Vec3 turning = (at.a1 / at.m - at.a * at.m1 / (at.m * at.m)) * at.along + at.a / at.m * at.turned;
+  if (const double curvature = at.curvature(); curvature < 0) out.tangent -= turning * turning.transpose() / curvature;
+  return out;
+}
+
+/// Of (11, 22, 12), of a strain half of its last.
+double least_principal(double x, double y, double xy) {
+  return (x + y) / 2 - std::hypot((x - y) / 2, xy);
+}
+double greatest_principal(double x, double y, double xy) {
+  return (x + y) / 2 + std::hypot((x - y) / 2, xy);
+}
+
+}  // namespace
+
+SheetResponse sheet_response(const SheetLaw& law, const Vec3& strain) {
+  const SheetResponse all = plain(law, strain);
+  if (!law.tension_only || least_principal(all.stress[0], all.stress[1], all.stress[2]) >= 0) return all;
+  SheetResponse out;
+  if (greatest_principal(strain[0], strain[1], strain[2] / 2) <= 0)
+    out.state = SheetState::slack;
+  else
+    out = wrinkled(law, strain);
+  out.energy += pressed_share * (all.energy - out.energy);
+  out.stress += pressed_share * (all.stress - out.stress);
+  out.tangent += pressed_share * (all.tangent - out.tangent);
+  return out;
+}
+
+}  // namespace softkin::energy

@@ -1,0 +1,23 @@
+#pragma once
+
+#include <softkin/core/sheet_law.hpp>
+
+namespace softkin::energy {
+
+enum class SheetState { taut, wrinkled, slack };
+
+/// What a sheet answers with to a strain (E11, E22, 2 E12).
+struct SheetResponse {
+  double energy = 0;            // per volume [MPa]
+  Vec3 stress = Vec3::Zero();   // S11, S22, S12 [MPa]
+  Mat3 tangent = Mat3::Zero();  // dS/dE [MPa]; positive semidefinite
+  SheetState state = SheetState::taut;
+};
+
+/// Of a sheet that takes tension only a share of 1e-6 is of one that is pressed, too: what is slack keeps a shape.
+///
+/// source  relaxed energy by its dual, the most of S . E - S . M S / 2 over the stresses S >= 0, M the compliance:
+///         wrinkled, S = s t t^T, it is the most over directions t of (t . E t)^2 / (2 t t : M t t)
+[[nodiscard]] SheetResponse sheet_response(const SheetLaw& law, const Vec3& strain);
+
+}  // namespace softkin::energy

@@ -1,0 +1,58 @@
+#pragma once
+
+#include <softkin/core/sheet_law.hpp>
+#include <softkin/model/model.hpp>
+
+namespace softkin {
+
+/// A sheet on faces of the body, or where there is no body: its mid-surface is the faces themselves.
+struct LayerSpec {
+  std::string name;
+  std::variant<RegionRef, TriangleSurface> where;  // faces of the mesh; or a surface that elements carry along [mm]
+  double thickness_mm = 0;                         // > 0
+  double e1 = 0, e2 = 0, g12 = 0;                  // [MPa], > 0, along and across the direction
+  double nu12 = 0;                                 // strain across over that along, pulled along [-]
+  std::optional<Vec3> direction;                   // laid onto the faces; none: it does not matter, e1 = e2
+  bool tension_only = false;                       // wrinkles instead of being pressed
+  bool bending = false;
+  double density = 0;   // [kg/m^3], >= 0
+  std::string robot{};  // of several: whose elements; empty: all
+  Origin origin{};
+};
+
+/// A place of a layer, of whose area it stands for some.
+struct LayerPlace {
+  std::vector<Index> vertices;
+  std::vector<double> weights;          // of them: where it is
+  std::vector<Eigen::Vector2d> slopes;  // of them [1/mm]: F = sum of x slope^T, 3 by 2, in the layer's directions
+  double area_mm2 = 0;                  // at rest
+};
+
+/// A place of a layer that bends: x_1, x_2, x_11, x_22 and x_12 by its directions are sums of parts of its vertices.
+struct LayerBend {
+  std::vector<Index> vertices;
+  std::vector<Eigen::Matrix<double, 5, 1>> parts;
+  BendingPlace place;
+};
+
+/// A place of an edge between two faces of a layer: of either side x_1, x_2 and what its moment is of.
+struct LayerJoint {
+  struct Side {
+    std::vector<Index> vertices;
+    std::vector<Vec3> parts;
+  };
+  std::array<Side, 2> sides;
+  BendingJoint joint;
+};
+
+struct Layer {
+  std::string name;
+  double thickness_mm = 0;
+  SheetLaw law;
+  std::vector<LayerPlace> places;
+  std::vector<LayerBend> bends;    // where it resists bending
+  std::vector<LayerJoint> joints;  // the same
+  std::vector<CavityFace> faces;   // of the mesh, for pictures; none where elements carry it along
+};
+
+}  // namespace softkin

@@ -1,0 +1,271 @@
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <numeric>
+#include <softkin/statics/physical/layers.hpp>
+
+namespace softkin::physical {
+
+namespace {
+
+using Sheet = Eigen::Matrix<double, 3, 2>;
+using Block3 = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
+
+Sheet sheet_gradient(const LayerPlace& place, const Points& positions) {
+  Sheet f = Sheet::Zero();
+  for (std::size_t i = 0; i < place.vertices.size(); ++i)
+    f += vertex_at(positions, place.vertices[i]) * place.slopes[i].transpose();
+  return f;
+}
+
+Vec3 green_strain(const Sheet& f) {
+  const Eigen::Matrix2d c = f.transpose() * f;
+  return {(c(0, 0) - 1) / 2, (c(1, 1) - 1) / 2, c(0, 1)};
+}
+
+Eigen::Matrix2d as_matrix(const Vec3& stress) {
+  Eigen::Matrix2d s;
+  s << stress[0], stress[2], stress[2], stress[1];
+  return s;
+}
+
+/// Derivative of the strain by a vertex of that slope.
+Mat3 strain_slope(const Sheet& f, const Eigen::Vector2d& slope) {
+  Mat3 b;
+  b << slope[0] * f.col(0).transpose(), slope[1] * f.col(1).transpose(),
+      (slope[0] * f.col(1) + slope[1] * f.col(0)).transpose();
+  return b;
+}
+
+/// The nearest symmetric matrix that presses nowhere.
+Eigen::Matrix2d pulling(const Eigen::Matrix2d& stress) {
+  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;
+  solver.computeDirect(stress);
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * solver.eigenvectors().transpose();
+}
+
+/// The places of sorted vertices in an order of their own.
+std::vector<std::size_t> sorted_order(const std::vector<Index>& vertices) {
+  std::vector<std::size_t> order(vertices.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return vertices[a] < vertices[b]; });
+  return order;
+}
+
+/// The columns that parts of vertices add up to.
+template <int Columns, class Bent>
+Eigen::Matrix<double, 3, Columns> columns_of(const Bent& bent, const Points& positions) {
+  Eigen::Matrix<double, 3, Columns> columns = Eigen::Matrix<double, 3, Columns>::Zero();
+  for (std::size_t i = 0; i < bent.vertices.size(); ++i)
+    columns += vertex_at(positions, bent.vertices[i]) * bent.parts[i].transpose();
+  return columns;
+}
+
+template <class Bent, class Response>
+void add_pull(const Bent& bent, const Response& response, Term::Sum& sum) {
+  sum.energy += response.energy;
+  const auto by_columns = response.gradient.reshaped(3, response.gradient.size() / 3);
+  for (std::size_t i = 0; i < bent.vertices.size(); ++i)
+    sum.gradient.row(bent.vertices[i]) += (by_columns * bent.parts[i]).transpose();
+}
+
+template <int N>
+Eigen::Matrix<double, N, N> positive(const Eigen::Matrix<double, N, N>& matrix) {
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>> solver(matrix);
+  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * solver.eigenvectors().transpose();
+}
+
+/// Blocks of the vertices, of which each is the sum over pairs of columns.
+template <class Bent, int N>
+void put_stiffness(const Bent& bent, const Eigen::Matrix<double, N, N>& hessian, double* out) {
+  constexpr int columns = N / 3;
+  std::vector<Eigen::Matrix<double, 3, N>> left;
+  for (const auto& parts : bent.parts) {
+    left.emplace_back(Eigen::Matrix<double, 3, N>::Zero());
+    for (int c = 0; c < columns; ++c) left.back() += parts[c] * hessian.template middleRows<3>(3 * c);
+  }
+  for (std::size_t i = 0; i < left.size(); ++i)
+    for (std::size_t j = 0; j <= i; ++j, out += 9) {
+      Mat3 block = Mat3::Zero();
+      for (int c = 0; c < columns; ++c) block += bent.parts[j][c] * left[i].template middleCols<3>(3 * c);
+      Block3(out, 3, 3) = block;
+    }
+}
+
+}  // namespace
+
+Layers::Layers(const Model& model) : model_(model) {
+  for (const auto& layer : model.layers) {
+    add_membrane(*layer);
+    add_bending(*layer);
+  }
+}
+
+void Layers::add_membrane(const Layer& layer) {
+  std::map<std::vector<Index>, std::size_t> known;
+  for (const LayerPlace& place : layer.places) {
+    std::vector<Index> vertices = place.vertices;
+    std::sort(vertices.begin(), vertices.end());
+    const auto [at, fresh] = known.emplace(vertices, faces_.size());
+    if (fresh) faces_.push_back({&layer.law, layer.thickness_mm, std::move(vertices), {}});
+    faces_[at->second].places.push_back(&place);
+  }
+}
+
+void Layers::add_bending(const Layer& layer) {
+  for (const LayerBend& bend : layer.bends) {
+    Place place{{}, &bend.place};
+    for (const std::size_t i : sorted_order(bend.vertices)) {
+      place.vertices.push_back(bend.vertices[i]);
+      place.parts.push_back(bend.parts[i]);
+    }
+    places_.push_back(std::move(place));
+  }
+  for (const LayerJoint& of : layer.joints) {
+    Joint joint{{}, &of.joint};
+    for (const LayerJoint::Side& side : of.sides)
+      joint.vertices.insert(joint.vertices.end(), side.vertices.begin(), side.vertices.end());
+    sort_unique(joint.vertices);
+    joint.parts.assign(joint.vertices.size(), Eigen::Matrix<double, 6, 1>::Zero());
+    for (std::size_t s = 0; s < 2; ++s)
+      for (std::size_t i = 0; i < of.sides[s].vertices.size(); ++i) {
+        const auto at = std::lower_bound(joint.vertices.begin(), joint.vertices.end(), of.sides[s].vertices[i]);
+        joint.parts[static_cast<std::size_t>(at - joint.vertices.begin())].segment<3>(
+            3 * static_cast<Eigen::Index>(s)) = of.sides[s].parts[i];
+      }
+    joints_.push_back(std::move(joint));
+  }
+}
+
+energy::BendingResponse<15> Layers::bend(const Place& place, const Points& positions, bool second) {
+  return energy::bend(*place.of, columns_of<5>(place, positions), second);
+}
+
+energy::BendingResponse<18> Layers::bend(const Joint& joint, const Points& positions, bool second) {
+  const Eigen::Matrix<double, 3, 6> columns = columns_of<6>(joint, positions);
+  return energy::bend(*joint.of, columns.leftCols<3>(), columns.rightCols<3>(), second);
+}
+
+void Layers::evaluate(const Iterate& at, const Demand& /*demand*/, Term::Scratch& /*scratch*/, Sum& sum,
+                      Team& /*team*/) const {
+  for (const Face& face : faces_)
+    for (const LayerPlace* place : face.places) {
+      const Sheet f = sheet_gradient(*place, at.positions);
+      const energy::SheetResponse response = energy::sheet_response(*face.law, green_strain(f));
+      const double volume = place->area_mm2 * face.thickness_mm;
+      sum.energy += volume * response.energy;
+      const Sheet pull = volume * f * as_matrix(response.stress);
+      for (std::size_t i = 0; i < place->vertices.size(); ++i)
+        sum.gradient.row(place->vertices[i]) += (pull * place->slopes[i]).transpose();
+    }
+  for (const Place& place : places_) add_pull(place, bend(place, at.positions, false), sum);
+  for (const Joint& joint : joints_) add_pull(joint, bend(joint, at.positions, false), sum);
+  sum.forbidden = sum.forbidden || !std::isfinite(sum.energy);
+}
+
+void Layers::add_cliques(linear::Cliques& cliques) {
+  for (Face& face : faces_) {
+    face.slot = cliques.slots.back();
+    cliques.add(face.vertices);
+  }
+  for (Place& place : places_) {
+    place.slot = cliques.slots.back();
+    cliques.add(place.vertices);
+  }
+  for (Joint& joint : joints_) {
+    joint.slot = cliques.slots.back();
+    cliques.add(joint.vertices);
+  }
+}
+
+namespace {
+
+/// Of a place, added to blocks of its vertices: those in order have these places among the place's own.
+void add_sheet_stiffness(const LayerPlace& place, const SheetLaw& law, double thickness_mm, bool projected,
+                         const Points& positions, const std::vector<std::size_t>& order, double* out) {
+  const Sheet f = sheet_gradient(place, positions);
+  const energy::SheetResponse response = energy::sheet_response(law, green_strain(f));
+  const double volume = place.area_mm2 * thickness_mm;
+  Eigen::Matrix2d stress = as_matrix(response.stress);
+  if (projected) stress = pulling(stress);
+  std::vector<Mat3> slopes;
+  for (const std::size_t i : order) slopes.push_back(strain_slope(f, place.slopes[i]));
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    const Mat3 left = volume * slopes[i].transpose() * response.tangent;
+    for (std::size_t j = 0; j <= i; ++j, out += 9) {
+      Mat3 block = left * slopes[j];
+      block.diagonal().array() += volume * place.slopes[order[i]].dot(stress * place.slopes[order[j]]);
+      Block3(out, 3, 3) += block;
+    }
+  }
+}
+
+}  // namespace
+
+void Layers::stiffness(const Iterate& at, const Demand& /*demand*/, bool projected, Term::Scratch& /*scratch*/,
+                       LargeVector<double>& slots, Team& team) const {
+  const auto room = [&](std::int64_t slot, std::size_t count) {
+    double* const first = slots.data() + 9 * slot;
+    std::fill_n(first, 9 * count * (count + 1) / 2, 0.0);
+    return first;
+  };
+  team.pieces(static_cast<Index>(faces_.size()), [&](Index begin, Index end) {
+    for (Index n = begin; n < end; ++n) {
+      const Face& face = faces_[static_cast<std::size_t>(n)];
+      double* const first = room(face.slot, face.vertices.size());
+      for (const LayerPlace* place : face.places)
+        add_sheet_stiffness(*place, *face.law, face.thickness_mm, projected, at.positions,
+                            sorted_order(place->vertices), first);
+    }
+  });
+  const auto put = [&](const auto& bent) {
+    const auto response = bend(bent, at.positions, true);
+    put_stiffness(bent, projected ? positive(response.hessian) : response.hessian, slots.data() + 9 * bent.slot);
+  };
+  team.pieces(static_cast<Index>(places_.size()), [&](Index begin, Index end) {
+    for (Index n = begin; n < end; ++n) put(places_[static_cast<std::size_t>(n)]);
+  });
+  team.pieces(static_cast<Index>(joints_.size()), [&](Index begin, Index end) {
+    for (Index n = begin; n < end; ++n) put(joints_[static_cast<std::size_t>(n)]);
+  });
+}
+
+bool Layers::kinked() const {
+  return std::any_of(faces_.begin(), faces_.end(), [](const Face& face) { return face.law->tension_only; });
+}
+
+void Layers::tell(const Iterate& at, const Demand& /*demand*/, Term::Scratch& /*scratch*/, ElementDeformation& out,
+                  Team& /*team*/) const {
+  for (const auto& layer : model_.layers) {
+    LayerForces told;
+    double area = 0, wrinkled = 0, slack = 0;
+    for (const LayerPlace& place : layer->places) {
+      const Sheet f = sheet_gradient(place, at.positions);
+      const Eigen::Matrix2d c = f.transpose() * f;
+      const energy::SheetResponse response = energy::sheet_response(layer->law, green_strain(f));
+      // force per present width: h F S F^T / J, of the eigenvalues of S C
+      const Eigen::Matrix2d pull =
+          layer->thickness_mm / std::sqrt(std::max(c.determinant(), 1e-300)) * as_matrix(response.stress) * c;
+      const double mean = pull.trace() / 2, apart = std::sqrt(std::max(mean * mean - pull.determinant(), 0.0));
+      if (area == 0 || mean + apart > told.largest_N_mm) {
+        told.largest_N_mm = mean + apart;
+        told.where = Vec3::Zero();
+        for (std::size_t i = 0; i < place.vertices.size(); ++i)
+          told.where += place.weights[i] * vertex_at(at.positions, place.vertices[i]);
+      }
+      told.least_N_mm = area == 0 ? mean - apart : std::min(told.least_N_mm, mean - apart);
+      const double middle = c.trace() / 2, off = std::sqrt(std::max(middle * middle - c.determinant(), 0.0));
+      const double stretch = std::sqrt(middle + off) - 1;
+      told.strain = area == 0 ? stretch : std::max(told.strain, stretch);
+      area += place.area_mm2;
+      if (response.state == energy::SheetState::wrinkled) wrinkled += place.area_mm2;
+      if (response.state == energy::SheetState::slack) slack += place.area_mm2;
+    }
+    told.wrinkled = wrinkled / area;
+    told.slack = slack / area;
+    out.layers.push_back(told);
+  }
+}
+
+}  // namespace softkin::physical

@@ -1,0 +1,85 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <cmath>
+#include <numbers>
+#include <random>
+#include <softkin/energy/sheet.hpp>
+
+/// Sheets in plane stress: derivatives by differences, and those that wrinkle against a search over all wrinkles.
+
+namespace softkin::energy {
+
+namespace {
+
+SheetLaw orthotropic(double e1, double e2, double g12, double nu12, bool tension_only) {
+  SheetLaw law;
+  law.compliance << 1 / e1, -nu12 / e1, 0, -nu12 / e1, 1 / e2, 0, 0, 0, 1 / g12;
+  law.stiffness = law.compliance.inverse();
+  law.tension_only = tension_only;
+  return law;
+}
+
+/// The least energy of strain + P, P = sum of two wrinkles across each other, over their direction and depths.
+double least_energy(const SheetLaw& law, const Vec3& strain) {
+  constexpr int directions = 2000;
+  double least = strain.dot(law.stiffness * strain) / 2;
+  for (int i = 0; i < directions; ++i) {
+    const double c = std::cos(std::numbers::pi * i / directions), s = std::sin(std::numbers::pi * i / directions);
+    Eigen::Matrix<double, 3, 2> wrinkles;
+    wrinkles << c * c, s * s, s * s, c * c, 2 * c * s, -2 * c * s;
+    // a convex quadratic in two depths of 0 or more: both, one or none
+    const Eigen::Matrix2d second = wrinkles.transpose() * law.stiffness * wrinkles;
+    const Eigen::Vector2d first = wrinkles.transpose() * law.stiffness * strain;
+    const auto energy = [&](const Eigen::Vector2d& depth) {
+      const Vec3 e = strain + wrinkles * depth;
+      return e.dot(law.stiffness * e) / 2;
+    };
+    const Eigen::Vector2d both = -second.inverse() * first;
+    if (both.minCoeff() >= 0) least = std::min(least, energy(both));
+    for (int k = 0; k < 2; ++k)
+      least = std::min(least, energy(std::max(0.0, -first[k] / second(k, k)) * Eigen::Vector2d::Unit(k)));
+  }
+  return least;
+}
+
+}  // namespace
+
+TEST(Sheet, WrinklesToTheLeastEnergy) {
+  std::mt19937 engine(3);
+  std::uniform_real_distribution<double> any(-0.1, 0.1);
+  int seen[3] = {};
+  for (const SheetLaw& law : {orthotropic(2, 2, 2 / 2.6, 0.3, true), orthotropic(20, 1, 0.3, 0.4, true)})
+    for (int i = 0; i < 60; ++i) {
+      const Vec3 strain(any(engine), any(engine), 2 * any(engine));
+      const SheetResponse found = sheet_response(law, strain);
+      const double plain = strain.dot(law.stiffness * strain) / 2;
+      EXPECT_NEAR(found.energy, least_energy(law, strain), 2e-5 * plain) << strain.transpose();
+      EXPECT_GE(found.energy, 0);
+      ++seen[static_cast<int>(found.state)];
+    }
+  for (const int times : seen) EXPECT_GT(times, 5);
+}
+
+TEST(Sheet, DerivativesAreThoseOfTheEnergy) {
+  std::mt19937 engine(4);
+  std::uniform_real_distribution<double> any(-0.1, 0.1);
+  constexpr double little = 1e-6;
+  for (const bool tension_only : {false, true})
+    for (int i = 0; i < 100; ++i) {
+      const SheetLaw law = orthotropic(8, 1.5, 0.6, 0.35, tension_only);
+      const Vec3 strain(any(engine), any(engine), 2 * any(engine));
+      const SheetResponse at = sheet_response(law, strain);
+      for (int k = 0; k < 3; ++k) {
+        const auto high = sheet_response(law, strain + little * Vec3::Unit(k));
+        const auto low = sheet_response(law, strain - little * Vec3::Unit(k));
+        EXPECT_NEAR(at.stress[k], (high.energy - low.energy) / (2 * little), 1e-7);
+        if (high.state == low.state) {
+          EXPECT_LT((at.tangent.col(k) - (high.stress - low.stress) / (2 * little)).norm(), 1e-5);
+        }
+      }
+      EXPECT_GE(Eigen::SelfAdjointEigenSolver<Mat3>(at.tangent).eigenvalues().minCoeff(), -1e-9);
+    }
+}
+
+}  // namespace softkin::energy
