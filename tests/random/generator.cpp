@@ -72,6 +72,7 @@ RandomCase make_case(std::uint64_t seed) {
   make_commands(m);
   make_options(m);
   make_magnetism(m);
+  make_growth(m);
   make_stiff(m);
   make_floor(m);
   make_weights(m);

@@ -269,7 +269,7 @@ RealMat3 inverse_stretch(const RealPoints& rest, Real ratio) {
 }  // namespace
 
 ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealPoints& current, const LayerDrive& drive,
-                      const BranchDrive& viscous) {
+                      const BranchDrive& viscous, const GrowthDrive& growth) {
   constexpr Real ulp = std::numeric_limits<double>::epsilon();
   const Eigen::Index count = rest.rows();
   const auto nodes = static_cast<std::size_t>(count);
@@ -278,15 +278,15 @@ ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealP
   const Real rest_size = rest.rowwise().norm().maxCoeff(), current_size = current.rowwise().norm().maxCoeff();
   for (const ParentPoint& point : points_of(count)) {
     const RealMat3 jacobian = (rest.rowwise() - rest.row(0)).transpose() * point.slope;
-    const Real volume = point.weight * jacobian.determinant();
-    RealPoints slope = point.slope * jacobian.inverse();
+    const Real volume = point.weight * jacobian.determinant() * growth.volume();
+    RealPoints slope = point.slope * jacobian.inverse() * growth.inverse();
     if (drive.ratio != 1) slope = slope * inverse_stretch(rest, drive.ratio);
     const RealMat3 gradient = (current.rowwise() - current.row(0)).transpose() * slope;
     RealMat3 p = stress(law, gradient);
     Real stiffness = stiffness_bound(law, gradient);
     const Real all = slope.rowwise().norm().sum();
     if (viscous.branches && std::isfinite(viscous.elapsed_s)) {
-      RealPoints before = point.slope * jacobian.inverse();
+      RealPoints before = point.slope * jacobian.inverse() * viscous.begun_growth.inverse();
       if (viscous.begun_ratio != 1) before = before * inverse_stretch(rest, viscous.begun_ratio);
       const RealMat3 begun = barred((viscous.begun.rowwise() - viscous.begun.row(0)).transpose() * before);
       for (const ViscousBranch& branch : *viscous.branches) {
@@ -322,7 +322,7 @@ ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealP
 }
 
 PressurePulls pressure_pulls_of(const RealPoints& rest, const RealPoints& current, const std::array<Real, 4>& pressures,
-                                Real bulk, Real shear) {
+                                Real bulk, Real shear, const GrowthDrive& growth) {
   constexpr Real ulp = std::numeric_limits<double>::epsilon();
   const Eigen::Index count = rest.rows();
   const auto nodes = static_cast<std::size_t>(count);
@@ -332,8 +332,8 @@ PressurePulls pressure_pulls_of(const RealPoints& rest, const RealPoints& curren
   Real whole = 0;
   for (const ParentPoint& point : points_of(count)) {
     const RealMat3 jacobian = (rest.rowwise() - rest.row(0)).transpose() * point.slope;
-    const Real volume = point.weight * jacobian.determinant();
-    const RealPoints slope = point.slope * jacobian.inverse();
+    const Real volume = point.weight * jacobian.determinant() * growth.volume();
+    const RealPoints slope = point.slope * jacobian.inverse() * growth.inverse();
     const RealMat3 f = (current.rowwise() - current.row(0)).transpose() * slope;
     RealMat3 cofactor;
     for (int i = 0; i < 3; ++i)

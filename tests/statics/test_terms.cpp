@@ -1,4 +1,5 @@
 #include <random>
+#include <softkin/model/growth.hpp>
 #include <softkin/statics/physical/contact_steps.hpp>
 
 #include "statics/contact_scenes.hpp"
@@ -77,6 +78,26 @@ RobotSpec threaded_robot(bool quadratic) {
   slack.tension_only = true;
   slack.way = std::vector<Vec3>{Vec3(0.1 * size.x(), 0.9 * size.y(), 0.1 * size.z()), 0.8 * size, 0.5 * size};
   spec.fibres = {thread, slack};
+  return spec;
+}
+
+/// Elements of either kind that grow, in all directions by a temperature and along one by a stretch.
+RobotSpec growing_robot(Split split, bool quadratic) {
+  RobotSpec spec = physical_robot(block_mesh({3, 2, 1}, {20, 8, 6}, split));
+  spec.quadratic = quadratic;
+  spec.regions = {{"left", Selector(Box{{-1, -1, -1}, {7, 9, 7}}), {}},
+                  {"right", Selector(Box{{13, -1, -1}, {21, 9, 7}}), {}}};
+  GrowthPart warm{"left"}, along{"right"};
+  warm.temperature = TemperatureSpec{20, 3e-3, {}};
+  along.direction = DirectionSpec{.uniform = {1, 2, -1}};
+  along.keeps_volume = true;
+  ActuatorSpec first = actuator("warm", ActuatorKind::growth, 0, 100, true);
+  first.control = Control::load;
+  first.rest = 20;
+  first.growth = std::make_shared<const GrowthSpec>(GrowthSpec{{warm}});
+  ActuatorSpec second = actuator("along", ActuatorKind::growth, 0.7, 1.4, true);
+  second.growth = std::make_shared<const GrowthSpec>(GrowthSpec{{along}});
+  spec.actuators = {first, second};
   return spec;
 }
 
@@ -197,6 +218,9 @@ void expect_derivatives(const RobotSpec& spec, double shake, const Vec3& move, d
 TEST(Terms, DerivativesAreThoseOfTheEnergies) {
   Seen seen{};
   expect_derivatives(layered_robot(), 0.1, Vec3::Zero(), 1e-5, seen);
+  for (const auto& [split, quadratic] :
+       {std::pair{Split::six, false}, std::pair{Split::six, true}, std::pair{Split::prisms, false}})
+    expect_derivatives(growing_robot(split, quadratic), 0.1, Vec3::Zero(), 1e-5, seen);
   expect_derivatives(charged_sheet(), 0.01, Vec3::Zero(), 1e-6, seen);
   for (const Magnetisation magnetisation : both_magnetisations)
     for (const bool quadratic : {false, true})

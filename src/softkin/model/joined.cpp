@@ -4,6 +4,7 @@
 #include <softkin/core/text.hpp>
 #include <softkin/model/compile/curving.hpp>
 #include <softkin/model/compile/parts.hpp>
+#include <softkin/model/growth.hpp>
 #include <softkin/model/joined.hpp>
 #include <softkin/model/magnetic_field.hpp>
 #include <softkin/model/mesh/mesh_joining.hpp>
@@ -174,6 +175,21 @@ class Joiner {
     return std::make_shared<const RemanenceSpec>(std::move(remanence));
   }
 
+  [[nodiscard]] std::shared_ptr<const GrowthSpec> full(GrowthSpec growth) const {
+    for (GrowthPart& part : growth.parts) {
+      part.region = full(part.region);
+      if (part.direction) part.direction = turned(*part.direction);
+    }
+    return std::make_shared<const GrowthSpec>(std::move(growth));
+  }
+  [[nodiscard]] DirectionSpec turned(DirectionSpec direction) const {
+    for (Vec3* along : {&direction.uniform, &direction.axis}) *along = placed_.place.rotation * *along;
+    direction.center = placed_.place(direction.center);
+    direction.samples = (direction.samples * placed_.place.rotation.transpose()).eval();
+    place(direction.places);
+    return direction;
+  }
+
   void add_supports() {
     for (std::size_t f = 0; f < robot_.fixed.size(); ++f) {
       FixedSpec fixed = robot_.fixed[f];
@@ -220,6 +236,7 @@ class Joiner {
       if (actuator.surface) place(actuator.surface->vertices);
       if (actuator.shares)
         for (Index& prism : actuator.shares->prisms) prism += static_cast<Index>(all_.mesh.prisms.size());
+      if (actuator.growth) actuator.growth = full(*actuator.growth);
       for (auto* points : {&actuator.points, &actuator.apexes})
         for (PointRef& point : *points) point = full(point);
       all_.actuators.push_back(std::move(actuator));

@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstdio>
+#include <softkin/model/growth.hpp>
 #include <softkin/model/magnetic_field.hpp>
 #include <softkin/model/mesh/quadratic_elements.hpp>
 #include <softkin/model/mesh/surface_tree.hpp>
@@ -109,6 +110,11 @@ class Hash {
   void put(const Filling& f) {
     add(f.liquid, f.pushed, f.exponent, f.compressibility, f.atmosphere_MPa, f.dead_mm3, f.syringe_mm3, f.chamber_mm3);
   }
+  void put(const GrowthCurve& curve) { add(curve.reference_C(), curve.values()); }
+  void put(const std::shared_ptr<const Growth>& g) {
+    add(g->actuator, g->tetrahedra, g->prisms, g->directions, g->keeps_volume, g->temperature.has_value());
+    if (g->temperature) put(*g->temperature);
+  }
   void put(const ConnectedChamber& chamber) { add(chamber.region, chamber.end); }
   void put(const Actuator& a) {
     add(a.name, a.kind, a.control, a.rest, a.weight, a.distribution == Distribution::least_norm, a.tetrahedra, a.cavity,
@@ -214,7 +220,8 @@ std::array<Index, 2> Model::vertices_of_part(Index part) const {
 
 bool drives(const Actuator& actuator) {
   return actuator.kind == ActuatorKind::cable || actuator.kind == ActuatorKind::dea ||
-         actuator.kind == ActuatorKind::pneumatic || actuator.kind == ActuatorKind::magnetic;
+         actuator.kind == ActuatorKind::pneumatic || actuator.kind == ActuatorKind::magnetic ||
+         actuator.kind == ActuatorKind::growth;
 }
 
 bool rubs(const Actuator& actuator) {
@@ -243,6 +250,7 @@ std::string fingerprint_of(const Model& model) {
   if (!model.turns.empty()) hash.add(model.turns);
   if (!model.tractions.empty()) hash.add(model.tractions);
   if (!model.fibres.empty()) hash.add(model.fibres);
+  if (!model.growths.empty()) hash.add(model.growths);
   if (model.contact.any()) hash.add(model.contact, model.bodies);
   if (model.magnetism) {
     hash.add(model.magnetism->remanence, model.magnetism->sources);

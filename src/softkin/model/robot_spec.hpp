@@ -108,8 +108,8 @@ struct FixedSpec {
 };
 
 /// The last four are no drives of the robot but what is done to it and its surroundings: the motion of an obstacle, a
-/// force on a body or at a place of the robot, how firmly a body is held, and the angle by which a support turns what it
-/// holds.
+/// force on a body or at a place of the robot, how firmly a body is held, and the angle by which a support turns what
+/// it holds.
 enum class ActuatorKind { cable, dea, pneumatic, magnetic, growth, motion, force, hold, turn };
 
 /// What the user commands: length, area or volume over that at rest [-]; or the load, tension [N] or gauge pressure

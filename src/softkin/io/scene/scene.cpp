@@ -230,7 +230,7 @@ RobotSpec read_scene_and(std::vector<fs::path>& inputs, const AskedScene& asked)
   for (const std::string& each : asked.changes) root = scene::changed(root, "--change", each, "");
   return parse_scene(*root, asked.scene,
                      {noting(read_mesh), noting(read_stl), noting(read_sidecar), noting(read_actuator_curve),
-                      noting(read_file), noting(read_field_samples), noting(read_way)});
+                      noting(read_file), noting(read_field_samples), noting(read_way), noting(read_directions)});
 }
 
 bool parse_vector(const std::string& text, Vec3& vector) {

@@ -92,6 +92,11 @@ void check_filling(Compilation& c, const ActuatorSpec& spec, const TriangleSurfa
 /// After the materials. Physical: what is magnetic, and the sources of the fields that act on it.
 void compile_magnetism(Compilation& c);
 
+/// Refuses a growth whose numbers, commands or members make no sense, and one of target shapes.
+void check_growth(const ActuatorSpec& spec, Formulation formulation);
+/// After the materials. Physical: the elements that actuators let grow, and along which directions.
+void compile_growth(Compilation& c);
+
 /// Physical, after the supports: refuses chambers that are open.
 void check_openings(const Compilation& c);
 
