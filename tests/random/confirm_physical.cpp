@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <softkin/model/families.hpp>
 #include <softkin/model/growth.hpp>
 #include <softkin/model/mesh/triangle_points.hpp>
 
@@ -408,6 +409,34 @@ void add_magnets(const Model& model, const Equilibrium& found, Forces& forces) {
   for (std::size_t e = 0; e < model.prisms.size(); ++e) add(model.tetrahedra.size() + e, model.prisms[e].data(), 6);
 }
 
+void add_families(const Model& model, const Equilibrium& found, Forces& forces) {
+  for (const Material& material : model.materials) {
+    if (!material.families) continue;
+    const Families& all = *material.families;
+    const auto add = [&](std::size_t place, const Index* nodes, int count) {
+      std::vector<FibreDrive> fibres;
+      for (const Families::Family& family : all.families)
+        fibres.push_back({family.k1_MPa, family.k2, family.dispersion, family.directions[place].cast<Real>()});
+      const ElementPulls pulls =
+          family_pulls_of(nodes_at(model.rest, nodes, count), nodes_at(found.state.positions, nodes, count), fibres);
+      for (int i = 0; i < count; ++i) {
+        forces.add(nodes[i], pulls.force[i], pulls.rounding[i]);
+        forces.stiffness[nodes[i]] += pulls.stiffness[i];
+      }
+    };
+    for (std::size_t i = 0; i < all.tetrahedra.size(); ++i) {
+      const auto e = static_cast<std::size_t>(all.tetrahedra[i]);
+      std::array<Index, 10> nodes;
+      std::copy(model.tetrahedra[e].begin(), model.tetrahedra[e].end(), nodes.begin());
+      if (!model.edge_nodes.empty())
+        std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
+      add(i, nodes.data(), model.edge_nodes.empty() ? 4 : 10);
+    }
+    for (std::size_t i = 0; i < all.prisms.size(); ++i)
+      add(all.tetrahedra.size() + i, model.prisms[static_cast<std::size_t>(all.prisms[i])].data(), 6);
+  }
+}
+
 void check_places(const Model& model, const State& state, Confirmation& out) {
   const double far = std::max(model.rest.cwiseAbs().maxCoeff(), state.positions.cwiseAbs().maxCoeff());
   std::vector<bool> of_rigid(model.used.size());
@@ -506,6 +535,8 @@ void confirm_physical(const Model& model, const Equilibrium& found, const State&
   add_actuators(model, found, forces, out);
   add_magnets(model, found, forces);
   add_tractions(model, state, forces);
+  add_liquid(model, state, forces);
+  add_families(model, found, forces);
   add_fibres(model, state, forces);
   for (Index v = 0; v < model.dead_load.rows(); ++v)
     forces.add(v, -static_cast<Real>(state.share) * model.dead_load.row(v).transpose().cast<Real>(), 0);

@@ -79,6 +79,8 @@ RandomCase make_case(std::uint64_t seed) {
   make_turns(m);
   make_tractions(m);
   make_mixed(m);
+  make_families(m);
+  make_submerged(m);
   make_friction(m);
   make_sealed(m);
   make_fibres(m);

@@ -1,3 +1,4 @@
+#include <softkin/model/families.hpp>
 #include <softkin/model/growth.hpp>
 
 #include "random/parts.hpp"
@@ -7,7 +8,8 @@ namespace softkin::random_robots {
 namespace {
 
 /// Draws of its own, so that robots of the same seed are otherwise what they were.
-constexpr std::uint64_t draws_of_growth = 0x67726F777468;
+constexpr std::uint64_t draws_of_growth = 0x67726F777468, draws_of_families = 0x66616D696C69,
+                        draws_of_liquid = 0x6C6971756964;
 
 DirectionSpec random_direction(Making& m, Draw& draw) {
   DirectionSpec spec;
@@ -61,6 +63,38 @@ void make_growth(Making& m) {
     actuation.conservativeResize(actuation.size() + 1);
     actuation[actuation.size() - 1] = command;
   }
+}
+
+void make_families(Making& m) {
+  Draw draw(m.made.seed ^ draws_of_families);
+  if (!draw.chance(m.physical ? 0.12 : 0.01) || m.mesh().vertices.rows() == 0) return;
+  for (const ActuatorSpec& actuator : m.made.spec.actuators)
+    if (actuator.growth) return;
+  for (MaterialSpec& material : m.made.spec.materials) {
+    if (!draw.chance(0.7)) continue;
+    FamiliesSpec families;
+    for (int i = draw.whole(1, 2); i > 0; --i)
+      families.families.push_back({m.modulus * draw.log_between(0.01, 3),
+                                   draw.chance(0.2) ? 0 : draw.log_between(0.1, 20),
+                                   draw.chance(0.5) ? 0 : draw.between(0, 1.0 / 3), random_direction(m, draw)});
+    material.families = std::make_shared<const FamiliesSpec>(std::move(families));
+  }
+}
+
+void make_submerged(Making& m) {
+  Draw draw(m.made.seed ^ draws_of_liquid);
+  const double gravity = m.made.spec.gravity.norm();
+  if (!(gravity > 0 && std::isfinite(gravity)) || !draw.chance(0.5) || m.mesh().vertices.rows() == 0) return;
+  const Vec3 low = m.mesh().vertices.colwise().minCoeff().transpose(),
+             size = m.mesh().vertices.colwise().maxCoeff().transpose() - low;
+  if (!size.allFinite()) return;
+  const double slender = std::min(1.0, std::min(m.size[1], m.size[2]) / m.size[0]);
+  const double pressure = draw.log_between(1e-6, 0.02) * slender * m.modulus;
+  LiquidAroundSpec liquid;
+  liquid.density = pressure / (1e-9 * gravity * size.maxCoeff());
+  liquid.surface =
+      low + size.cwiseProduct(Vec3(draw.between(-0.5, 1.5), draw.between(-0.5, 1.5), draw.between(-0.5, 1.5)));
+  m.made.spec.liquid_around = liquid;
 }
 
 }  // namespace softkin::random_robots

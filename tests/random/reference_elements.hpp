@@ -75,6 +75,15 @@ struct PressurePulls {
                                               const std::array<Real, 4>& pressures, Real bulk, Real shear,
                                               const GrowthDrive& growth = {});
 
+/// A family of fibres: its constants, and the unit vector that it runs along.
+struct FibreDrive {
+  Real k1 = 0, k2 = 0, dispersion = 0;  // [MPa], [-], [-]
+  RealVec3 direction = RealVec3::UnitX();
+};
+/// What families of fibres add to the pulls of an element's law.
+[[nodiscard]] ElementPulls family_pulls_of(const RealPoints& rest, const RealPoints& current,
+                                           const std::vector<FibreDrive>& fibres);
+
 /// Flux density at a place [mT] and its slopes there, (i, j) of b_i along x_j [mT/mm].
 struct RealFlux {
   RealVec3 value = RealVec3::Zero();

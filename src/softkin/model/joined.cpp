@@ -4,6 +4,7 @@
 #include <softkin/core/text.hpp>
 #include <softkin/model/compile/curving.hpp>
 #include <softkin/model/compile/parts.hpp>
+#include <softkin/model/families.hpp>
 #include <softkin/model/growth.hpp>
 #include <softkin/model/joined.hpp>
 #include <softkin/model/magnetic_field.hpp>
@@ -99,6 +100,11 @@ class Joiner {
       throw InvalidInput(robot_.contact->origin,
                          "a robot among several has no 'contact', 'obstacles' or 'bodies' of its own: give them in " +
                              all_.name + ", which joins the robots");
+    if (robot_.liquid_around)
+      throw InvalidInput(robot_.liquid_around->origin,
+                         "a robot among several has no liquid around it of its own: give "
+                         "'submerged' in " +
+                             all_.name + ", which joins the robots");
     const Mesh& mesh = all_.mesh;
     all_.robots.push_back({placed_.name, robot_.name, static_cast<Index>(mesh.vertices.rows()),
                            static_cast<Index>(mesh.tetrahedra.size()), static_cast<Index>(mesh.prisms.size()),
@@ -163,6 +169,11 @@ class Joiner {
     for (MaterialSpec& material : robot_.materials) {
       material.region = full(material.region);
       if (material.remanence) material.remanence = turned(*material.remanence);
+      if (material.families) {
+        FamiliesSpec families = *material.families;
+        for (FamilySpec& family : families.families) family.direction = turned(family.direction);
+        material.families = std::make_shared<const FamiliesSpec>(std::move(families));
+      }
       all_.materials.push_back(std::move(material));
     }
     for (const RegionRef& where : robot_.voids) all_.voids.push_back(full(where));
@@ -328,6 +339,7 @@ void add_common(RobotSpec& robots, RobotSpec common) {
   append_parts(robots.markers, common.markers);
   append_parts(robots.feet, common.feet);
   robots.contact = std::move(common.contact);
+  robots.liquid_around = common.liquid_around;
 }
 
 }  // namespace softkin

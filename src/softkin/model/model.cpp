@@ -3,6 +3,7 @@
 #include <bit>
 #include <cstdint>
 #include <cstdio>
+#include <softkin/model/families.hpp>
 #include <softkin/model/growth.hpp>
 #include <softkin/model/magnetic_field.hpp>
 #include <softkin/model/mesh/quadratic_elements.hpp>
@@ -87,10 +88,15 @@ class Hash {
     if (m.permittivity != 1) add(m.permittivity);
     if (!m.viscosity.empty()) add(m.viscosity);
     if (m.mixed) add(m.mixed);
+    if (m.families) add(m.families->tetrahedra, m.families->prisms, m.families->families);
   }
   void put(const CavityFace& face) { add(face.corners, face.edges); }
   void put(const LoadedFace& loaded) { add(loaded.face, loaded.share); }
-  void put(const FollowingTraction& t) { add(t.traction_MPa, t.pressure_MPa, t.faces); }
+  void put(const FollowingTraction& t) {
+    add(t.traction_MPa, t.pressure_MPa, t.faces);
+    if (!t.deeper_MPa_mm.isZero(0)) add(t.deeper_MPa_mm, t.level_mm);
+  }
+  void put(const Families::Family& f) { add(f.k1_MPa, f.k2, f.dispersion, f.directions); }
   void put(const EmbeddedPoint& p) { add(p.vertices, p.weights); }
   void put(const FibrePlace& p) { add(p.vertices, p.slopes, p.length_mm); }
   void put(const Fibre& f) { add(f.name, f.stiffness_N, f.tension_only, f.places); }

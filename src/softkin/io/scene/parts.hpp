@@ -78,6 +78,8 @@ void read_mesh_of(const Context& context, const Map& scene, RobotSpec& spec);
 /// Keys `remanence`, three components [mT] or a map with samples, and `magnetisation` of a material; none where the
 /// first is not there.
 [[nodiscard]] std::shared_ptr<const RemanenceSpec> read_remanence(const Context& context, const Map& material);
+/// Families of fibres of a material; none where the key `families` is not there.
+[[nodiscard]] std::shared_ptr<const FamiliesSpec> read_families(const Context& context, const Map& material);
 /// Keys `places` and `samples` of a map: samples that stand in the scene itself.
 [[nodiscard]] FieldSamples read_samples(const Context& context, const Map& map);
 /// Three components; or a map: `radial`, `circumferential`, `file`, or `places` and `samples`.

@@ -269,10 +269,14 @@ void Body::stress(const Demand& demand, const Points& positions, Scratch& scratc
           if (set.charged)
             add_maxwell_stress(set.blocks[b], set.permittivity[b], demand.actuation[set.actuator], shape, points);
         for (Index l = 0; l < std::min<Index>(lanes, set.count - lanes * b); ++l) {
-          Mat3 most = lane_of(points[0], l);
-          for (int q = 1; q < Q; ++q)
-            if (const Mat3 here = lane_of(points[q], l); von_mises(here) > von_mises(most)) most = here;
           const Index e = set.elements[lanes * b + l];
+          const auto at_point = [&](int q) {
+            const Mat3 own = lane_of(points[q], l);
+            return families_ ? Mat3(own + families_->stress(e, q, positions)) : own;
+          };
+          Mat3 most = at_point(0);
+          for (int q = 1; q < Q; ++q)
+            if (const Mat3 here = at_point(q); von_mises(here) > von_mises(most)) most = here;
           out.von_mises[e] = von_mises(most);
           const Vec3 values = principal_values(0.5 * (most + most.transpose()));
           out.principal[e] = {values[2], values[1], values[0]};

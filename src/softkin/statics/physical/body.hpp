@@ -10,6 +10,7 @@
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/model/growth.hpp>
 #include <softkin/model/model.hpp>
+#include <softkin/statics/physical/fibre_families.hpp>
 #include <softkin/statics/physical/pressures.hpp>
 #include <softkin/statics/physical/term.hpp>
 #include <tuple>
@@ -90,6 +91,9 @@ class Body : public Term {
   /// Cauchy stress of every element, at that of its quadrature points where von Mises' is largest; of a layer under
   /// voltage with Maxwell's.
   void stress(const Demand& demand, const Points& positions, Scratch& scratch, ElementStress& out, Team& team) const;
+
+  /// Stresses are told with those of families of fibres, which must outlive the object.
+  void add_stress_of(const FibreFamilies& families) { families_ = &families; }
 
   /// Adds every element as a clique.
   void add_cliques(linear::Cliques& cliques) override;
@@ -231,6 +235,7 @@ class Body : public Term {
   }
 
   Index vertices_;
+  const FibreFamilies* families_ = nullptr;
   std::vector<Set<4, 1>> linear_;
   std::vector<Set<10, 4>> quadratic_;
   std::vector<Set<6, 6>> prisms_;
