@@ -16,12 +16,12 @@ class ActuatorState:
 
     name: str
     kind: str
-    """'pneumatic', 'cable', 'dea' or 'magnetic'; 'motion', 'force' or 'hold' of what surrounds the robot,
+    """'pneumatic', 'cable', 'dea', 'magnetic' or 'growth'; of surroundings 'motion', 'force' or 'hold',
     'turn' of what holds it"""
     requested: float
     """what was commanded, in `unit`"""
     unit: str
-    """'kPa', 'N', 'kV', 'mL', 'mT', 'A', 'mm', 'A m^2' or 'deg'; '' for a ratio to rest [-]"""
+    """'kPa', 'N', 'kV', 'mL', 'mT', 'A', 'mm', 'A m^2', 'deg' or 'degC'; '' for a ratio to rest [-]"""
     ratio: float
     """volume, length or area over that at rest [-]; of others the command that the shape is of"""
     measure: float

@@ -49,13 +49,13 @@ void bind_actuator(nb::module_& module) {
       .def_ro("name", &Actuator::name)
       .def_prop_ro(
           "kind", [](const Actuator& a) { return kind_name(a); },
-          "'pneumatic', 'cable', 'dea' or 'magnetic'; of surroundings 'motion', 'force' or 'hold', of a support "
-          "'turn'.")
+          "'pneumatic', 'cable', 'dea', 'magnetic' or 'growth'; of surroundings 'motion', 'force' or 'hold', of a "
+          "support 'turn'.")
       .def_prop_ro(
           "control", [](const Actuator& a) { return control_name(a); },
           "What is commanded: 'volume', 'length', 'area' (over that at rest), 'pressure', 'tension', 'voltage', "
           "'amount of gas', 'amount of liquid', 'pushed volume', "
-          "'flux density', 'current', 'position' or 'moment'.")
+          "'flux density', 'current', 'position', 'moment', 'stretch' or 'temperature'.")
       .def_prop_ro(
           "unit", [](const Actuator& a) { return command_unit(a); },
           "Of a command: 'kPa', 'N', 'kV', 'mL', 'mT', 'A', 'mm', 'A m^2' or 'deg'; '' for a ratio [-].")

@@ -62,7 +62,7 @@ void members(A& archive, scene::Node& n) {
 }
 template <class A>
 void members(A& archive, FileContents& f) {
-  archive(f.meshes, f.surfaces, f.sidecars, f.curves, f.scenes, f.samples, f.ways);
+  archive(f.meshes, f.surfaces, f.sidecars, f.curves, f.scenes, f.samples, f.ways, f.directions);
 }
 template <class A>
 void members(A& archive, Source& s) {

@@ -16,6 +16,7 @@ SCENES = {
     "examples/two_material_bar/two_material_bar.yaml": "",
 }
 PHYSICAL = {  # those of the physical formulation alone
+    "examples/bilayer/bilayer.yaml": "warm=60degC",
     "examples/dea_crawler/voltage/crawler.yaml": "skin=14kV",
     "examples/fibre_actuator/fibre_actuator.yaml": "air=20",
     "examples/magnetic_cantilever/magnetic_cantilever.yaml": "field=10",

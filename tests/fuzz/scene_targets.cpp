@@ -82,6 +82,7 @@ SceneFiles files_of(const Input& input) {
   files.curve = [&input](const std::filesystem::path&) { return read_actuator_curve(input.file("curve.yaml", 2)); };
   files.sidecar = [&input](const std::filesystem::path&) { return read_sidecar(input.file("sidecar.txt", 3)); };
   files.samples = [&input](const std::filesystem::path&) { return read_field_samples(input.file("field.csv", 5)); };
+  files.directions = [&input](const std::filesystem::path&) { return read_directions(input.file("field.csv", 5)); };
   files.scene = [&input, absent](const std::filesystem::path& path) {
     if (path == "finger.yaml") return std::string(small_finger);
     if (path == "robot.yaml") return input.part(4);

@@ -3,6 +3,7 @@
 #include <chrono>
 #include <random>
 #include <softkin/io/file.hpp>
+#include <softkin/model/families.hpp>
 #include <softkin/model/layer.hpp>
 
 #include "scene_fixtures.hpp"
@@ -471,7 +472,7 @@ TEST(Scene, ExamplesOfTheManualAreScenes) {
     const std::string text = manual.substr(begin, manual.find("```", begin) - begin);
     specs.push_back(parse_scene(text, "robots/scene.yaml", files));
   }
-  ASSERT_EQ(specs.size(), 11u);
+  ASSERT_EQ(specs.size(), 13u);
   EXPECT_EQ(specs[0].actuators.size(), 3u);
   EXPECT_EQ(specs[0].markers.size(), 2u);
   EXPECT_EQ(specs[0].formulation, Formulation::target_shape);
@@ -482,15 +483,17 @@ TEST(Scene, ExamplesOfTheManualAreScenes) {
   EXPECT_EQ(specs[3].robots[1].name, "right");
   EXPECT_EQ(specs[4].materials.at(0).elastic.value().poisson_ratio, 0.5);
   EXPECT_FALSE(specs[4].materials[0].mixed) << "left to the material";
-  EXPECT_EQ(specs[5].fixed.at(1).rotation.value().degrees, 90);
-  EXPECT_EQ(specs[6].actuators.at(0).filling.value().syringe_mL, 20);
-  EXPECT_EQ(specs[7].actuators.at(0).friction, 0.15);
-  EXPECT_EQ(specs[7].actuators[0].sheath_friction, 0.05);
-  EXPECT_EQ(specs[7].actuators[0].sheath_turns_degrees, 270);
-  EXPECT_EQ(specs[8].fibres.size(), 2u);
-  ASSERT_EQ(specs[9].layers.size(), 2u);
-  EXPECT_TRUE(specs[9].layers[0]->bending);
-  EXPECT_EQ(specs[10].contact.value().obstacles.size(), 2u);
+  EXPECT_EQ(specs[5].materials.at(0).families->families.at(1).direction.degrees, -35);
+  EXPECT_EQ(specs[6].fixed.at(1).rotation.value().degrees, 90);
+  EXPECT_EQ(specs[7].actuators.at(0).filling.value().syringe_mL, 20);
+  EXPECT_EQ(specs[8].actuators.at(0).friction, 0.15);
+  EXPECT_EQ(specs[8].actuators[0].sheath_friction, 0.05);
+  EXPECT_EQ(specs[8].actuators[0].sheath_turns_degrees, 270);
+  EXPECT_EQ(specs[9].actuators.at(0).kind, ActuatorKind::growth);
+  EXPECT_EQ(specs[10].fibres.size(), 2u);
+  ASSERT_EQ(specs[11].layers.size(), 2u);
+  EXPECT_TRUE(specs[11].layers[0]->bending);
+  EXPECT_EQ(specs[12].contact.value().obstacles.size(), 2u);
 }
 
 TEST(Scene, Layers) {

@@ -29,6 +29,8 @@ struct Forces {
 
 /// Loads that follow the surface: the turn of a place by the singular vectors of what deforms surface and normal.
 void add_tractions(const Model& model, const State& state, Forces& forces);
+/// A liquid around it: pressures by depth, on faces that are halved where its level cuts them.
+void add_liquid(const Model& model, const State& state, Forces& forces);
 /// Threads: tension times what each vertex of a place lengthens it by.
 void add_fibres(const Model& model, const State& state, Forces& forces);
 /// Sheets: stresses of their strain, where they wrinkle along the direction in which nothing shears; moments times the

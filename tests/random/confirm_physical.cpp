@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <limits>
 #include <map>
+#include <softkin/model/families.hpp>
+#include <softkin/model/growth.hpp>
 #include <softkin/model/mesh/triangle_points.hpp>
 
 #include "random/commanded_fields.hpp"
@@ -36,13 +38,34 @@ LayerDrive drive_of(const Model& model, const State& state, const ElementRole& r
           vacuum * static_cast<Real>(model.materials[role.material].permittivity) * command * command};
 }
 
-/// The pressures of mixed elements: a number for each material and corner, in the order in which elements name them.
+/// How a tetrahedron or prism has grown in a state, and by which of the growths.
+struct Grown {
+  GrowthDrive drive;
+  Index grower = -1;
+};
+Grown grown(const Model& model, const State& state, bool prism, Index element) {
+  for (std::size_t g = 0; g < model.growths.size(); ++g) {
+    const Growth& growth = *model.growths[g];
+    const std::vector<Index>& all = prism ? growth.prisms : growth.tetrahedra;
+    const auto found = std::find(all.begin(), all.end(), element);
+    if (found == all.end()) continue;
+    const Real stretch = growth.stretch(state.actuation[growth.actuator]);
+    if (growth.directions.empty()) return {{stretch, stretch}, static_cast<Index>(g)};
+    const auto place = (prism ? growth.tetrahedra.size() : 0) + static_cast<std::size_t>(found - all.begin());
+    return {{stretch, growth.keeps_volume ? 1 / std::sqrt(stretch) : 1, growth.directions[place].cast<Real>()},
+            static_cast<Index>(g)};
+  }
+  return {};
+}
+
+/// The pressures of mixed elements: a number for each material, grower and corner, in the order in which elements name
+/// them.
 struct Pressing {
-  std::map<std::pair<Index, Index>, Index> numbers;
+  std::map<std::array<Index, 3>, Index> numbers;
   std::vector<Real> missed, volume, area;  // by number: sums of what PressurePulls has
 
-  Index number(Index material, Index corner) {
-    const auto [at, is_new] = numbers.emplace(std::pair{material, corner}, static_cast<Index>(missed.size()));
+  Index number(Index material, Index grower, Index corner) {
+    const auto [at, is_new] = numbers.emplace(std::array{material, grower, corner}, static_cast<Index>(missed.size()));
     if (is_new)
       for (std::vector<Real>* list : {&missed, &volume, &area}) list->push_back(0);
     return at->second;
@@ -71,15 +94,16 @@ void add_pressures(const Model& model, const Equilibrium& found, Forces& forces,
     std::copy(model.tetrahedra[e].begin(), model.tetrahedra[e].end(), nodes.begin());
     if (!model.edge_nodes.empty()) std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
     const int count = model.edge_nodes.empty() ? 4 : 10;
+    const Grown growth = grown(model, found.state, false, static_cast<Index>(e));
     std::array<Index, 4> numbers;
     std::array<Real, 4> pressures;
     for (std::size_t i = 0; i < 4; ++i) {
-      numbers[i] = pressing.number(material, nodes[i]);
+      numbers[i] = pressing.number(material, growth.grower, nodes[i]);
       pressures[i] = numbers[i] < all.size() ? all[numbers[i]] : 0;
     }
     const PressurePulls pulls =
         pressure_pulls_of(nodes_at(model.rest, nodes.data(), count),
-                          nodes_at(found.state.positions, nodes.data(), count), pressures, bulk, shear);
+                          nodes_at(found.state.positions, nodes.data(), count), pressures, bulk, shear, growth.drive);
     for (int i = 0; i < count; ++i) {
       const auto at = static_cast<std::size_t>(i);
       forces.add(nodes[at], pulls.pulls.force[at], pulls.pulls.rounding[at]);
@@ -104,13 +128,16 @@ void add_pressures(const Model& model, const Equilibrium& found, Forces& forces,
 
 void add_elements(const Model& model, const Equilibrium& found, const State& begun, Forces& forces) {
   const Points& positions = found.state.positions;
-  const auto add = [&](const Index* nodes, int count, Index material, const LayerDrive& drive, Real begun_ratio) {
+  const auto add = [&](const Index* nodes, int count, Index material, const LayerDrive& drive, Real begun_ratio,
+                       bool prism, std::size_t element) {
+    const auto e = static_cast<Index>(element);
     const BranchDrive branches{&model.materials[material].viscosity, found.state.elapsed_s,
-                               nodes_at(begun.positions, nodes, count), begun_ratio};
+                               nodes_at(begun.positions, nodes, count), begun_ratio,
+                               grown(model, begun, prism, e).drive};
     ElasticLaw law = model.materials[material].elastic;
     if (model.materials[material].mixed) (void)take_bulk(law);
-    const ElementPulls pulls =
-        pulls_of(law, nodes_at(model.rest, nodes, count), nodes_at(positions, nodes, count), drive, branches);
+    const ElementPulls pulls = pulls_of(law, nodes_at(model.rest, nodes, count), nodes_at(positions, nodes, count),
+                                        drive, branches, grown(model, found.state, prism, e).drive);
     for (int i = 0; i < count; ++i) {
       forces.add(nodes[i], pulls.force[i], pulls.rounding[i]);
       forces.stiffness[nodes[i]] += pulls.stiffness[i];
@@ -120,12 +147,12 @@ void add_elements(const Model& model, const Equilibrium& found, const State& beg
     std::array<Index, 10> nodes;
     std::copy(model.tetrahedra[e].begin(), model.tetrahedra[e].end(), nodes.begin());
     if (!model.edge_nodes.empty()) std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
-    add(nodes.data(), model.edge_nodes.empty() ? 4 : 10, model.tetrahedron_roles[e].material, {}, 1);
+    add(nodes.data(), model.edge_nodes.empty() ? 4 : 10, model.tetrahedron_roles[e].material, {}, 1, false, e);
   }
   for (std::size_t e = 0; e < model.prisms.size(); ++e) {
     const ElementRole& role = model.prism_roles[e];
     add(model.prisms[e].data(), 6, role.material, drive_of(model, found.state, role),
-        drive_of(model, begun, role).ratio);
+        drive_of(model, begun, role).ratio, true, e);
   }
 }
 
@@ -328,7 +355,7 @@ void add_actuators(const Model& model, const Equilibrium& found, Forces& forces,
     const auto index = static_cast<Index>(a);
     const double multiplier = state.multipliers[index];
     if (actuator.kind == ActuatorKind::dea || actuator.kind == ActuatorKind::magnetic ||
-        actuator.kind == ActuatorKind::turn) {
+        actuator.kind == ActuatorKind::turn || actuator.kind == ActuatorKind::growth) {
       const bool charged = actuator.kind == ActuatorKind::dea && actuator.control == Control::load;
       const double expected = charged ? state.actuation[index] : 0;
       if (!(std::abs(multiplier - expected) <= 4 * rounding_unit * std::abs(expected)))
@@ -380,6 +407,34 @@ void add_magnets(const Model& model, const Equilibrium& found, Forces& forces) {
     add(e, nodes.data(), model.edge_nodes.empty() ? 4 : 10);
   }
   for (std::size_t e = 0; e < model.prisms.size(); ++e) add(model.tetrahedra.size() + e, model.prisms[e].data(), 6);
+}
+
+void add_families(const Model& model, const Equilibrium& found, Forces& forces) {
+  for (const Material& material : model.materials) {
+    if (!material.families) continue;
+    const Families& all = *material.families;
+    const auto add = [&](std::size_t place, const Index* nodes, int count) {
+      std::vector<FibreDrive> fibres;
+      for (const Families::Family& family : all.families)
+        fibres.push_back({family.k1_MPa, family.k2, family.dispersion, family.directions[place].cast<Real>()});
+      const ElementPulls pulls =
+          family_pulls_of(nodes_at(model.rest, nodes, count), nodes_at(found.state.positions, nodes, count), fibres);
+      for (int i = 0; i < count; ++i) {
+        forces.add(nodes[i], pulls.force[i], pulls.rounding[i]);
+        forces.stiffness[nodes[i]] += pulls.stiffness[i];
+      }
+    };
+    for (std::size_t i = 0; i < all.tetrahedra.size(); ++i) {
+      const auto e = static_cast<std::size_t>(all.tetrahedra[i]);
+      std::array<Index, 10> nodes;
+      std::copy(model.tetrahedra[e].begin(), model.tetrahedra[e].end(), nodes.begin());
+      if (!model.edge_nodes.empty())
+        std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
+      add(i, nodes.data(), model.edge_nodes.empty() ? 4 : 10);
+    }
+    for (std::size_t i = 0; i < all.prisms.size(); ++i)
+      add(all.tetrahedra.size() + i, model.prisms[static_cast<std::size_t>(all.prisms[i])].data(), 6);
+  }
 }
 
 void check_places(const Model& model, const State& state, Confirmation& out) {
@@ -480,6 +535,8 @@ void confirm_physical(const Model& model, const Equilibrium& found, const State&
   add_actuators(model, found, forces, out);
   add_magnets(model, found, forces);
   add_tractions(model, state, forces);
+  add_liquid(model, state, forces);
+  add_families(model, found, forces);
   add_fibres(model, state, forces);
   add_layers(model, state, forces);
   for (Index v = 0; v < model.dead_load.rows(); ++v)

@@ -32,6 +32,11 @@ inline Real power(Real a, Real exponent) {
   return std::pow(a, exponent);
 }
 
+inline Dual exponential(Dual a) {
+  const Real value = std::exp(a.value);
+  return {value, value * a.slope};
+}
+
 inline Dual logarithm(Dual a) {
   return {std::log(a.value), a.slope / a.value};
 }

@@ -72,12 +72,15 @@ RandomCase make_case(std::uint64_t seed) {
   make_commands(m);
   make_options(m);
   make_magnetism(m);
+  make_growth(m);
   make_stiff(m);
   make_floor(m);
   make_weights(m);
   make_turns(m);
   make_tractions(m);
   make_mixed(m);
+  make_families(m);
+  make_submerged(m);
   make_friction(m);
   make_sealed(m);
   make_fibres(m);

@@ -61,6 +61,12 @@ void make_commands(Making& m);
 void make_options(Making& m);
 /// Of some physical robots, after their commands.
 void make_magnetism(Making& m);
+/// Parts of some physical robots grow; after their commands, before supports turn.
+void make_growth(Making& m);
+/// Families of fibres in materials of some physical robots that do not grow.
+void make_families(Making& m);
+/// A liquid around some robots that have a weight; after all that gives them one.
+void make_submerged(Making& m);
 /// A part of some physical robots is a thousand times as stiff as the rest.
 void make_stiff(Making& m);
 /// Some physical robots come to rest on a floor; after all that changes the mesh.

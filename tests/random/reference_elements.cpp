@@ -269,7 +269,7 @@ RealMat3 inverse_stretch(const RealPoints& rest, Real ratio) {
 }  // namespace
 
 ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealPoints& current, const LayerDrive& drive,
-                      const BranchDrive& viscous) {
+                      const BranchDrive& viscous, const GrowthDrive& growth) {
   constexpr Real ulp = std::numeric_limits<double>::epsilon();
   const Eigen::Index count = rest.rows();
   const auto nodes = static_cast<std::size_t>(count);
@@ -278,15 +278,15 @@ ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealP
   const Real rest_size = rest.rowwise().norm().maxCoeff(), current_size = current.rowwise().norm().maxCoeff();
   for (const ParentPoint& point : points_of(count)) {
     const RealMat3 jacobian = (rest.rowwise() - rest.row(0)).transpose() * point.slope;
-    const Real volume = point.weight * jacobian.determinant();
-    RealPoints slope = point.slope * jacobian.inverse();
+    const Real volume = point.weight * jacobian.determinant() * growth.volume();
+    RealPoints slope = point.slope * jacobian.inverse() * growth.inverse();
     if (drive.ratio != 1) slope = slope * inverse_stretch(rest, drive.ratio);
     const RealMat3 gradient = (current.rowwise() - current.row(0)).transpose() * slope;
     RealMat3 p = stress(law, gradient);
     Real stiffness = stiffness_bound(law, gradient);
     const Real all = slope.rowwise().norm().sum();
     if (viscous.branches && std::isfinite(viscous.elapsed_s)) {
-      RealPoints before = point.slope * jacobian.inverse();
+      RealPoints before = point.slope * jacobian.inverse() * viscous.begun_growth.inverse();
       if (viscous.begun_ratio != 1) before = before * inverse_stretch(rest, viscous.begun_ratio);
       const RealMat3 begun = barred((viscous.begun.rowwise() - viscous.begun.row(0)).transpose() * before);
       for (const ViscousBranch& branch : *viscous.branches) {
@@ -321,8 +321,58 @@ ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealP
   return out;
 }
 
+ElementPulls family_pulls_of(const RealPoints& rest, const RealPoints& current, const std::vector<FibreDrive>& fibres) {
+  constexpr Real ulp = std::numeric_limits<double>::epsilon();
+  const Eigen::Index count = rest.rows();
+  const auto nodes = static_cast<std::size_t>(count);
+  ElementPulls out{std::vector<RealVec3>(nodes, RealVec3::Zero()), std::vector<Real>(nodes, 0),
+                   std::vector<Real>(nodes, 0)};
+  const Real rest_size = rest.rowwise().norm().maxCoeff(), current_size = current.rowwise().norm().maxCoeff();
+  for (const ParentPoint& point : points_of(count)) {
+    const RealMat3 jacobian = (rest.rowwise() - rest.row(0)).transpose() * point.slope;
+    const Real volume = point.weight * jacobian.determinant();
+    const RealPoints slope = point.slope * jacobian.inverse();
+    const RealMat3 gradient = (current.rowwise() - current.row(0)).transpose() * slope;
+    const Real j = gradient.determinant(), all = slope.rowwise().norm().sum();
+    for (const FibreDrive& fibre : fibres) {
+      const RealVec3 along = gradient * fibre.direction;
+      const Real scale = std::pow(std::abs(j), -2.0L / 3);
+      const Real strain = fibre.dispersion * (scale * gradient.squaredNorm() - 3) +
+                          (1 - 3 * fibre.dispersion) * (scale * along.squaredNorm() - 1);
+      RealMat3 p = RealMat3::Zero();
+      if (!(j > 0)) p.setConstant(std::numeric_limits<Real>::quiet_NaN());
+      if (strain > 0)
+        p += slope_of(gradient, [&](const Square<Dual>& f) {
+          const Square<Dual> c = cauchy_green(f);
+          Dual fourth(0);
+          for (int r = 0; r < 3; ++r)
+            for (int s = 0; s < 3; ++s) fourth += Dual(fibre.direction[r] * fibre.direction[s]) * c[r][s];
+          const Dual bar = power(determinant(f), -2.0L / 3);
+          const Dual e = Dual(fibre.dispersion) * (bar * (c[0][0] + c[1][1] + c[2][2]) - Dual(3)) +
+                         Dual(1 - 3 * fibre.dispersion) * (bar * fourth - Dual(1));
+          if (fibre.k2 == 0) return Dual(fibre.k1 / 2) * e * e;
+          return Dual(fibre.k1 / (2 * fibre.k2)) * (exponential(Dual(fibre.k2) * e * e) - Dual(1));
+        });
+      const Real most = std::max<Real>(strain, 0), power_of = fibre.k2 * most * most;
+      const Real sheared = scale * (1 + gradient.squaredNorm()) * (1 + gradient.squaredNorm() / std::abs(j));
+      const Real stiffness =
+          4 * fibre.k1 * std::exp(power_of) * sheared * ((1 + 2 * power_of) * sheared + most * (1 + sheared));
+      const Real blurred = stiffness * all * (current_size + gradient.norm() * rest_size) * ulp +
+                           p.norm() * (1 + all * rest_size) * ulp + stiffness * ulp;
+      for (Eigen::Index a = 0; a < count; ++a) {
+        const auto i = static_cast<std::size_t>(a);
+        const Real own = volume * slope.row(a).norm();
+        out.force[i] += volume * (p * slope.row(a).transpose());
+        out.stiffness[i] += own * stiffness * all;
+        out.rounding[i] += own * blurred;
+      }
+    }
+  }
+  return out;
+}
+
 PressurePulls pressure_pulls_of(const RealPoints& rest, const RealPoints& current, const std::array<Real, 4>& pressures,
-                                Real bulk, Real shear) {
+                                Real bulk, Real shear, const GrowthDrive& growth) {
   constexpr Real ulp = std::numeric_limits<double>::epsilon();
   const Eigen::Index count = rest.rows();
   const auto nodes = static_cast<std::size_t>(count);
@@ -332,8 +382,8 @@ PressurePulls pressure_pulls_of(const RealPoints& rest, const RealPoints& curren
   Real whole = 0;
   for (const ParentPoint& point : points_of(count)) {
     const RealMat3 jacobian = (rest.rowwise() - rest.row(0)).transpose() * point.slope;
-    const Real volume = point.weight * jacobian.determinant();
-    const RealPoints slope = point.slope * jacobian.inverse();
+    const Real volume = point.weight * jacobian.determinant() * growth.volume();
+    const RealPoints slope = point.slope * jacobian.inverse() * growth.inverse();
     const RealMat3 f = (current.rowwise() - current.row(0)).transpose() * slope;
     RealMat3 cofactor;
     for (int i = 0; i < 3; ++i)

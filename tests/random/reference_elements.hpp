@@ -35,18 +35,32 @@ struct LayerDrive {
   Real pressure = 0;  // permittivity times the square of the voltage that the layer has [MPa mm^2]
 };
 
+/// How an element has grown: stretches along a direction of unit length and across it.
+struct GrowthDrive {
+  Real along = 1, across = 1;
+  RealVec3 direction = RealVec3::UnitX();
+
+  [[nodiscard]] Real volume() const { return along * across * across; }
+  [[nodiscard]] RealMat3 inverse() const {
+    const RealMat3 d = direction * direction.transpose();
+    return d / along + (RealMat3::Identity() - d) / across;
+  }
+};
+
 /// Maxwell branches so long after a long rest [s]; infinity: relaxed.
 struct BranchDrive {
   const std::vector<ViscousBranch>* branches = nullptr;
   double elapsed_s = 0;
   RealPoints begun{};    // nodes of the element in that rest
   Real begun_ratio = 1;  // active stretch there
+  GrowthDrive begun_growth{};
 };
 
 /// rest, current: nodes of a tetrahedron of order 1 (4) or 2 (10: corners, then edges 01, 12, 02, 03, 13, 23) or of a
 /// prism (6).
 [[nodiscard]] ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealPoints& current,
-                                    const LayerDrive& drive, const BranchDrive& viscous);
+                                    const LayerDrive& drive, const BranchDrive& viscous,
+                                    const GrowthDrive& growth = {});
 
 /// What a mixed element's pressures at its corners [MPa; tension is positive] do to its nodes, and what their equations
 /// miss: the integral of L_i (J - 1 - p / bulk), less what smooths them on linear tetrahedra (docs/formulations.md).
@@ -58,7 +72,17 @@ struct PressurePulls {
 };
 /// bulk: what the pressures stand for [MPa]; shear: shear modulus at small strain [MPa]
 [[nodiscard]] PressurePulls pressure_pulls_of(const RealPoints& rest, const RealPoints& current,
-                                              const std::array<Real, 4>& pressures, Real bulk, Real shear);
+                                              const std::array<Real, 4>& pressures, Real bulk, Real shear,
+                                              const GrowthDrive& growth = {});
+
+/// A family of fibres: its constants, and the unit vector that it runs along.
+struct FibreDrive {
+  Real k1 = 0, k2 = 0, dispersion = 0;  // [MPa], [-], [-]
+  RealVec3 direction = RealVec3::UnitX();
+};
+/// What families of fibres add to the pulls of an element's law.
+[[nodiscard]] ElementPulls family_pulls_of(const RealPoints& rest, const RealPoints& current,
+                                           const std::vector<FibreDrive>& fibres);
 
 /// Flux density at a place [mT] and its slopes there, (i, j) of b_i along x_j [mT/mm].
 struct RealFlux {

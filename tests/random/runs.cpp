@@ -3,6 +3,7 @@
 #include <chrono>
 #include <cstdio>
 #include <softkin/core/error.hpp>
+#include <softkin/model/families.hpp>
 
 #include "random/confirm.hpp"
 #include "random/generator.hpp"
@@ -71,6 +72,9 @@ void describe(const RandomCase& robot, const Model& model) {
         "  material %s: law %d, mu %g, lambda %g, c10 %g, c01 %g, c20 %g, c30 %g, bulk %g MPa, R_omega %g, weight %g\n",
         m.region.c_str(), static_cast<int>(m.elastic.law), m.elastic.mu, m.elastic.lambda, m.elastic.c10, m.elastic.c01,
         m.elastic.c20, m.elastic.c30, m.elastic.bulk, m.shape_ratio, m.weight);
+  for (const Material& m : model.materials)
+    if (m.families)
+      std::printf("  material %s: %zu families of fibres\n", m.region.c_str(), m.families->families.size());
   for (const Actuator& a : model.actuators)
     std::printf("  actuator %s: kind %d, %s, %g to %g, measure at rest %g\n", a.name.c_str(), static_cast<int>(a.kind),
                 a.control == Control::load ? "load"

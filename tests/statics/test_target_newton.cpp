@@ -10,6 +10,7 @@ namespace {
 using testing::finger_robot;
 using testing::mixed_robot;
 using testing::noise;
+using testing::shared;
 using testing::values;
 
 StaticsOptions newton(double tolerance_mm) {

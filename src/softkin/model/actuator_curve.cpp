@@ -3,6 +3,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
 #include <softkin/model/actuator_curve.hpp>
+#include <softkin/model/pchip.hpp>
 #include <utility>
 
 namespace softkin {
@@ -27,18 +28,6 @@ void check_inside(const std::vector<double>& values, double value) {
   if (!(value >= values.front() && value <= values.back())) throw InvalidInput("outside the curve");
 }
 
-/// Slope at the end of the first of two intervals of widths h and secants d that is not shared.
-double end_slope(double h0, double h1, double d0, double d1) {
-  const double slope = ((2 * h0 + h1) * d0 - h0 * d1) / (h0 + h1);
-  return std::clamp(slope, 0.0, 3 * d0);
-}
-
-/// Weighted harmonic mean of the secants on both sides.
-double inner_slope(double h0, double h1, double d0, double d1) {
-  const double w0 = 2 * h1 + h0, w1 = h1 + 2 * h0;
-  return (w0 + w1) / (w0 / d0 + w1 / d1);
-}
-
 std::string range_text(const std::vector<double>& values, const std::string& unit) {
   return number(values.front()) + " to " + number(values.back()) + unit;
 }
@@ -50,18 +39,11 @@ MonotoneCurve::MonotoneCurve(std::vector<double> x, std::vector<double> y) : x_(
   if (x_.size() < 2) throw InvalidInput("a curve needs at least two points");
   check_ascending(x_, "place");
   check_ascending(y_, "value");
-  const std::size_t n = x_.size();
-  std::vector<double> h(n - 1), d(n - 1);
-  for (std::size_t i = 0; i + 1 < n; ++i) {
-    h[i] = x_[i + 1] - x_[i];
-    d[i] = (y_[i + 1] - y_[i]) / h[i];
-    if (!(d[i] > 0 && std::isfinite(d[i]))) throw InvalidInput("two points of a curve are too near to each other");
+  for (std::size_t i = 0; i + 1 < x_.size(); ++i) {
+    const double secant = (y_[i + 1] - y_[i]) / (x_[i + 1] - x_[i]);
+    if (!(secant > 0 && std::isfinite(secant))) throw InvalidInput("two points of a curve are too near to each other");
   }
-  slopes_.assign(n, d[0]);
-  if (n == 2) return;
-  slopes_.front() = end_slope(h[0], h[1], d[0], d[1]);
-  slopes_.back() = end_slope(h[n - 2], h[n - 3], d[n - 2], d[n - 3]);
-  for (std::size_t i = 1; i + 1 < n; ++i) slopes_[i] = inner_slope(h[i - 1], h[i], d[i - 1], d[i]);
+  slopes_ = pchip_slopes(x_, y_);
 }
 
 double MonotoneCurve::cubic(std::size_t i, double t) const {

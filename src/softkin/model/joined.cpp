@@ -4,6 +4,8 @@
 #include <softkin/core/text.hpp>
 #include <softkin/model/compile/curving.hpp>
 #include <softkin/model/compile/parts.hpp>
+#include <softkin/model/families.hpp>
+#include <softkin/model/growth.hpp>
 #include <softkin/model/joined.hpp>
 #include <softkin/model/layer.hpp>
 #include <softkin/model/magnetic_field.hpp>
@@ -99,6 +101,11 @@ class Joiner {
       throw InvalidInput(robot_.contact->origin,
                          "a robot among several has no 'contact', 'obstacles' or 'bodies' of its own: give them in " +
                              all_.name + ", which joins the robots");
+    if (robot_.liquid_around)
+      throw InvalidInput(robot_.liquid_around->origin,
+                         "a robot among several has no liquid around it of its own: give "
+                         "'submerged' in " +
+                             all_.name + ", which joins the robots");
     const Mesh& mesh = all_.mesh;
     all_.robots.push_back({placed_.name, robot_.name, static_cast<Index>(mesh.vertices.rows()),
                            static_cast<Index>(mesh.tetrahedra.size()), static_cast<Index>(mesh.prisms.size()),
@@ -174,6 +181,11 @@ class Joiner {
     for (MaterialSpec& material : robot_.materials) {
       material.region = full(material.region);
       if (material.remanence) material.remanence = turned(*material.remanence);
+      if (material.families) {
+        FamiliesSpec families = *material.families;
+        for (FamilySpec& family : families.families) family.direction = turned(family.direction);
+        material.families = std::make_shared<const FamiliesSpec>(std::move(families));
+      }
       all_.materials.push_back(std::move(material));
     }
     for (const RegionRef& where : robot_.voids) all_.voids.push_back(full(where));
@@ -184,6 +196,21 @@ class Joiner {
     remanence.samples = (remanence.samples * placed_.place.rotation.transpose()).eval();
     place(remanence.places);
     return std::make_shared<const RemanenceSpec>(std::move(remanence));
+  }
+
+  [[nodiscard]] std::shared_ptr<const GrowthSpec> full(GrowthSpec growth) const {
+    for (GrowthPart& part : growth.parts) {
+      part.region = full(part.region);
+      if (part.direction) part.direction = turned(*part.direction);
+    }
+    return std::make_shared<const GrowthSpec>(std::move(growth));
+  }
+  [[nodiscard]] DirectionSpec turned(DirectionSpec direction) const {
+    for (Vec3* along : {&direction.uniform, &direction.axis}) *along = placed_.place.rotation * *along;
+    direction.center = placed_.place(direction.center);
+    direction.samples = (direction.samples * placed_.place.rotation.transpose()).eval();
+    place(direction.places);
+    return direction;
   }
 
   void add_supports() {
@@ -232,6 +259,7 @@ class Joiner {
       if (actuator.surface) place(actuator.surface->vertices);
       if (actuator.shares)
         for (Index& prism : actuator.shares->prisms) prism += static_cast<Index>(all_.mesh.prisms.size());
+      if (actuator.growth) actuator.growth = full(*actuator.growth);
       for (auto* points : {&actuator.points, &actuator.apexes})
         for (PointRef& point : *points) point = full(point);
       all_.actuators.push_back(std::move(actuator));
@@ -325,6 +353,7 @@ void add_common(RobotSpec& robots, RobotSpec common) {
   append_parts(robots.markers, common.markers);
   append_parts(robots.feet, common.feet);
   robots.contact = std::move(common.contact);
+  robots.liquid_around = common.liquid_around;
 }
 
 }  // namespace softkin

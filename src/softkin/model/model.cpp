@@ -4,6 +4,8 @@
 #include <cstdint>
 #include <cstdio>
 #include <softkin/model/layer.hpp>
+#include <softkin/model/families.hpp>
+#include <softkin/model/growth.hpp>
 #include <softkin/model/magnetic_field.hpp>
 #include <softkin/model/mesh/quadratic_elements.hpp>
 #include <softkin/model/mesh/surface_tree.hpp>
@@ -87,10 +89,15 @@ class Hash {
     if (m.permittivity != 1) add(m.permittivity);
     if (!m.viscosity.empty()) add(m.viscosity);
     if (m.mixed) add(m.mixed);
+    if (m.families) add(m.families->tetrahedra, m.families->prisms, m.families->families);
   }
   void put(const CavityFace& face) { add(face.corners, face.edges); }
   void put(const LoadedFace& loaded) { add(loaded.face, loaded.share); }
-  void put(const FollowingTraction& t) { add(t.traction_MPa, t.pressure_MPa, t.faces); }
+  void put(const FollowingTraction& t) {
+    add(t.traction_MPa, t.pressure_MPa, t.faces);
+    if (!t.deeper_MPa_mm.isZero(0)) add(t.deeper_MPa_mm, t.level_mm);
+  }
+  void put(const Families::Family& f) { add(f.k1_MPa, f.k2, f.dispersion, f.directions); }
   void put(const EmbeddedPoint& p) { add(p.vertices, p.weights); }
   void put(const FibrePlace& p) { add(p.vertices, p.slopes, p.length_mm); }
   void put(const Fibre& f) { add(f.name, f.stiffness_N, f.tension_only, f.places); }
@@ -121,6 +128,11 @@ class Hash {
   }
   void put(const Filling& f) {
     add(f.liquid, f.pushed, f.exponent, f.compressibility, f.atmosphere_MPa, f.dead_mm3, f.syringe_mm3, f.chamber_mm3);
+  }
+  void put(const GrowthCurve& curve) { add(curve.reference_C(), curve.values()); }
+  void put(const std::shared_ptr<const Growth>& g) {
+    add(g->actuator, g->tetrahedra, g->prisms, g->directions, g->keeps_volume, g->temperature.has_value());
+    if (g->temperature) put(*g->temperature);
   }
   void put(const ConnectedChamber& chamber) { add(chamber.region, chamber.end); }
   void put(const Actuator& a) {
@@ -227,7 +239,8 @@ std::array<Index, 2> Model::vertices_of_part(Index part) const {
 
 bool drives(const Actuator& actuator) {
   return actuator.kind == ActuatorKind::cable || actuator.kind == ActuatorKind::dea ||
-         actuator.kind == ActuatorKind::pneumatic || actuator.kind == ActuatorKind::magnetic;
+         actuator.kind == ActuatorKind::pneumatic || actuator.kind == ActuatorKind::magnetic ||
+         actuator.kind == ActuatorKind::growth;
 }
 
 bool rubs(const Actuator& actuator) {
@@ -257,6 +270,7 @@ std::string fingerprint_of(const Model& model) {
   if (!model.tractions.empty()) hash.add(model.tractions);
   if (!model.fibres.empty()) hash.add(model.fibres);
   if (!model.layers.empty()) hash.add(model.layers);
+  if (!model.growths.empty()) hash.add(model.growths);
   if (model.contact.any()) hash.add(model.contact, model.bodies);
   if (model.magnetism) {
     hash.add(model.magnetism->remanence, model.magnetism->sources);

@@ -26,7 +26,7 @@ const char* filling_quantity(const Filling& filling) {
 }  // namespace
 
 const char* kind_name(const Actuator& actuator) {
-  constexpr const char* names[] = {"cable",  "dea",   "pneumatic", "magnetic",
+  constexpr const char* names[] = {"cable",  "dea",   "pneumatic", "magnetic", "growth",
                                    "motion", "force", "hold",      "turn"};  // in the order of ActuatorKind
   return names[static_cast<std::size_t>(actuator.kind)];
 }
@@ -56,6 +56,7 @@ bool shows_measure(const Actuator& actuator) {
 const char* control_name(const Actuator& actuator) {
   if (!drives(actuator)) return kind_name(actuator);
   if (actuator.kind == ActuatorKind::magnetic) return field_quantity(actuator).name;
+  if (actuator.kind == ActuatorKind::growth) return actuator.control == Control::load ? "temperature" : "stretch";
   if (actuator.control == Control::ratio) return measure_name(actuator);
   if (actuator.filling) return filling_quantity(*actuator.filling);
   constexpr const char* loads[] = {"tension", "voltage", "pressure"};  // the same
@@ -71,6 +72,7 @@ std::string command_unit(const Actuator& actuator) {
   if (actuator.control == Control::filling) return "mL";
   if (actuator.kind == ActuatorKind::motion) return "mm";
   if (actuator.kind == ActuatorKind::turn) return "deg";
+  if (actuator.kind == ActuatorKind::growth) return "degC";
   if (actuator.kind == ActuatorKind::dea) return "kV";
   if (actuator.kind == ActuatorKind::magnetic) return field_quantity(actuator).unit;
   return actuator.kind == ActuatorKind::pneumatic ? "kPa" : "N";

@@ -6,12 +6,12 @@
 
 namespace softkin {
 
-/// "pneumatic", "cable", "dea" or "magnetic"; of what is done to it and its surroundings "motion", "force", "hold"
-/// or "turn".
+/// "pneumatic", "cable", "dea", "magnetic" or "growth"; of what is done to it and its surroundings "motion", "force",
+/// "hold" or "turn".
 [[nodiscard]] const char* kind_name(const Actuator& actuator);
 /// What the user commands: "volume", "length", "area" (over that at rest), "pressure", "tension" or "voltage"; of a
 /// sealed chamber "amount of gas", "amount of liquid" or "pushed volume"; of a magnetic field "flux density",
-/// "current", "position" or "moment"; else its kind.
+/// "current", "position" or "moment"; of a growth "stretch" or "temperature"; else its kind.
 [[nodiscard]] const char* control_name(const Actuator& actuator);
 /// "ratio", or control_name().
 [[nodiscard]] const char* command_name(const Actuator& actuator);
@@ -25,8 +25,8 @@ namespace softkin {
 [[nodiscard]] bool answers_with_load(const Actuator& actuator);
 /// Is it commanded by its load, and no cable: its volume or area says more than the pressure or voltage again.
 [[nodiscard]] bool shows_measure(const Actuator& actuator);
-/// The unit of what the user commands, bare: "", "kPa", "N", "kV", "mL", "mm", "mT", "A" or "A m^2"; as a table has it:
-/// "[-]", "[kPa]", ....
+/// The unit of what the user commands, bare: "", "kPa", "N", "kV", "mL", "mm", "mT", "A", "A m^2" or "degC"; as a table
+/// has it: "[-]", "[kPa]", ....
 [[nodiscard]] std::string command_unit(const Actuator& actuator);
 [[nodiscard]] std::string bracketed_unit(const Actuator& actuator);
 /// The column of a CSV file that holds the commands of an actuator: "tendon", "air_kPa", "magnet_mx_Am2",

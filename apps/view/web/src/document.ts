@@ -1,7 +1,7 @@
 import {type Packed, unpack} from './base64';
 import type {MapDocument} from './map';
 
-export type Kind = 'cable' | 'dea' | 'pneumatic' | 'magnetic' | 'motion' | 'force' | 'hold' | 'turn';
+export type Kind = 'cable' | 'dea' | 'pneumatic' | 'magnetic' | 'growth' | 'motion' | 'force' | 'hold' | 'turn';
 /** control: what is commanded; "length", "area" and "volume" are ratios to those at rest. flux_density: of a uniform
     magnetic field alone, what one mT of its command adds to it [mT]. */
 export interface Actuator {

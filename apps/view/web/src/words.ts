@@ -1,7 +1,7 @@
 import type {Actuator, Kind} from './document';
 
 export const kindWords: Record<Kind, string> = {
-  cable: 'cable', pneumatic: 'air chamber', dea: 'dielectric elastomer', magnetic: 'magnetic field',
+  cable: 'cable', pneumatic: 'air chamber', dea: 'dielectric elastomer', magnetic: 'magnetic field', growth: 'growth',
   motion: 'moved obstacle', force: 'force', hold: 'hold on a body', turn: 'turned support',
 };
 
@@ -10,6 +10,7 @@ export const drives = ({kind}: Actuator): boolean => !['motion', 'force', 'hold'
 
 /** What is commanded, as a unit: "× rest length", "kPa". */
 export function commandWords({unit, control}: Pick<Actuator, 'unit' | 'control'>): string {
+  if (control === 'stretch') return '× rest length';
   return unit || (/^(length|area|volume)$/.test(control) ? `× rest ${control}` : '');
 }
 

@@ -17,8 +17,9 @@ struct Kind {
 };
 
 const Keys common_keys{"name", "kind", "control", "range", "weight", "distribution"};
-const Keys kind_keys{"region",     "surface", "connected",     "source", "liquid", "points",   "apexes", "spacing",
-                     "prestretch", "curve",   "voltage_share", "factor", "offset", "friction", "sheath"};
+const Keys kind_keys{"region", "surface",  "connected",  "source",       "liquid",        "points",
+                     "apexes", "spacing",  "prestretch", "curve",        "voltage_share", "factor",
+                     "offset", "friction", "sheath",     "keeps_volume", "temperature",   "also"};
 
 Keys all_kind_keys() {
   Keys all = kind_keys;
@@ -37,7 +38,8 @@ const std::vector<Kind>& kinds() {
        {"length", "tension"},
        {"points", "apexes", "spacing", "factor", "offset", "friction", "sheath"}},
       {ActuatorKind::dea, "dea", {"area", "voltage"}, {"region", "prestretch", "curve", "voltage_share"}},
-      {ActuatorKind::magnetic, "magnetic", {}, field_keys()}};
+      {ActuatorKind::magnetic, "magnetic", {}, field_keys()},
+      {ActuatorKind::growth, "growth", {}, growth_keys()}};
   return all;
 }
 
@@ -247,6 +249,7 @@ std::vector<ActuatorSpec> read_actuator(const Context& context, Formulation form
   actuator.name = names.add_label(map.at("name"));
   const Kind& kind = read_kind(map);
   if (kind.kind == ActuatorKind::magnetic) return read_field(context, map, actuator.name);
+  if (kind.kind == ActuatorKind::growth) return {read_growth(context, map, actuator.name)};
   actuator.kind = kind.kind;
   actuator.control = read_control(map, kind, formulation);
   if (actuator.control == Control::load) actuator.rest = 0;

@@ -16,7 +16,7 @@ SceneFiles FileContents::kept(bool read) {
   return {of(meshes, read_mesh),      of(surfaces, read_stl),
           of(sidecars, read_sidecar), of(curves, read_actuator_curve),
           of(scenes, read_file),      of(samples, read_field_samples),
-          of(ways, read_way)};
+          of(ways, read_way),         of(directions, read_directions)};
 }
 
 std::vector<std::filesystem::path> FileContents::paths() const {
@@ -24,7 +24,7 @@ std::vector<std::filesystem::path> FileContents::paths() const {
   const auto add = [&all](const auto& known) {
     for (const auto& [path, content] : known) all.emplace_back(path);
   };
-  add(meshes), add(surfaces), add(sidecars), add(curves), add(scenes), add(samples), add(ways);
+  add(meshes), add(surfaces), add(sidecars), add(curves), add(scenes), add(samples), add(ways), add(directions);
   return all;
 }
 

@@ -14,6 +14,7 @@ struct FileContents {
   std::map<std::string, std::string> scenes{};  // texts of those that the scene's `robots` name
   std::map<std::string, FieldSamples> samples{};
   std::map<std::string, Points> ways{};
+  std::map<std::string, FieldSamples> directions{};
 
   /// How a scene takes them from here. For one thread at a time; *this must outlive what is returned.
   ///

@@ -183,19 +183,17 @@ Points read_triples(const Node& node, double unit) {
   return triples;
 }
 
-/// Samples that stand in the scene itself.
-void read_samples(const Context& context, const Map& map, RemanenceSpec& remanence) {
-  const Node &places = map.at("places"), &samples = map.at("samples");
-  remanence.file = places.origin.file;
-  remanence.places = read_triples(places, context.to_mm);
-  remanence.samples = read_triples(samples, 1);
-  if (remanence.places.rows() == 0) fail(places, places.name + " is empty");
-  if (remanence.places.rows() != remanence.samples.rows())
-    fail(samples, samples.name + " must hold as many as 'places', " + std::to_string(remanence.places.rows()) +
-                      ", not " + std::to_string(remanence.samples.rows()));
-}
-
 }  // namespace
+
+FieldSamples read_samples(const Context& context, const Map& map) {
+  const Node &places = map.at("places"), &samples = map.at("samples");
+  FieldSamples all{places.origin.file, read_triples(places, context.to_mm), read_triples(samples, 1), true, {}};
+  if (all.places.rows() == 0) fail(places, places.name + " is empty");
+  if (all.places.rows() != all.values.rows())
+    fail(samples, samples.name + " must hold as many as 'places', " + std::to_string(all.places.rows()) + ", not " +
+                      std::to_string(all.values.rows()));
+  return all;
+}
 
 std::shared_ptr<const RemanenceSpec> read_remanence(const Context& context, const Map& material) {
   const Node *given = material.find("remanence"), *magnetisation = material.find("magnetisation");
@@ -209,13 +207,12 @@ std::shared_ptr<const RemanenceSpec> read_remanence(const Context& context, cons
     remanence.magnetisation = static_cast<Magnetisation>(choice(*magnetisation, {"turns", "stretches"}));
   if (node.kind == Node::Kind::map) {
     const Map map(node, {"file", "places", "samples"});
-    if (map.find("file") == nullptr) {
-      read_samples(context, map, remanence);
-      return std::make_shared<const RemanenceSpec>(std::move(remanence));
-    }
+    const Node* file = map.find("file");
     for (const char* key : {"places", "samples"})
-      if (const Node* beside = map.find(key)) fail(*beside, beside->name + " and 'file' exclude each other");
-    FieldSamples samples = load_file(context, map.at("file"), context.files.samples);
+      if (const Node* beside = map.find(key); beside != nullptr && file != nullptr)
+        fail(*beside, beside->name + " and 'file' exclude each other");
+    FieldSamples samples =
+        file != nullptr ? load_file(context, *file, context.files.samples) : read_samples(context, map);
     remanence.file = std::move(samples.file);
     remanence.places = samples.in_mm ? std::move(samples.places) : Points(context.to_mm * samples.places);
     remanence.samples = std::move(samples.values);

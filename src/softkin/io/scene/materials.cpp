@@ -138,8 +138,8 @@ double read_density(const Node& node) {
 }
 
 MaterialSpec read_material(const Context& context, const Node& node) {
-  Keys known{"region",       "shape_ratio", "weight",        "linear_range", "density", "viscosity",
-             "permittivity", "remanence",   "magnetisation", "material",     "elements"};
+  Keys known{"region",       "shape_ratio", "weight",        "linear_range", "density",  "viscosity",
+             "permittivity", "remanence",   "magnetisation", "material",     "elements", "families"};
   known.insert(known.end(), elastic_keys.begin(), elastic_keys.end());
   const Map map(node, known);
   MaterialSpec material;
@@ -160,6 +160,7 @@ MaterialSpec read_material(const Context& context, const Node& node) {
   if (const Node* viscosity = map.find("viscosity")) material.viscosity = read_viscosity(*viscosity);
   if (const Node* value = map.find("permittivity")) material.permittivity = read_permittivity(*value);
   material.remanence = read_remanence(context, map);
+  material.families = read_families(context, map);
   if (const Node* range = map.find("linear_range")) material.linear_range = positive(*range);
   if (const Node* elements = map.find("elements")) material.mixed = choice(*elements, {"plain", "mixed"}) == 1;
   return material;

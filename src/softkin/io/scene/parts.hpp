@@ -4,6 +4,7 @@
 #include <map>
 #include <softkin/io/scene/scene.hpp>
 #include <softkin/io/scene/tree.hpp>
+#include <softkin/model/direction.hpp>
 
 namespace softkin::scene {
 
@@ -80,6 +81,15 @@ void read_mesh_of(const Context& context, const Map& scene, RobotSpec& spec);
 /// Keys `remanence`, three components [mT] or a map with samples, and `magnetisation` of a material; none where the
 /// first is not there.
 [[nodiscard]] std::shared_ptr<const RemanenceSpec> read_remanence(const Context& context, const Map& material);
+/// Families of fibres of a material; none where the key `families` is not there.
+[[nodiscard]] std::shared_ptr<const FamiliesSpec> read_families(const Context& context, const Map& material);
+/// Keys `places` and `samples` of a map: samples that stand in the scene itself.
+[[nodiscard]] FieldSamples read_samples(const Context& context, const Map& map);
+/// Three components; or a map: `radial`, `circumferential`, `file`, or `places` and `samples`.
+[[nodiscard]] DirectionSpec read_direction(const Context& context, const Node& node);
+/// Keys that an actuator of kind growth has beside the common ones.
+[[nodiscard]] const Keys& growth_keys();
+[[nodiscard]] ActuatorSpec read_growth(const Context& context, const Map& map, const std::string& name);
 /// Keys that an actuator of kind magnetic alone has.
 [[nodiscard]] const Keys& field_keys();
 /// The commands of such an actuator, each an actuator of its own: NAME where there is one of flux density or current,

@@ -119,6 +119,22 @@ TractionSpec read_traction(const Context& context, const Node& node, Names& name
   return spec;
 }
 
+/// A liquid up to a place of its surface, or to a level against gravity from the origin.
+LiquidAroundSpec read_submerged(const Context& context, const Node& node, const Vec3& gravity) {
+  const Map map(node, {"density", "surface", "level"});
+  LiquidAroundSpec liquid;
+  liquid.origin = node.origin;
+  if (const Node* density = map.find("density")) liquid.density = positive(*density);
+  const Node::Entry& place = map.one_of({"surface", "level"});
+  if (place.key == "surface") {
+    liquid.surface = read_position(context, *place.value);
+    return liquid;
+  }
+  if (gravity.isZero(0)) fail(*place.value, "'level' is measured against 'gravity', which this scene does not have");
+  liquid.surface = -read_length(context, *place.value) * gravity.stableNormalized();
+  return liquid;
+}
+
 FootSpec read_foot(const Node& node) {
   const Map map(node, {"marker", "forward", "backward"});
   const auto friction = [&map](const char* key) {
@@ -153,6 +169,7 @@ void read_parts(const Context& context, const Map& map, RobotSpec& spec) {
   each("fixed", [&](const Node& item) { spec.fixed.push_back(read_fixed(context, item)); });
   each("rigid", [&](const Node& item) { spec.rigid.push_back(read_rigid(context, item, spec.rigid.size() + 1)); });
   if (const Node* node = map.find("actuators")) spec.actuators = read_actuators(context, spec.formulation, *node);
+  if (const Node* node = map.find("submerged")) spec.liquid_around = read_submerged(context, *node, spec.gravity);
   if (const Node* node = map.find("atmosphere")) set_atmosphere(positive(*node), spec);
   each("forces", [&](const Node& item) { spec.forces.push_back(read_force(context, item, forces)); });
   each("tractions", [&](const Node& item) { spec.tractions.push_back(read_traction(context, item, tractions)); });
@@ -196,9 +213,9 @@ RobotSpec parse_scene(const scene::Node& root, const std::string& file_name, con
   scene::check_version(root, "softkin", "scenes", "a scene must be a map that begins with 'softkin: 1'",
                        "the scene needs key 'softkin', its version: 'softkin: 1'");
   const scene::Map map(
-      root, {"softkin",   "units",  "mesh",    "meshes", "robots",    "formulation", "weights", "regions",
-             "materials", "void",   "fixed",   "rigid",  "actuators", "gravity",     "forces",  "tractions",
-             "fibres",    "layers", "markers", "feet",   "contact",   "obstacles",   "bodies",  "atmosphere"});
+      root, {"softkin", "units", "mesh",    "meshes",    "robots",  "formulation", "weights",   "regions", "materials",
+             "void",    "fixed", "rigid",   "actuators", "gravity", "forces",      "tractions", "fibres",  "layers",
+             "markers", "feet",  "contact", "obstacles", "bodies",  "atmosphere",  "submerged"});
   scene::Context context{std::filesystem::path(file_name).parent_path(), files};
   if (const scene::Node* node = map.find("units")) context.to_mm = scene::read_length_unit(*node);
   if (map.find("robots") != nullptr) return scene::read_several(context, map, file_name);
@@ -231,7 +248,7 @@ RobotSpec read_scene_and(std::vector<fs::path>& inputs, const AskedScene& asked)
   for (const std::string& each : asked.changes) root = scene::changed(root, "--change", each, "");
   return parse_scene(*root, asked.scene,
                      {noting(read_mesh), noting(read_stl), noting(read_sidecar), noting(read_actuator_curve),
-                      noting(read_file), noting(read_field_samples), noting(read_way)});
+                      noting(read_file), noting(read_field_samples), noting(read_way), noting(read_directions)});
 }
 
 bool parse_vector(const std::string& text, Vec3& vector) {

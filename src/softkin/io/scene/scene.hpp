@@ -30,6 +30,7 @@ struct SceneFiles {
   std::function<std::string(const std::filesystem::path&)> scene = read_file;  // the text of one of `robots`
   std::function<FieldSamples(const std::filesystem::path&)> samples = read_field_samples;
   std::function<Points(const std::filesystem::path&)> way = read_way;  // corners [mm]
+  std::function<FieldSamples(const std::filesystem::path&)> directions = read_directions;
 };
 
 /// As read_scene, from a text in memory. file_name is for messages; the paths given to `files` are relative to its

@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
@@ -10,19 +11,28 @@ namespace softkin {
 
 namespace {
 
-constexpr const char* sample_columns[] = {"x_mm", "y_mm", "z_mm", "bx_mT", "by_mT", "bz_mT"};
+/// What samples are of.
+struct SampleKind {
+  const char *name, *array;
+  std::array<const char*, 6> columns;
+};
+constexpr SampleKind flux_densities{
+    "a flux density", "flux_density_mT", {"x_mm", "y_mm", "z_mm", "bx_mT", "by_mT", "bz_mT"}};
+constexpr SampleKind directions{"a direction", "direction", {"x_mm", "y_mm", "z_mm", "dx", "dy", "dz"}};
 constexpr double same = 1e-4;  // of a grid's step: files have few digits
 
-FieldSamples samples_of_csv(const std::filesystem::path& path) {
+FieldSamples samples_of_csv(const std::filesystem::path& path, const SampleKind& of) {
   const CsvTable table = read_csv(path);
   for (const std::string& column : table.columns)
-    if (std::find(std::begin(sample_columns), std::end(sample_columns), column) == std::end(sample_columns))
-      table.fail_header("unknown column '" + column + "'; a flux density has x_mm, y_mm, z_mm, bx_mT, by_mT, bz_mT");
+    if (std::find(of.columns.begin(), of.columns.end(), column) == of.columns.end())
+      table.fail_header("unknown column '" + column + "'; " + of.name + " has x_mm, y_mm, z_mm, " + of.columns[3] +
+                        ", " + of.columns[4] + ", " + of.columns[5]);
   const auto count = static_cast<Index>(table.rows.size());
   FieldSamples samples{path.string(), Points(count, 3), Points(count, 3), true, table.lines};
   for (Index i = 0; i < 6; ++i) {
-    const auto column = table.find(sample_columns[i]);
-    if (!column) table.fail_header(std::string("the column '") + sample_columns[i] + "' is missing");
+    const char* name = of.columns[static_cast<std::size_t>(i)];
+    const auto column = table.find(name);
+    if (!column) table.fail_header(std::string("the column '") + name + "' is missing");
     Points& to = i < 3 ? samples.places : samples.values;
     for (Index row = 0; row < count; ++row) to(row, i % 3) = table.rows[static_cast<std::size_t>(row)][*column];
   }
@@ -57,16 +67,24 @@ void find_planes(const FieldSamples& samples, Index axis, GridField& grid) {
   grid.counts[static_cast<std::size_t>(axis)] = count;
 }
 
+FieldSamples read_samples(const std::filesystem::path& path, const SampleKind& of) {
+  const std::string extension = path.extension().string();
+  if (extension == ".csv") return samples_of_csv(path, of);
+  if (extension != ".vtu")
+    throw InvalidInput({path.string()},
+                       std::string(of.name) + " is read from a .csv or a .vtu file, not from '" + extension + "'");
+  CellVectors cells = read_vtu_cell_vectors(path, of.array);
+  return {path.string(), std::move(cells.centers), std::move(cells.values), false, {}};
+}
+
 }  // namespace
 
 FieldSamples read_field_samples(const std::filesystem::path& path) {
-  const std::string extension = path.extension().string();
-  if (extension == ".csv") return samples_of_csv(path);
-  if (extension != ".vtu")
-    throw InvalidInput({path.string()},
-                       "a flux density is read from a .csv or a .vtu file, not from '" + extension + "'");
-  CellVectors cells = read_vtu_cell_vectors(path, "flux_density_mT");
-  return {path.string(), std::move(cells.centers), std::move(cells.values), false, {}};
+  return read_samples(path, flux_densities);
+}
+
+FieldSamples read_directions(const std::filesystem::path& path) {
+  return read_samples(path, directions);
 }
 
 GridField grid_of(const FieldSamples& samples) {

@@ -8,11 +8,11 @@
 
 namespace softkin {
 
-/// Flux densities at places.
+/// Flux densities, or directions, at places.
 struct FieldSamples {
   std::string file;
   Points places;                   // #samples by 3 [mm], or in the scene's unit of length
-  Points values;                   // the same [mT]
+  Points values;                   // the same [mT]; of directions [-]
   bool in_mm = true;               // are places
   std::vector<std::size_t> lines;  // of each in the file; none: it has no lines
 };
@@ -22,6 +22,9 @@ struct FieldSamples {
 ///
 /// throws  InvalidInput naming file and line: another extension, columns that are missing or unknown, no such array
 [[nodiscard]] FieldSamples read_field_samples(const std::filesystem::path& path);
+
+/// The same of directions: columns x_mm, y_mm, z_mm, dx, dy and dz, or the cell array "direction".
+[[nodiscard]] FieldSamples read_directions(const std::filesystem::path& path);
 
 /// Samples at all points of a regular grid, in any order, as that.
 ///

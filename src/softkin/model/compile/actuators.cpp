@@ -65,6 +65,12 @@ void check_curve(const ActuatorSpec& spec) {
 void check_numbers(const ActuatorSpec& spec, Formulation formulation) {
   if (!(spec.weight > 0 && std::isfinite(spec.weight)))
     refuse(spec, "needs a weight above 0, not " + number(spec.weight));
+  check_growth(spec, formulation);
+  if (spec.kind == ActuatorKind::growth) {
+    if (spec.filling || spec.curve || spec.shares || spec.prestretch != 1)
+      refuse(spec, "is a growth: it takes no filling, no curve, no shares and no prestretch");
+    return;
+  }
   if (spec.kind == ActuatorKind::magnetic)
     check_field(spec, formulation);
   else if (spec.control == Control::load)

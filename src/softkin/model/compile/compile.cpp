@@ -150,6 +150,8 @@ Model compile(const RobotSpec& spec) {
   compile_actuator_elements(c);
   compile_materials(c);
   compile_magnetism(c);
+  compile_growth(c);
+  compile_families(c);
   compile_actuator_points(c);
   compile_supports(c);
   check_openings(c);

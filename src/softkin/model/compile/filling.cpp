@@ -90,7 +90,9 @@ void note_rest(Compilation& c, const Actuator& actuator) {
   if (actuator.rest >= actuator.low && actuator.rest <= actuator.high) return;
   c.model.notes.push_back(
       "The range " + interval_text(actuator.low, actuator.high) + " of actuator '" + actuator.name + "' excludes its " +
-      (actuator.control == Control::load ? "load at rest " + number(actuator.rest)
+      (actuator.kind == ActuatorKind::growth && actuator.control == Control::load
+           ? "temperature of reference, " + command_text(actuator, actuator.rest)
+       : actuator.control == Control::load ? "load at rest " + number(actuator.rest)
        : actuator.control == Control::filling
            ? std::string(control_name(actuator)) + " at rest, " + command_text(actuator, actuator.rest)
            : "rest ratio 1") +

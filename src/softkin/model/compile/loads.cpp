@@ -94,6 +94,8 @@ void compile_loads(Compilation& c) {
     if (!c.spec.tractions.empty())
       c.model.notes.push_back(counted(c.spec.tractions.size(), "traction is", "tractions are") +
                               " left out: the target-shape formulation knows no forces.");
+    if (c.spec.liquid_around)
+      c.model.notes.emplace_back("The liquid around it is left out: the target-shape formulation knows no forces.");
     return;
   }
   if (!c.spec.gravity.allFinite()) throw InvalidInput(c.origin, "gravity is not finite");
@@ -109,6 +111,7 @@ void compile_loads(Compilation& c) {
     add_force(c, spec);
   }
   compile_tractions(c);
+  compile_liquid_around(c);
 }
 
 }  // namespace softkin

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <cmath>
 #include <softkin/model/compile/parts.hpp>
+#include <softkin/model/compile/samples.hpp>
 #include <softkin/model/magnetic_field.hpp>
-#include <softkin/model/mesh/box_tree.hpp>
 
 namespace softkin {
 
@@ -81,71 +81,26 @@ Index place_of(Magnetism& magnetism, std::vector<const FieldSource*>& known, con
   return place;
 }
 
-Vec3 centroid(const Model& model, std::size_t element) {
-  const auto mean = [&](const auto& nodes) {
-    Vec3 sum = Vec3::Zero();
-    for (const Index v : nodes) sum += vertex_at(model.rest, v);
-    return Vec3(sum / static_cast<double>(nodes.size()));
-  };
-  const std::size_t tetrahedra = model.tetrahedra.size();
-  return element < tetrahedra ? mean(model.tetrahedra[element]) : mean(model.prisms[element - tetrahedra]);
-}
-
-double longest_edge(const Model& model, std::size_t element) {
-  double longest = 0;
-  const auto measure = [&](const auto& nodes) {
-    for (const Index a : nodes)
-      for (const Index b : nodes)
-        longest = std::max(longest, (vertex_at(model.rest, a) - vertex_at(model.rest, b)).norm());
-  };
-  const std::size_t tetrahedra = model.tetrahedra.size();
-  if (element < tetrahedra)
-    measure(model.tetrahedra[element]);
-  else
-    measure(model.prisms[element - tetrahedra]);
-  return longest;
-}
-
 /// Finds the samples of a material's remanence.
 class Remanence {
  public:
-  explicit Remanence(const MaterialSpec& material) : material_(material), spec_(*material.remanence), tree_({}) {
-    if (!spec_.uniform.allFinite()) refuse_it("remanence is not finite");
-    if (spec_.places.rows() != spec_.samples.rows()) refuse_it("remanence needs a place for each of its samples");
-    if (!spec_.places.allFinite() || !spec_.samples.allFinite()) refuse_it("remanence has a sample that is not finite");
-    std::vector<Bounds> boxes;
-    for (Index i = 0; i < spec_.places.rows(); ++i) boxes.emplace_back(Vec3(spec_.places.row(i).transpose()));
-    tree_ = BoxTree(boxes);
+  explicit Remanence(const MaterialSpec& material)
+      : owner_("the material of region '" + material.region + "': its remanence"),
+        origin_(material.origin),
+        spec_(*material.remanence),
+        samples_(spec_.places, spec_.samples, spec_.file, owner_, origin_) {
+    if (!spec_.uniform.allFinite()) throw InvalidInput(origin_, owner_ + " is not finite");
   }
 
   [[nodiscard]] Vec3 of(const Model& model, std::size_t element) const {
-    if (spec_.places.rows() == 0) return spec_.uniform;
-    const Vec3 at = centroid(model, element);
-    Index nearest = -1;
-    double least = std::numeric_limits<double>::infinity();
-    tree_.visit_near(at, [&](Index i) {
-      const double square = (spec_.places.row(i).transpose() - at).squaredNorm();
-      if (square < least) {
-        least = square;
-        nearest = i;
-      }
-      return least;
-    });
-    const double most = longest_edge(model, element), distance = std::sqrt(least);
-    if (distance > most)
-      refuse_it("remanence of " + spec_.file + " has no sample near " + point_text(at) + " mm: the nearest is " +
-                number(distance, 3) + " mm away, and the element there is of " + number(most, 3) + " mm");
-    return spec_.samples.row(nearest).transpose();
+    return samples_.empty() ? spec_.uniform : samples_.of(model, element);
   }
 
  private:
-  [[noreturn]] void refuse_it(const std::string& what) const {
-    throw InvalidInput(material_.origin, "the material of region '" + material_.region + "': its " + what);
-  }
-
-  const MaterialSpec& material_;
+  std::string owner_;
+  Origin origin_;
   const RemanenceSpec& spec_;
-  BoxTree tree_;
+  ElementSamples samples_;
 };
 
 /// Returns whether any element has a remanence.

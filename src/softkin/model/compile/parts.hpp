@@ -92,6 +92,14 @@ void check_filling(Compilation& c, const ActuatorSpec& spec, const TriangleSurfa
 /// After the materials. Physical: what is magnetic, and the sources of the fields that act on it.
 void compile_magnetism(Compilation& c);
 
+/// Refuses a growth whose numbers, commands or members make no sense, and one of target shapes.
+void check_growth(const ActuatorSpec& spec, Formulation formulation);
+/// After the materials. Physical: the elements that actuators let grow, and along which directions.
+void compile_growth(Compilation& c);
+
+/// After the growth. Physical: the families of fibres of materials, and their directions.
+void compile_families(Compilation& c);
+
 /// Physical, after the supports: refuses chambers that are open.
 void check_openings(const Compilation& c);
 
@@ -175,6 +183,10 @@ void compile_feet(Compilation& c);
 
 /// Physical: the weight of the elements, the forces and tractions, lumped on the vertices [N].
 void compile_loads(Compilation& c);
+/// A face of the body's surface, of the mesh's order.
+[[nodiscard]] LoadedFace loaded_face(const Compilation& c, const Triangle& corners, double share);
+/// The part of compile_loads() that is about a liquid around the robot.
+void compile_liquid_around(Compilation& c);
 /// The part of compile_loads() that is about tractions.
 void compile_tractions(Compilation& c);
 

@@ -19,8 +19,7 @@ std::string title(const TractionSpec& spec) {
 /// The faces of the body that a region is, with normals outwards; a quad is the mean of its two ways to be triangles.
 class BodyFaces {
  public:
-  explicit BodyFaces(const Compilation& c)
-      : c_(c), boundary_(boundary_of(c.model.tetrahedra, c.model.prisms)), edges_(c.regions.edges()) {}
+  explicit BodyFaces(const Compilation& c) : c_(c), boundary_(boundary_of(c.model.tetrahedra, c.model.prisms)) {}
 
   [[nodiscard]] std::vector<LoadedFace> of(const TractionSpec& spec) const {
     const Region region = c_.regions.resolve(spec.where);
@@ -38,10 +37,10 @@ class BodyFaces {
     };
     std::vector<LoadedFace> faces;
     for (const Triangle& t : boundary_.triangles)
-      if (is_loaded(t)) faces.push_back(loaded(t, 1));
+      if (is_loaded(t)) faces.push_back(loaded_face(c_, t, 1));
     for (const Quad& q : boundary_.quads)
       if (is_loaded(q))
-        for (int i = 0; i < 4; ++i) faces.push_back(loaded({q[i], q[(i + 1) % 4], q[(i + 2) % 4]}, 0.5));
+        for (int i = 0; i < 4; ++i) faces.push_back(loaded_face(c_, {q[i], q[(i + 1) % 4], q[(i + 2) % 4]}, 0.5));
     refuse_others(spec, wanted, faces);
     return faces;
   }
@@ -52,12 +51,6 @@ class BodyFaces {
     std::vector<Index> vertices(face.begin(), face.end());
     std::sort(vertices.begin(), vertices.end());
     return vertices;
-  }
-
-  [[nodiscard]] LoadedFace loaded(const Triangle& corners, double share) const {
-    LoadedFace face{{corners}, share};
-    if (!edges_.empty()) face.face.edges = edges_.of(corners);
-    return face;
   }
 
   static void refuse_others(const TractionSpec& spec, const std::set<std::vector<Index>>& others,
@@ -73,7 +66,6 @@ class BodyFaces {
 
   const Compilation& c_;
   const Boundary boundary_;
-  const EdgeTable& edges_;
 };
 
 void check(const TractionSpec& spec) {
@@ -94,6 +86,12 @@ void add_dead(Model& model, const Vec3& traction_MPa, const LoadedFace& loaded) 
 }
 
 }  // namespace
+
+LoadedFace loaded_face(const Compilation& c, const Triangle& corners, double share) {
+  LoadedFace face{{corners}, share};
+  if (!c.regions.edges().empty()) face.face.edges = c.regions.edges().of(corners);
+  return face;
+}
 
 void compile_tractions(Compilation& c) {
   if (c.spec.tractions.empty()) return;

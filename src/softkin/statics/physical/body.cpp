@@ -67,28 +67,6 @@ bool Body::prestretched() const {
                      [](const auto& set) { return set.charged && set.prestretch != 1; });
 }
 
-/// F_a = diag(sqrt(ratio), sqrt(ratio), 1 / ratio) in the layer's frame: slopes become F_a^-T times those at rest.
-void Body::stretch_layers(const Demand& demand, Scratch& scratch) const {
-  std::size_t layer = 0;
-  for (const auto& set : prisms_) {
-    if (set.actuator < 0) continue;
-    const std::size_t index = layer++;
-    const double ratio = set.charged ? 1 + demand.share * (set.prestretch - 1) : demand.actuation[set.actuator];
-    if (scratch.layer_ratios[index] == ratio) continue;
-    scratch.layer_ratios[index] = ratio;
-    const Vec3 inverse(1 / std::sqrt(ratio), 1 / std::sqrt(ratio), ratio);
-    for (std::size_t b = 0; b < set.blocks.size(); ++b)
-      for (int l = 0; l < lanes; ++l) {
-        const Index e = std::min<Index>(set.count - 1, static_cast<Index>(b) * lanes + l);
-        const Mat3& frame = set.frames[e / lanes][e % lanes];
-        const Mat3 shrink = frame * inverse.asDiagonal() * frame.transpose();
-        for (int q = 0; q < 6; ++q)
-          for (int i = 0; i < 6; ++i)
-            set_lane(scratch.layers[index][b].slope[q][i], l, shrink * lane_of(set.blocks[b].slope[q][i], l));
-      }
-  }
-}
-
 template <int K, int Q>
 void Body::store(const Set<K, Q>& set, Index block, const Shape<K>& pull, Scratch& scratch) const {
   const Index count = std::min<Index>(lanes, set.count - lanes * block);
@@ -117,7 +95,7 @@ void Body::add_pulls(const Scratch& scratch, Points& sums, Team& team) const {
 
 /// What every element pulls with, into the scratch.
 Body::Result Body::pull(const Demand& demand, const Points& positions, Scratch& scratch, Team& team) const {
-  stretch_layers(demand, scratch);
+  change_elements(demand, scratch, team);
   std::size_t first = 0;
   Result result;
   each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {
@@ -189,9 +167,10 @@ void Body::add_change(const Demand& from, const Demand& to, const Points& positi
     field_force(a, 1, positions, own, after, team);  // at 1 kV
     force += change * (to.actuation[a] + from.actuation[a]) * after;
   }
-  const bool stretched =
-      std::any_of(ratios_.begin(), ratios_.end(), [&](Index a) { return from.actuation[a] != to.actuation[a]; }) ||
-      (from.share != to.share && prestretched());
+  const auto changes = [&](Index a) { return from.actuation[a] != to.actuation[a]; };
+  const bool stretched = std::any_of(ratios_.begin(), ratios_.end(), changes) ||
+                         std::any_of(growths_.begin(), growths_.end(), changes) ||
+                         (from.share != to.share && prestretched());
   if (!stretched) return;
   constexpr double reach = 1e-4;  // of a central difference, over the change
   Demand low = from, high = from;
@@ -209,20 +188,34 @@ void Body::add_derivative(Index command, const Demand& demand, const Points& pos
                           Points& force, Team& team) const {
   auto& own = static_cast<Scratch&>(scratch);
   Points there;
-  if (loads(command)) {
+  if (charges(command)) {
     field_force(command, 1, positions, own, there, team);  // it goes with the square of the voltage
     force += 2 * demand.actuation[command] * there;
   }
-  if (std::find(ratios_.begin(), ratios_.end(), command) == ratios_.end()) return;
-  // central difference of fourth order; the force is smooth in the ratio
-  const double reach = 1e-3 * demand.actuation[command];
-  const auto at_ratio = [&](double change) {
-    Demand changed = demand;
-    changed.actuation[command] += change;
-    (void)this->force(changed, positions, own, there, team);
+  const bool grows = std::find(growths_.begin(), growths_.end(), command) != growths_.end();
+  if (!grows && std::find(ratios_.begin(), ratios_.end(), command) == ratios_.end()) return;
+  // central difference of fourth order; the force is smooth in the stretches, which go on by their slopes
+  const double reach = grows ? 1e-3 / fastest_growth(command, demand) : 1e-3 * demand.actuation[command];
+  if (!std::isfinite(reach)) return;  // at this temperature nothing grows
+  const auto nudged_by = [&](double nudge) {
+    own.nudged = command;
+    own.nudge = nudge;
+    (void)this->force(demand, positions, own, there, team);
+    own.nudged = -1;
     return there;
   };
-  force += (8 * (at_ratio(reach) - at_ratio(-reach)) - (at_ratio(2 * reach) - at_ratio(-2 * reach))) / (12 * reach);
+  force += (8 * (nudged_by(reach) - nudged_by(-reach)) - (nudged_by(2 * reach) - nudged_by(-2 * reach))) / (12 * reach);
+}
+
+/// The largest share of a stretch by which it changes with a command [1 per unit].
+double Body::fastest_growth(Index command, const Demand& demand) const {
+  double fastest = 0;
+  each_set([&](const auto& set) {
+    if (!set.growth || set.growth->actuator != command) return;
+    const double at = demand.actuation[command];
+    fastest = std::max(fastest, std::abs(set.growth->slope(at)) / set.growth->stretch(at));
+  });
+  return fastest;
 }
 
 void Body::field_force(Index actuator, double voltage_kV, const Points& positions, Scratch& scratch, Points& gradient,
@@ -256,7 +249,7 @@ double Body::largest_pull(const Scratch& scratch, Team& team) const {
 
 void Body::stress(const Demand& demand, const Points& positions, Scratch& scratch, ElementStress& out,
                   Team& team) const {
-  stretch_layers(demand, scratch);
+  change_elements(demand, scratch, team);
   std::size_t count = 0;
   each(scratch, [&](const auto& set, const auto&) { count += set.elements.size(); });
   out.von_mises.resize(count);
@@ -276,10 +269,14 @@ void Body::stress(const Demand& demand, const Points& positions, Scratch& scratc
           if (set.charged)
             add_maxwell_stress(set.blocks[b], set.permittivity[b], demand.actuation[set.actuator], shape, points);
         for (Index l = 0; l < std::min<Index>(lanes, set.count - lanes * b); ++l) {
-          Mat3 most = lane_of(points[0], l);
-          for (int q = 1; q < Q; ++q)
-            if (const Mat3 here = lane_of(points[q], l); von_mises(here) > von_mises(most)) most = here;
           const Index e = set.elements[lanes * b + l];
+          const auto at_point = [&](int q) {
+            const Mat3 own = lane_of(points[q], l);
+            return families_ ? Mat3(own + families_->stress(e, q, positions)) : own;
+          };
+          Mat3 most = at_point(0);
+          for (int q = 1; q < Q; ++q)
+            if (const Mat3 here = at_point(q); von_mises(here) > von_mises(most)) most = here;
           out.von_mises[e] = von_mises(most);
           const Vec3 values = principal_values(0.5 * (most + most.transpose()));
           out.principal[e] = {values[2], values[1], values[0]};
@@ -291,7 +288,7 @@ void Body::stress(const Demand& demand, const Points& positions, Scratch& scratc
 
 void Body::stiffness(const Demand& demand, const Points& positions, bool projected, Scratch& scratch,
                      LargeVector<double>& slots, Team& team) const {
-  stretch_layers(demand, scratch);
+  change_elements(demand, scratch, team);
   each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {
     constexpr int matrices = K * (K + 1) / 2;
     const int others = set.matrices() - matrices;

@@ -8,31 +8,43 @@
 #include <softkin/energy/viscous.hpp>
 #include <softkin/linear/block_matrix.hpp>
 #include <softkin/model/equilibrium.hpp>
+#include <softkin/model/growth.hpp>
 #include <softkin/model/model.hpp>
+#include <softkin/statics/physical/fibre_families.hpp>
 #include <softkin/statics/physical/pressures.hpp>
 #include <softkin/statics/physical/term.hpp>
+#include <tuple>
 
 namespace softkin::physical {
 
 /// The body of a robot in the physical formulation: elastic energy, that of the electric field in its layers under
-/// voltage, and their derivatives in the vertices; in those of pressures, too, where it has mixed elements.
+/// voltage, and their derivatives in the vertices; in those of pressures, too, where it has mixed elements. What grows
+/// has other elements at rest: their slopes and volumes change with the command.
 class Body : public Term {
  public:
   /// pressures: of model's last vertices; null: it has none
   explicit Body(const Model& model, const Pressures* pressures = nullptr);
 
+  /// Blocks of a set whose elements at rest are what a command makes of them.
+  template <int K, int Q>
+  struct Changed {
+    std::vector<energy::ElasticBlock<K, Q>> blocks;
+    double stretch = 0;  // that they are at [-]; 0: not made yet
+  };
+
   /// What evaluation needs beside the positions; nothing is allocated per call.
   struct Scratch : Term::Scratch {
-    std::vector<double> pulls;                                    // 3 per node of every element [N]
-    std::vector<energy::Pack> energies;                           // per block of all sets [mJ]
-    std::vector<energy::PackMask> inverted, forbidden;            // the same
-    std::vector<std::vector<energy::ElasticBlock<6, 6>>> layers;  // per stretched set: at the ratio below
-    std::vector<double> layer_ratios;                             // [-]; 0: not made yet
-    std::shared_ptr<const ViscousHistory> history;                // none: relaxed at rest
-    double elapsed_s = std::numeric_limits<double>::infinity();   // since then; infinity: no branch pulls
-    std::vector<energy::BranchShares> shares;                     // of viscous sets, by block and branch, by then
-    std::vector<energy::Pack> rates;                              // the same: that time over their relaxation times
-    std::vector<double> begun;                                    // the same: energy::begin_step() of them
+    std::vector<double> pulls;                          // 3 per node of every element [N]
+    std::vector<energy::Pack> energies;                 // per block of all sets [mJ]
+    std::vector<energy::PackMask> inverted, forbidden;  // the same
+    std::tuple<std::vector<Changed<4, 1>>, std::vector<Changed<10, 4>>, std::vector<Changed<6, 6>>> changed;
+    Index nudged = -1;  // an actuator whose stretches are those of so much more of its command, to first order
+    double nudge = 0;
+    std::shared_ptr<const ViscousHistory> history;               // none: relaxed at rest
+    double elapsed_s = std::numeric_limits<double>::infinity();  // since then; infinity: no branch pulls
+    std::vector<energy::BranchShares> shares;                    // of viscous sets, by block and branch, by then
+    std::vector<energy::Pack> rates;                             // the same: that time over their relaxation times
+    std::vector<double> begun;                                   // the same: energy::begin_step() of them
 
     [[nodiscard]] bool pulls_viscously() const { return elapsed_s < std::numeric_limits<double>::infinity(); }
   };
@@ -80,6 +92,9 @@ class Body : public Term {
   /// voltage with Maxwell's.
   void stress(const Demand& demand, const Points& positions, Scratch& scratch, ElementStress& out, Team& team) const;
 
+  /// Stresses are told with those of families of fibres, which must outlive the object.
+  void add_stress_of(const FibreFamilies& families) { families_ = &families; }
+
   /// Adds every element as a clique.
   void add_cliques(linear::Cliques& cliques) override;
 
@@ -98,9 +113,9 @@ class Body : public Term {
     stress(demand, at.positions, static_cast<Scratch&>(scratch), out.stress, team);
   }
 
-  /// Voltages.
+  /// Voltages and growths.
   [[nodiscard]] bool loads(Index command) const override {
-    return std::find(voltages_.begin(), voltages_.end(), command) != voltages_.end();
+    return charges(command) || std::find(growths_.begin(), growths_.end(), command) != growths_.end();
   }
 
   /// Does the share of what is done to it at once change it: is a layer under voltage prestretched.
@@ -119,7 +134,10 @@ class Body : public Term {
   template <int K, int Q>
   struct Set {
     Law law = Law::neo_hookean;
-    Index actuator = -1;    // dea, whose active stretch is in the slopes of its layers
+    Index actuator = -1;  // dea, whose active stretch is in the slopes of its layers
+    Index grower = -1;    // by which of Model::growths it grows
+    std::shared_ptr<const Growth> growth;
+    Index changed = -1;     // place among Scratch's; -1: no command changes its elements
     bool charged = false;   // is it under voltage
     double prestretch = 1;  // then its stretch, which no command changes
     int branches = 0;
@@ -131,6 +149,7 @@ class Body : public Term {
     std::vector<std::array<std::array<Index, energy::lanes>, K>> nodes;
     std::vector<Index> elements;                          // place of each in the model, tetrahedra first, then prisms
     std::vector<std::array<Mat3, energy::lanes>> frames;  // dea: of the layer
+    std::vector<std::array<Vec3, energy::lanes>> along;   // of a growth along a direction
     std::vector<energy::Pack> permittivity;               // under voltage: as energy/dielectric.hpp takes it
     std::vector<energy::Pack> moduli, times;              // of branches, by block: [MPa], [s]
     std::vector<energy::CornerPressure> compliance;       // mixed: softness and smoothing of every block
@@ -152,7 +171,11 @@ class Body : public Term {
 
   template <int K, int Q, class Element>
   void add(std::vector<Set<K, Q>>& sets, const Model& model, const ElementRole& role, Index element,
-           const Element& nodes, const Pressures* pressures);
+           const Element& nodes, const Pressures* pressures, Index grower);
+  void add_elements(const Model& model, const Pressures* pressures);
+  void add_directions(const Model& model);
+  void number_sets();
+  void number_pulls();
   template <int K, int Q>
   static void set_pressures(Set<K, Q>& set, const ElasticLaw& law, const std::array<Index, 4>& vertices,
                             int first_lane);
@@ -177,20 +200,25 @@ class Body : public Term {
   template <int K, int Q>
   void store_coupling(const Set<K, Q>& set, Index block, const energy::PressureCoupling<K>& coupling,
                       LargeVector<double>& slots) const;
-  void stretch_layers(const Demand& demand, Scratch& scratch) const;
+  [[nodiscard]] bool charges(Index command) const {
+    return std::find(voltages_.begin(), voltages_.end(), command) != voltages_.end();
+  }
+  template <int K, int Q>
+  [[nodiscard]] double stretch_of(const Set<K, Q>& set, const Demand& demand, const Scratch& scratch) const;
+  [[nodiscard]] double fastest_growth(Index command, const Demand& demand) const;
+  void change_elements(const Demand& demand, Scratch& scratch, Team& team) const;
 
-  /// visit(set, its blocks at the current active stretch)
+  /// visit(set, its blocks as the commands have changed them)
   template <class Visit>
   void each(const Scratch& scratch, const Visit& visit) const {
-    for (const auto& set : linear_) visit(set, set.blocks);
-    for (const auto& set : quadratic_) visit(set, set.blocks);
-    std::size_t layer = 0;
-    for (const auto& set : prisms_) {
-      if (set.actuator >= 0)
-        visit(set, scratch.layers[layer++]);
-      else
-        visit(set, set.blocks);
-    }
+    each_set([&]<int K, int Q>(const Set<K, Q>& set) {
+      visit(set,
+            set.changed < 0 ? set.blocks : changed_of<K, Q>(scratch)[static_cast<std::size_t>(set.changed)].blocks);
+    });
+  }
+  template <int K, int Q>
+  static auto& changed_of(auto& scratch) {
+    return std::get<std::vector<Changed<K, Q>>>(scratch.changed);
   }
   /// visit(set)
   template <class Visit>
@@ -207,10 +235,12 @@ class Body : public Term {
   }
 
   Index vertices_;
+  const FibreFamilies* families_ = nullptr;
   std::vector<Set<4, 1>> linear_;
   std::vector<Set<10, 4>> quadratic_;
   std::vector<Set<6, 6>> prisms_;
   std::vector<Index> voltages_, ratios_;  // actuators of kind dea, by what their commands are
+  std::vector<Index> growths_;            // of kind growth
   std::size_t blocks_ = 0, branches_ = 0, strains_ = 0, begun_ = 0;
   Index pulls_ = 0, misses_ = 0;                 // of all sets; the second behind the first
   double pressure_unit_ = 1;                     // [MPa/mm]

@@ -64,13 +64,14 @@ void Body::set_pressures(Set<K, Q>& set, const ElasticLaw& law, const std::array
 
 template <int K, int Q, class Element>
 void Body::add(std::vector<Set<K, Q>>& sets, const Model& model, const ElementRole& role, Index element,
-               const Element& nodes, const Pressures* pressures) {
+               const Element& nodes, const Pressures* pressures, Index grower) {
   const Material& material = model.materials[role.material];
   const Law law = material.elastic.law;
   const auto branches = static_cast<int>(material.viscosity.size());
   const bool mixed = pressures && material.mixed;
   auto set = std::find_if(sets.begin(), sets.end(), [&](const Set<K, Q>& s) {
-    return s.law == law && s.actuator == role.actuator && s.branches == branches && s.mixed == mixed;
+    return s.law == law && s.actuator == role.actuator && s.grower == grower && s.branches == branches &&
+           s.mixed == mixed;
   });
   if (set == sets.end()) {
     set = sets.insert(sets.end(), Set<K, Q>{});
@@ -78,6 +79,8 @@ void Body::add(std::vector<Set<K, Q>>& sets, const Model& model, const ElementRo
     set->branches = branches;
     set->mixed = mixed;
     set->actuator = role.actuator;
+    set->grower = grower;
+    if (grower >= 0) set->growth = model.growths[static_cast<std::size_t>(grower)];
     if (role.actuator >= 0) {
       set->charged = under_voltage(model.actuators[role.actuator]);
       set->prestretch = model.actuators[role.actuator].prestretch;
@@ -115,28 +118,43 @@ void Body::add(std::vector<Set<K, Q>>& sets, const Model& model, const ElementRo
   ++set->count;
 }
 
-Body::Body(const Model& model, const Pressures* pressures)
-    : vertices_(static_cast<Index>(model.rest.rows())), pressure_unit_(pressures ? pressures->unit : 1) {
+void Body::add_elements(const Model& model, const Pressures* pressures) {
+  const Growers growers = growers_of(model);
+  const auto grower = [](const std::vector<Index>& of, Index e) { return of.empty() ? -1 : of[e]; };
   for (const Index e : spatial_order(model.rest, model.tetrahedra)) {
     const ElementRole& role = model.tetrahedron_roles[e];
     const Tetrahedron& t = model.tetrahedra[e];
     if (model.edge_nodes.empty()) {
-      add(linear_, model, role, e, t, pressures);
+      add(linear_, model, role, e, t, pressures, grower(growers.tetrahedra, e));
     } else {
       std::array<Index, 10> nodes;
       std::copy(t.begin(), t.end(), nodes.begin());
       std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
-      add(quadratic_, model, role, e, nodes, pressures);
+      add(quadratic_, model, role, e, nodes, pressures, grower(growers.tetrahedra, e));
     }
   }
   for (const Index e : spatial_order(model.rest, model.prisms))
-    add(prisms_, model, model.prism_roles[e], static_cast<Index>(model.tetrahedra.size()) + e, model.prisms[e],
-        nullptr);
+    add(prisms_, model, model.prism_roles[e], static_cast<Index>(model.tetrahedra.size()) + e, model.prisms[e], nullptr,
+        grower(growers.prisms, e));
   for (auto& set : prisms_)
     if (set.charged) add_field(model, set);
-  for (Index a = 0; a < static_cast<Index>(model.actuators.size()); ++a)
+}
+
+Body::Body(const Model& model, const Pressures* pressures)
+    : vertices_(static_cast<Index>(model.rest.rows())), pressure_unit_(pressures ? pressures->unit : 1) {
+  add_elements(model, pressures);
+  add_directions(model);
+  for (Index a = 0; a < static_cast<Index>(model.actuators.size()); ++a) {
     if (model.actuators[a].kind == ActuatorKind::dea)
       (under_voltage(model.actuators[a]) ? voltages_ : ratios_).push_back(a);
+    if (model.actuators[a].kind == ActuatorKind::growth) growths_.push_back(a);
+  }
+  number_sets();
+  number_pulls();
+}
+
+/// What of each set is where among that of all.
+void Body::number_sets() {
   each_set([&]<int K, int Q>(Set<K, Q>& set) {
     set.first_pull = pulls_;
     pulls_ += K * set.count;
@@ -152,6 +170,18 @@ Body::Body(const Model& model, const Pressures* pressures)
     set.first_miss = pulls_ + misses_;
     if (set.mixed) misses_ += 4 * set.count;
   });
+  const auto count_changed = [](auto& sets) {
+    Index count = 0;
+    for (auto& set : sets)
+      if (set.actuator >= 0 || set.grower >= 0) set.changed = count++;
+  };
+  count_changed(linear_);
+  count_changed(quadratic_);
+  count_changed(prisms_);
+}
+
+/// Which pulls are at which vertex.
+void Body::number_pulls() {
   const auto each_pull = [&](const auto& visit) {
     each_set([&]<int K, int Q>(Set<K, Q>& set) {
       for (Index e = 0; e < set.count; ++e)
@@ -183,11 +213,9 @@ Body::Scratch Body::make_scratch() const {
   scratch.energies.resize(blocks_);
   scratch.inverted.resize(blocks_);
   scratch.forbidden.resize(blocks_);
-  for (const auto& set : prisms_)
-    if (set.actuator >= 0) {
-      scratch.layers.push_back(set.blocks);
-      scratch.layer_ratios.push_back(0);
-    }
+  each_set([&]<int K, int Q>(const Set<K, Q>& set) {
+    if (set.changed >= 0) changed_of<K, Q>(scratch).push_back({set.blocks});
+  });
   return scratch;
 }
 

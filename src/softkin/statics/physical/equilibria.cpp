@@ -12,9 +12,12 @@ namespace {
 /// the way goes straight there.
 Demand at_rest(const Model& model, const Actuation& wanted) {
   Demand demand{model.rest_actuation(), 0};
-  for (std::size_t a = 0; a < model.actuators.size(); ++a)
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     if (model.actuators[a].kind == ActuatorKind::turn)
       demand.actuation[static_cast<Index>(a)] = wanted[static_cast<Index>(a)];
+    if (model.actuators[a].kind == ActuatorKind::growth)  // whatever its range
+      demand.actuation[static_cast<Index>(a)] = model.actuators[a].rest;
+  }
   return demand;
 }
 
@@ -53,7 +56,7 @@ Demand demand_of(const System& system, const Model& model, const State& start, c
     else if (model.actuators[a].kind == ActuatorKind::motion ||
              (model.actuators[a].kind == ActuatorKind::turn && !rests))
       demand.actuation[a] = system.placement().command_of(a, start.positions);
-    else if (!drives(model.actuators[a]))
+    else if (!drives(model.actuators[a]) || model.actuators[a].kind == ActuatorKind::growth)
       continue;
     else if (model.actuators[a].kind == ActuatorKind::magnetic)
       demand.actuation[a] = model.actuators[a].rest;

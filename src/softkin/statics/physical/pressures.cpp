@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <softkin/model/growth.hpp>
 #include <softkin/statics/physical/pressures.hpp>
 
 namespace softkin::physical {
@@ -13,15 +14,18 @@ std::unique_ptr<const Pressures> pressures_of(const Model& model, const Pressure
   pressures->first = static_cast<Index>(model.rest.rows());
   pressures->of.assign(model.tetrahedra.size(), {-1, -1, -1, -1});
   double shear = 0;
-  std::map<std::pair<Index, Index>, Index> known;  // by material and corner
+  const Growers growers = growers_of(model);
+  std::map<std::array<Index, 3>, Index> known;  // by material, what lets it grow, and corner
   for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
     const Index material = model.tetrahedron_roles[e].material;
     const Material& of = model.materials[static_cast<std::size_t>(material)];
     if (!of.mixed) continue;
     shear = std::max(shear, shear_modulus(of.elastic));
+    const Index grower = growers.tetrahedra.empty() ? -1 : growers.tetrahedra[e];
     for (std::size_t i = 0; i < 4; ++i) {
       const Index corner = model.tetrahedra[e][i];
-      const auto [at, is_new] = known.emplace(std::pair{material, corner}, pressures->first + pressures->count());
+      const auto [at, is_new] =
+          known.emplace(std::array{material, grower, corner}, pressures->first + pressures->count());
       if (is_new) pressures->corners.push_back(corner);
       pressures->of[e][i] = at->second;
     }

@@ -7,7 +7,7 @@ namespace softkin::physical {
 
 /// The pressures of elements that keep their volume by them (energy/pressure.hpp), a vertex more for each behind those
 /// of the robot, whose x is the pressure over `unit` and whose y and z are held: what knows of vertices knows of them.
-/// One for each corner and material: where two materials meet, stress jumps.
+/// One for each corner, material and what lets it grow: where two of them meet, stress jumps.
 struct Pressures {
   Index first = 0;                       // of the vertices
   std::vector<Index> corners;            // of each: where it stands

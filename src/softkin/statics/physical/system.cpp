@@ -33,9 +33,13 @@ System::System(const Model& given, std::unique_ptr<const Pressures> pressures, c
   body_.add_cliques(cliques_);
   actuator_loads_.add_cliques(cliques_);
   surroundings_.add_cliques(cliques_);
-  if (!model.tractions.empty()) {
+  if (Tractions::act(model)) {
     tractions_ = std::make_unique<Tractions>(model);
     tractions_->add_cliques(cliques_);
+  }
+  if (Hydrostatics::acts(model)) {
+    hydrostatics_ = std::make_unique<Hydrostatics>(model);
+    hydrostatics_->add_cliques(cliques_);
   }
   if (!model.fibres.empty()) {
     fibres_ = std::make_unique<Fibres>(model);
@@ -44,6 +48,10 @@ System::System(const Model& given, std::unique_ptr<const Pressures> pressures, c
   if (!model.layers.empty()) {
     layers_ = std::make_unique<Layers>(model);
     layers_->add_cliques(cliques_);
+  }
+  if (FibreFamilies::any(model)) {
+    families_ = std::make_unique<const FibreFamilies>(model, body_.element_slots());
+    body_.add_stress_of(*families_);
   }
   if (model.magnetism) magnets_ = std::make_unique<const Magnets>(model, body_.element_slots());
   if (like)
@@ -57,8 +65,10 @@ System::System(const Model& given, std::unique_ptr<const Pressures> pressures, c
   placement_ = std::make_unique<const Placement>(model, body_, *freedoms_, like ? like->placement_.get() : nullptr);
   terms_ = {&body_, &dead_loads_, &fading_loads_, &surroundings_};
   if (tractions_) terms_.push_back(tractions_.get());
+  if (hydrostatics_) terms_.push_back(hydrostatics_.get());
   if (fibres_) terms_.push_back(fibres_.get());
   if (layers_) terms_.push_back(layers_.get());
+  if (families_) terms_.push_back(families_.get());
   if (magnets_) terms_.push_back(magnets_.get());
   if (contacts_) terms_.push_back(contacts_.get());
 }

@@ -4,8 +4,10 @@
 #include <softkin/statics/physical/actuator_loads.hpp>
 #include <softkin/statics/physical/body.hpp>
 #include <softkin/statics/physical/contacts.hpp>
+#include <softkin/statics/physical/fibre_families.hpp>
 #include <softkin/statics/physical/fibres.hpp>
 #include <softkin/statics/physical/layers.hpp>
+#include <softkin/statics/physical/hydrostatics.hpp>
 #include <softkin/statics/physical/loads.hpp>
 #include <softkin/statics/physical/magnets.hpp>
 #include <softkin/statics/physical/placement.hpp>
@@ -191,6 +193,8 @@ class System {
   FadingLoads fading_loads_;
   Surroundings surroundings_;
   std::unique_ptr<Tractions> tractions_;
+  std::unique_ptr<Hydrostatics> hydrostatics_;
+  std::unique_ptr<const FibreFamilies> families_;
   std::unique_ptr<Fibres> fibres_;
   std::unique_ptr<Layers> layers_;
   std::unique_ptr<const Magnets> magnets_;

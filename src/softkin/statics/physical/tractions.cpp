@@ -1,4 +1,5 @@
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
 #include <softkin/statics/physical/tractions.hpp>
 
@@ -56,9 +57,15 @@ class Tractions::Load {
   Eigen::Vector2d turned_;
 };
 
+bool Tractions::act(const Model& model) {
+  return std::any_of(model.tractions.begin(), model.tractions.end(),
+                     [](const FollowingTraction& traction) { return traction.deeper_MPa_mm.isZero(0); });
+}
+
 Tractions::Tractions(const Model& model) : model_(model) {
   double count = 0;
-  for (const FollowingTraction& traction : model.tractions)
+  for (const FollowingTraction& traction : model.tractions) {
+    if (!traction.deeper_MPa_mm.isZero(0)) continue;  // see Hydrostatics
     for (const LoadedFace& loaded : traction.faces) {
       Face face{traction.pressure_MPa, nodes_of(loaded.face), {}, 0};
       for (const Index v : face.nodes) middle_ += vertex_at(model.rest, v);
@@ -76,6 +83,7 @@ Tractions::Tractions(const Model& model) : model_(model) {
       }
       faces_.push_back(std::move(face));
     }
+  }
   middle_ /= count;
 }
 

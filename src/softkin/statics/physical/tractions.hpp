@@ -20,6 +20,9 @@ class Tractions : public Term {
   /// model must outlive the object.
   explicit Tractions(const Model& model);
 
+  /// Has it such loads?
+  [[nodiscard]] static bool act(const Model& model);
+
   struct Scratch : Term::Scratch {
     double share = 0;  // of the last evaluation
   };

@@ -57,7 +57,7 @@ std::shared_ptr<const ViscousHistory> Body::flow(const Demand& demand, const Poi
                                                  double& lost_mJ, Team& team) const {
   auto after = std::make_shared<ViscousHistory>();
   after->strains.resize(strains_);
-  stretch_layers(demand, scratch);
+  change_elements(demand, scratch, team);
   Pack lost{};
   std::vector<Pack> of_blocks;
   each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {

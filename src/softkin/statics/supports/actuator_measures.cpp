@@ -143,7 +143,8 @@ ActuatorMeasures::ActuatorMeasures(const Model& model)
   for (Index a = 0; a < static_cast<Index>(terms_.size()); ++a) {
     const Actuator& actuator = model.actuators[a];
     const bool cable = actuator.kind == ActuatorKind::cable;
-    const bool constrains = actuator.kind != ActuatorKind::dea && drives(actuator) && actuator.control != Control::load;
+    const bool stretches = actuator.kind == ActuatorKind::dea || actuator.kind == ActuatorKind::growth;
+    const bool constrains = !stretches && drives(actuator) && actuator.control != Control::load;
     const bool given_load = !constrains && (measures(a) || under_voltage(actuator));
     roles_.push_back({constrains, given_load, cable && !actuator.pushes, cable ? 1.0 : -1.0,
                       actuator.kind == ActuatorKind::pneumatic ? 1e-3 : 1.0, actuator.factor, actuator.offset,

@@ -1,0 +1,91 @@
+#include <algorithm>
+#include <cmath>
+#include <softkin/statics/physical/body.hpp>
+#include <softkin/statics/physical/lanes.hpp>
+
+/// What commands make of elements at rest: the active stretch of layers, and growth.
+
+namespace softkin::physical {
+
+using namespace energy;
+
+namespace {
+
+/// Slopes of every element times a matrix of its own; in lanes without one as of the last.
+template <int K, int Q, class Matrix>
+void reshape(const std::vector<ElasticBlock<K, Q>>& from, Index count, std::vector<ElasticBlock<K, Q>>& to,
+             const Matrix& matrix, Team& team) {
+  team.pieces(static_cast<Index>(from.size()), [&](Index begin, Index end) {
+    for (Index b = begin; b < end; ++b)
+      for (int l = 0; l < lanes; ++l) {
+        const Mat3 shrink = matrix(std::min<Index>(count - 1, lanes * b + l));
+        for (int q = 0; q < Q; ++q)
+          for (int i = 0; i < K; ++i) set_lane(to[b].slope[q][i], l, shrink * lane_of(from[b].slope[q][i], l));
+      }
+  });
+}
+
+}  // namespace
+
+/// Of what grows along directions, those of the elements.
+void Body::add_directions(const Model& model) {
+  for (const auto& each : model.growths) {
+    const Growth& growth = *each;
+    if (growth.directions.empty()) continue;
+    std::vector<Vec3> of(model.tetrahedra.size() + model.prisms.size(), Vec3::UnitX());
+    for (std::size_t i = 0; i < growth.directions.size(); ++i) {
+      const std::size_t tetrahedra = growth.tetrahedra.size();
+      const auto e = i < tetrahedra ? static_cast<std::size_t>(growth.tetrahedra[i])
+                                    : model.tetrahedra.size() + static_cast<std::size_t>(growth.prisms[i - tetrahedra]);
+      of[e] = growth.directions[i];
+    }
+    each_set([&](auto& set) {
+      if (set.growth.get() != &growth) return;
+      set.along.resize(set.blocks.size());
+      for (Index e = 0; e < set.count; ++e)
+        set.along[e / lanes][e % lanes] = of[static_cast<std::size_t>(set.elements[e])];
+    });
+  }
+}
+
+template <int K, int Q>
+double Body::stretch_of(const Set<K, Q>& set, const Demand& demand, const Scratch& scratch) const {
+  if (set.charged) return 1 + demand.share * (set.prestretch - 1);
+  const Index actuator = set.growth ? set.growth->actuator : set.actuator;
+  const double command = demand.actuation[actuator];
+  const double nudge = actuator == scratch.nudged ? scratch.nudge : 0;
+  if (!set.growth) return command + nudge;
+  return set.growth->stretch(command) + nudge * set.growth->slope(command);
+}
+
+/// F = F_e G: slopes become G^-T times those at rest, volumes det(G) times. Of a layer with
+/// G = diag(sqrt(ratio), sqrt(ratio), 1 / ratio) in its frame.
+void Body::change_elements(const Demand& demand, Scratch& scratch, Team& team) const {
+  each_set([&]<int K, int Q>(const Set<K, Q>& set) {
+    if (set.changed < 0) return;
+    Changed<K, Q>& changed = changed_of<K, Q>(scratch)[static_cast<std::size_t>(set.changed)];
+    const double stretch = stretch_of(set, demand, scratch);
+    if (changed.stretch == stretch) return;
+    changed.stretch = stretch;
+    if (set.grower < 0) {
+      const Vec3 inverse(1 / std::sqrt(stretch), 1 / std::sqrt(stretch), stretch);
+      const auto shrink = [&](Index e) {
+        const Mat3& frame = set.frames[e / lanes][e % lanes];
+        return Mat3(frame * inverse.asDiagonal() * frame.transpose());
+      };
+      return reshape<K, Q>(set.blocks, set.count, changed.blocks, shrink, team);
+    }
+    const GrowthStretch grown = set.growth->at(stretch);
+    const auto shrink = [&](Index e) {
+      const Mat3 all = Mat3::Identity() / grown.across;
+      if (set.along.empty()) return all;
+      const Vec3& d = set.along[e / lanes][e % lanes];
+      return Mat3(all + (1 / grown.along - 1 / grown.across) * d * d.transpose());
+    };
+    reshape<K, Q>(set.blocks, set.count, changed.blocks, shrink, team);
+    for (std::size_t b = 0; b < set.blocks.size(); ++b)
+      for (int q = 0; q < Q; ++q) changed.blocks[b].volume[q] = set.blocks[b].volume[q] * grown.volume();
+  });
+}
+
+}  // namespace softkin::physical

@@ -1,0 +1,72 @@
+#pragma once
+
+#include <softkin/model/model.hpp>
+#include <softkin/statics/physical/term.hpp>
+
+namespace softkin::physical {
+
+/// A liquid at rest around the robot: on each piece of its outer surface a pressure along the present normal,
+/// p = max(0, b . (x - x0)) at the present place x, with b the density times gravity and x0 a place of the level. It
+/// grows with the share of what is done at once.
+///
+/// Its energy is that of the pressure field in what is displaced, the integral of p over the volume, taken on the
+/// surface: of (p^2 / 2) b / b^2, whose divergence p is. Forces are p n, face by face; they are the gradient of that
+/// energy where the surface is closed, or open only along edges that can not move. Else their derivative has a part
+/// that is not symmetric: a response.
+///
+/// A face that the level cuts is cut along it: exactly where it is flat, else after eight by eight pieces. As p is 0
+/// there, the derivative of where it is cut is of no account.
+class Hydrostatics : public Term {
+ public:
+  /// model  must outlive the object; of its tractions those are taken whose pressure grows with depth
+  explicit Hydrostatics(const Model& model);
+
+  [[nodiscard]] static bool acts(const Model& model);
+
+  struct Scratch : Term::Scratch {
+    double share = 0;  // of the last evaluation
+  };
+  [[nodiscard]] std::unique_ptr<Term::Scratch> new_scratch() const override { return std::make_unique<Scratch>(); }
+
+  void evaluate(const Iterate& at, const Demand& demand, Term::Scratch& scratch, Sum& sum, Team& team) const override;
+  [[nodiscard]] bool conservative() const override { return closed_; }
+
+  void add_cliques(linear::Cliques& cliques) override;
+  void stiffness(const Iterate& at, const Demand& demand, bool projected, Term::Scratch& scratch,
+                 LargeVector<double>& slots, Team& team) const override;
+  [[nodiscard]] bool symmetric() const override { return closed_; }
+  void add_response(const Iterate& at, const Points& moves, const Term::Scratch& scratch, Points& force) const override;
+
+  void add_change(const Demand& from, const Demand& to, const Points& positions, Term::Scratch& scratch, Points& force,
+                  Team& team) const override;
+  [[nodiscard]] bool grows() const override { return true; }
+
+ private:
+  struct Face {
+    std::vector<Index> nodes;
+    double share = 1;
+    std::int64_t slot = 0;  // its first
+    Vec3 deeper{0, 0, 0};   // b [MPa/mm]
+    Vec3 level{0, 0, 0};    // x0 [mm]
+  };
+  /// A wet place of a face: shape functions of its nodes, the surface's slopes by its parameters, its share of them.
+  struct Place {
+    Eigen::Matrix<double, 6, 1> shape, along_u, along_v;
+    Vec3 u = Vec3::Zero(), v = Vec3::Zero();  // [mm]
+    double weight = 0;
+    double pressure = 0;  // [MPa]
+  };
+  struct Depths;
+  using Blocks = std::array<std::array<Mat3, 6>, 6>;
+  void find_rims();
+  /// visit(place, its area vector [mm^2])
+  template <class Visit>
+  static void each_place(const Face& face, const Points& positions, const Visit& visit);
+  [[nodiscard]] static Blocks slopes(const Face& face, const Points& positions);
+
+  const Model& model_;
+  std::vector<Face> faces_;
+  bool closed_ = true;
+};
+
+}  // namespace softkin::physical
