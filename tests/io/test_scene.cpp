@@ -470,7 +470,7 @@ TEST(Scene, ExamplesOfTheManualAreScenes) {
     const std::string text = manual.substr(begin, manual.find("```", begin) - begin);
     specs.push_back(parse_scene(text, "robots/scene.yaml", files));
   }
-  ASSERT_EQ(specs.size(), 10u);
+  ASSERT_EQ(specs.size(), 11u);
   EXPECT_EQ(specs[0].actuators.size(), 3u);
   EXPECT_EQ(specs[0].markers.size(), 2u);
   EXPECT_EQ(specs[0].formulation, Formulation::target_shape);
@@ -487,7 +487,8 @@ TEST(Scene, ExamplesOfTheManualAreScenes) {
   EXPECT_EQ(specs[7].actuators[0].sheath_friction, 0.05);
   EXPECT_EQ(specs[7].actuators[0].sheath_turns_degrees, 270);
   EXPECT_EQ(specs[8].fibres.size(), 2u);
-  EXPECT_EQ(specs[9].contact.value().obstacles.size(), 2u);
+  EXPECT_EQ(specs[9].sensors.size(), 2u);
+  EXPECT_EQ(specs[10].contact.value().obstacles.size(), 2u);
 }
 
 /// 0: parsed, 1: refused. Anything else escapes and fails the test.

@@ -71,6 +71,7 @@ void read_mesh_of(const Context& context, const Map& scene, RobotSpec& spec);
 /// Keys `contact`, `obstacles` and `bodies`; none where none of them is there.
 [[nodiscard]] std::optional<ContactSpec> read_contact(const Context& context, const Map& scene);
 [[nodiscard]] FibreSpec read_fibre(const Context& context, const Node& node, Names& names);
+[[nodiscard]] std::shared_ptr<const SensorSpec> read_sensor(const Context& context, const Node& node, Names& names);
 [[nodiscard]] double read_density(const Node& node);
 /// Target-shape keys, elastic constants, or both.
 [[nodiscard]] MaterialSpec read_material(const Context& context, const Node& node);
