@@ -66,6 +66,7 @@ void add_calibrate_material(CLI::App& calibrate, Run& run);
 void add_calibrate_robot(CLI::App& calibrate, Run& run);
 void add_compare(CLI::App& app, Run& run);
 void add_drive(CLI::App& app, Run& run);
+void add_estimate(CLI::App& app, Run& run);
 void add_examples(CLI::App& app, Run& run);
 void add_fk(CLI::App& app, Run& run);
 void add_follow(CLI::App& app, Run& run);

@@ -174,7 +174,7 @@ int run_grasp(const GraspOptions& options) {
   line.clear();
   catch_interrupt();
   const OutputFolders folders(options.outputs());
-  if (!options.json) print(options.scene + ": " + summary(model, options.solver_name) + "\n");
+  if (!options.json) print(options.scene + ": " + runs::model_summary(model, options.solver_name) + "\n");
   return GraspRun(model, statics, options, body).run(closing, directions);
 }
 

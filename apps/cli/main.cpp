@@ -32,7 +32,8 @@ int main(int argc, char** argv) {
   app.callback([&app] {
     if (app.get_subcommands().empty())
       throw CLI::RequiredError(
-          "a command (fk, ik, follow, workspace, map, walk, grasp, compare, calibrate, measure, drive, mesh, view, "
+          "a command (fk, ik, follow, workspace, map, walk, grasp, compare, calibrate, estimate, measure, drive, mesh, "
+          "view, "
           "examples)");
   });
   runs::keep_command({argv, argv + argc});
@@ -44,6 +45,7 @@ int main(int argc, char** argv) {
   cli::add_drive(app, run);
   cli::add_mesh(app, run);
   cli::add_calibrate(app, run);
+  cli::add_estimate(app, run);
   cli::add_measure(app, run);
   cli::add_walk(app, run);
   cli::add_grasp(app, run);

@@ -42,7 +42,7 @@ class MapRun {
     folders_.emplace(outputs);
     (void)maps::outline_of(model);
     journal_.emplace(asked.output, model, options_, asked.resume);
-    say(asked.scene + ": " + summary(model, asked.solver_name));
+    say(asked.scene + ": " + runs::model_summary(model, asked.solver_name));
     if (asked.resume)
       say(journal_->known() > 0
               ? counted(journal_->known(), "equilibrium", "equilibria") + " were found before: going on"

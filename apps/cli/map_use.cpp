@@ -38,7 +38,7 @@ void check_times(const Model& model, const std::string& path, const SolveOptions
 }
 
 std::string head_text(const Model& model, const SolveOptions& options, const runs::Answers& answers) {
-  return options.scene + ": " + summary(model, answers.by_map_alone() ? "" : options.solver_name) + "\n" +
+  return options.scene + ": " + runs::model_summary(model, answers.by_map_alone() ? "" : options.solver_name) + "\n" +
          answers.remark();
 }
 

@@ -3,8 +3,11 @@
 #include <softkin/core/progress.hpp>
 #include <softkin/io/table/table.hpp>
 #include <softkin/model/model.hpp>
+#include <softkin/runs/finding_text.hpp>
 #include <softkin/runs/jobs.hpp>
+#include <softkin/runs/model_summary.hpp>
 #include <softkin/runs/records.hpp>
+#include <softkin/runs/shortfall_text.hpp>
 #include <softkin/runs/turns.hpp>
 #include <string>
 #include <vector>
@@ -112,6 +115,7 @@ class EquilibriumProgress {
 };
 
 using runs::ActuatorRecord;
+using runs::OverlapTally;
 using runs::StepRecord;
 
 /// Makes the records that are missing and prints each as a line of the table, until one cannot be made or the user
@@ -142,35 +146,10 @@ runs::Advance advance_run(runs::Run<Record>& run, const Table& table, const std:
   return runs::Advance::made;
 }
 
-/// "1,851 vertices, 5,556 tetrahedra of order 1; physical formulation (neo-hookean), solver newton", the actuators,
-/// the model's warnings and its notes, a line each. solver: empty: none is used
-[[nodiscard]] std::string summary(const Model& model, const std::string& solver);
-
 /// Strains, slack cables and what a step may hide, a line each.
 [[nodiscard]] std::string findings_text(const Model& model, const StepRecord& step);
 
-/// The records of a run whose shapes pass through themselves.
-class OverlapTally {
- public:
-  explicit OverlapTally(const Model& model) : model_(model) {}
-
-  void add(std::size_t number, const StepRecord& record);
-
-  /// "warning: the shape passes through itself in steps 3 to 5, the deepest ..."; "" where none does. what: "step"
-  [[nodiscard]] std::string text(const std::string& what) const;
-
- private:
-  const Model& model_;
-  std::vector<std::size_t> numbers_;
-  SelfOverlap deepest_;
-  std::size_t at_ = 0;
-};
-
 /// "warning: the equilibrium of steps 3 to 5 is unstable", with the cure. what: "step"
 [[nodiscard]] std::string unstable_text(const std::string& what, const std::vector<std::size_t>& numbers);
-
-/// Why a step did not converge and what its shape is: "air reached 1.62 of 1.8: beyond this point no equilibrium
-/// follows; the shape is the last good one".
-[[nodiscard]] std::string shortfall_text(const Model& model, const StepRecord& step);
 
 }  // namespace softkin::cli

@@ -152,7 +152,7 @@ int run_walk(const WalkOptions& options) {
   line.clear();
   catch_interrupt();
   const OutputFolders folders(outputs);
-  if (!options.json) print(options.scene + ": " + summary(model, options.solver_name) + "\n");
+  if (!options.json) print(options.scene + ": " + runs::model_summary(model, options.solver_name) + "\n");
   return ShownWalk(model, options, walk).run();
 }
 

@@ -135,7 +135,7 @@ class WorkspaceRun {
     folders_.emplace(outputs);
     file_.emplace(options_.output, asked_.head, columns_, asked_.plan, options_.resume);
     if (options_.resume) remove_torn_files(options_.outputs());
-    say(options_.scene + ": " + summary(asked_.model, options_.solver_name));
+    say(options_.scene + ": " + runs::model_summary(asked_.model, options_.solver_name));
     std::string text = samples_text() + ", " + runs::sampling_text(asked_.model, asked_.sampling);
     if (asked_.sampling.samples != options_.samples)
       text += "; the full grid nearest to " + std::to_string(options_.samples);

@@ -221,7 +221,7 @@ int run_view(const ViewOptions& options) {
   ViewRun run(model, options);
   line.clear();
   catch_interrupt();
-  print(options.scene + ": " + summary(model, options.solver_name) + "\n");
+  print(options.scene + ": " + runs::model_summary(model, options.solver_name) + "\n");
   return run.run(server);
 }
 

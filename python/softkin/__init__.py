@@ -9,6 +9,7 @@ from ._core import ActuatorInfo
 from ._core import version as __version__
 from ._solving import Sensitivity
 from .errors import InvalidInput, NotConverged, SoftkinWarning
+from .estimate import Estimate, Estimator, ToldNumber, ToldPlace
 from .examples import example
 from .grasp import Grasp, Pull
 from .inverse import Answer
@@ -30,6 +31,8 @@ __all__ = [
     "BuildInfo",
     "Contact",
     "Deformation",
+    "Estimate",
+    "Estimator",
     "Fibre",
     "FollowRun",
     "Grasp",
@@ -57,6 +60,8 @@ __all__ = [
     "SoftkinWarning",
     "Solver",
     "Table",
+    "ToldNumber",
+    "ToldPlace",
     "WalkRun",
     "WalkStep",
     "Waypoint",

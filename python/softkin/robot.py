@@ -17,6 +17,7 @@ from ._description import Forces, force_texts, formulation_of, yaml_text
 from ._files import PathLike, optional
 from ._solving import Solving
 from ._warning import SoftkinWarning
+from .estimate import Estimator
 from .grasp import AXES, Direction, Grasp, grasped
 from .maps import KinematicMap, MapProgress, check_map, made
 from .page import DEFAULT_HEIGHT, PageView, page
@@ -38,6 +39,25 @@ class Robot(Compiled, Solving):
     def _take(self, core: _core.Robot) -> None:
         super()._take(core)
         self._owner = self
+
+    def estimator(
+        self,
+        unknowns: str | Sequence[str],
+        deviations: Mapping[str, float],
+        *,
+        fade_s: float = 0,
+        leave_out: bool = True,
+        solver: Solver | str = USUAL,
+    ) -> Estimator:
+        """Tells what pushes the robot, where, and its shape, from a few readings. docs/estimate.md
+
+        unknowns    'touch': a force that has a range; 'touch:place': and where on its region; 'air': a command that is
+                    not measured; each with '=0+-0.5' where it is known before
+        deviations  of the readings by their columns: {'tip_x_mm': 0.2, 'air_volume_mm3': 20}
+        fade_s      time in which what pushes may become anything else [s]; 0: each update tells by itself
+        leave_out   readings that contradict the others
+        """
+        return Estimator(self, unknowns, deviations, fade_s=fade_s, leave_out=leave_out, solver=solver)
 
     def session(self) -> Session:
         """For a control loop: keeps threads and factors, and goes on from its last shape."""

@@ -17,6 +17,7 @@ void bind_examples(nanobind::module_& module);
 void bind_mesh_files(nanobind::module_& module);
 void bind_runs(nanobind::module_& module);
 void bind_grasp(nanobind::module_& module);
+void bind_estimate(nanobind::module_& module);
 void bind_workspace(nanobind::module_& module);
 void bind_map(nanobind::module_& module);
 void bind_page(nanobind::module_& module);

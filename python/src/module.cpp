@@ -31,6 +31,7 @@ NB_MODULE(_core, module) {
   python::bind_mesh_files(module);
   python::bind_runs(module);
   python::bind_grasp(module);
+  python::bind_estimate(module);
   python::bind_workspace(module);
   python::bind_map(module);
   python::bind_page(module);

@@ -18,6 +18,7 @@ SCENES = {
 PHYSICAL = {  # those of the physical formulation alone
     "examples/bilayer/bilayer.yaml": "warm=60degC",
     "examples/dea_crawler/voltage/crawler.yaml": "skin=14kV",
+    "examples/estimate/finger.yaml": "air=20",
     "examples/fibre_actuator/fibre_actuator.yaml": "air=20",
     "examples/magnetic_cantilever/magnetic_cantilever.yaml": "field=10",
     "examples/magnetic_crawler/magnetic_crawler.yaml": "field_x=0.5",

@@ -54,6 +54,7 @@ struct Workshop : BlockFolder {
     write("syringe.csv", syringe());
     write("dea.csv", "voltage_kv,area_ratio\n0,1\n1,1.02\n2,1.09\n3,1.2\n");
     write("poses.csv", "tendon,air_kPa,tip_x_mm,tip_z_mm\n1,0,20,6\n0.95,5,19.9,6.2\n");
+    write("read.csv", "tip_x_mm\n20\n");
     write("tensile.csv", "strain,stress_mpa\n0,0\n0.1,0.1\n0.2,0.19\n0.3,0.28\n0.4,0.36\n0.5,0.44\n");
     write("relaxation.csv", relaxation());
     EXPECT_EQ(run({"fk", "block.yaml", "--path", "path.csv", "--report", "new.json"}).exit_code, 0);
@@ -108,6 +109,7 @@ std::vector<Written> all_outputs() {
                        "600mm3",    "--chamber-volume", "0.192mL"};
   const Words dea{"calibrate", "dea", "dea.csv"}, tensile{"calibrate", "material", "--tensile", "tensile.csv"};
   const Words robot{"calibrate", "robot", "drive.yaml", "poses.csv"};
+  const Words estimate{"estimate", "drive.yaml", "read.csv", "--unknown", "air", "--deviation", "1"};
   const Words relaxation{"calibrate", "relaxation", "relaxation.csv"}, convert{"mesh", "convert", "block.msh"};
   return {
       {"fk", "-o", fk, "a.vtu"},
@@ -170,6 +172,8 @@ std::vector<Written> all_outputs() {
       {"calibrate robot", "--report", robot, "b.json"},
       {"calibrate robot", "--table", robot, "t.csv"},
       {"calibrate robot", "--plot", robot, "a.svg"},
+      {"estimate", "--report", estimate, "b.json"},
+      {"estimate", "--table", estimate, "t.csv"},
       {"calibrate relaxation", "-o", relaxation, "m.yaml"},
       {"calibrate relaxation", "--plot", relaxation, "a.svg"},
       {"calibrate relaxation", "--residuals", relaxation, "t.csv"},

@@ -472,7 +472,7 @@ TEST(Scene, ExamplesOfTheManualAreScenes) {
     const std::string text = manual.substr(begin, manual.find("```", begin) - begin);
     specs.push_back(parse_scene(text, "robots/scene.yaml", files));
   }
-  ASSERT_EQ(specs.size(), 13u);
+  ASSERT_EQ(specs.size(), 14u);
   EXPECT_EQ(specs[0].actuators.size(), 3u);
   EXPECT_EQ(specs[0].markers.size(), 2u);
   EXPECT_EQ(specs[0].formulation, Formulation::target_shape);
@@ -493,7 +493,8 @@ TEST(Scene, ExamplesOfTheManualAreScenes) {
   EXPECT_EQ(specs[10].fibres.size(), 2u);
   ASSERT_EQ(specs[11].layers.size(), 2u);
   EXPECT_TRUE(specs[11].layers[0]->bending);
-  EXPECT_EQ(specs[12].contact.value().obstacles.size(), 2u);
+  EXPECT_EQ(specs[12].sensors.size(), 2u);
+  EXPECT_EQ(specs[13].contact.value().obstacles.size(), 2u);
 }
 
 TEST(Scene, Layers) {

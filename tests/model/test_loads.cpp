@@ -86,6 +86,35 @@ TEST(DeadLoad, ForcesActAtPointsAndOnRegions) {
   EXPECT_LT((moments(model) - expected).norm(), 1e-12);
 }
 
+/// A commanded force is no dead load, but for what is not commanded of it.
+TEST(CommandedForce, IsOfTheAxesThatHaveARange) {
+  RobotSpec spec = heavy_block(Split::six);
+  spec.gravity = Vec3::Zero();
+  spec.forces = {{"push", mean("x_high"), {1, 2, 3}, std::array<Vec3, 2>{Vec3(-2, 2, -4), Vec3(2, 2, 4)}}};
+  const Model model = compile(spec);
+  EXPECT_LT((model.dead_load.colwise().sum() - Vec3(0, 2, 0).transpose()).norm(), 1e-12);
+  ASSERT_EQ(model.actuators.size(), 2u);
+  for (const Actuator& command : model.actuators) {
+    EXPECT_EQ(command.kind, ActuatorKind::force);
+    EXPECT_FALSE(drives(command));
+    double sum = 0, area = 0;
+    for (const double weight : command.points[0].weights) sum += weight;
+    EXPECT_NEAR(sum, 1, 1e-12);
+    for (const CavityFace& face : command.cavity) {
+      const Vec3 a = vertex_at(model.rest, face.corners[0]);
+      area += (vertex_at(model.rest, face.corners[1]) - a).cross(vertex_at(model.rest, face.corners[2]) - a).norm() / 2;
+      EXPECT_NEAR(a.x(), model.rest.col(0).maxCoeff(), 1e-12);
+    }
+    EXPECT_NEAR(area,
+                (model.rest.col(1).maxCoeff() - model.rest.col(1).minCoeff()) *
+                    (model.rest.col(2).maxCoeff() - model.rest.col(2).minCoeff()),
+                1e-9);
+  }
+  EXPECT_EQ(model.actuators[0].name, "push_fx");
+  EXPECT_EQ(model.actuators[1].name, "push_fz");
+  EXPECT_EQ(model.actuators[1].rest, 3);
+}
+
 TEST(DeadLoad, Refusals) {
   RobotSpec good = heavy_block(Split::six);
   good.forces = {{"push", at(30, 3, 4), {1, 2, 3}}};
@@ -98,6 +127,22 @@ TEST(DeadLoad, Refusals) {
                            {"far", [](RobotSpec& s) { s.forces[0].at = at(90, 0, 0); },
                             "the point of force 'push' is 60 mm from the mesh"},
                            {"region", [](RobotSpec& s) { s.forces[0].at = mean("x_hihg"); }, "did you mean 'x_high'?"},
+                       });
+}
+
+TEST(CommandedForce, Refusals) {
+  RobotSpec good = heavy_block(Split::six);
+  good.forces = {{"push", at(30, 3, 4), {1, 0, 0}, std::array<Vec3, 2>{Vec3(-2, 0, -2), Vec3(2, 0, 2)}}};
+  EXPECT_EQ(compile(good).actuators.size(), 2u);
+  expect_refused(good, {
+                           {"name", [](RobotSpec& s) { s.forces[0].name = ""; }, "is commanded, and so needs a name"},
+                           {"infinite", [](RobotSpec& s) { (*s.forces[0].range)[1][0] = INFINITY; }, "not finite"},
+                           {"order", [](RobotSpec& s) { (*s.forces[0].range)[0][2] = 3; },
+                            "force 'push' has the range [3, 2] N along z: the low end comes first"},
+                           {"outside", [](RobotSpec& s) { s.forces[0].force[0] = 5; },
+                            "force 'push' is 5 N along x, outside its range [-2, 2] N"},
+                           {"held", [](RobotSpec& s) { s.forces[0].force[1] = 1; },
+                            "force 'push' is 1 N along y, outside its range [0, 0] N"},
                        });
 }
 

@@ -85,6 +85,54 @@ TEST(Sensitivity, QuadraticElements) {
   expect_differences_at(finger, values({30, 0.3}));
 }
 
+namespace {
+
+/// A finger with a force at a point and one over its tip, both commanded, the second along two axes.
+RobotSpec pushed_finger() {
+  RobotSpec spec = bending_finger();
+  const std::array<Vec3, 2> all{Vec3(-2, -2, -2), Vec3(2, 2, 2)}, some{Vec3(-1, 0.5, -1), Vec3(1, 0.5, 1)};
+  spec.forces = {{"poke", {Vec3(40, 3, 15), {}}, {0, 0, -0.1}, all},
+                 {"tip", {std::string("x_high"), {}}, {0, 0.5, 0}, some}};
+  return spec;
+}
+
+}  // namespace
+
+TEST(Sensitivity, ForcesAtPlacesOfTheRobot) {
+  for (const bool quadratic : {false, true}) {
+    RobotSpec spec = pushed_finger();
+    if (quadratic) {
+      spec.mesh = block_mesh({6, 3, 3}, {60, 12, 16});
+      add_volume_region(spec.mesh, "chamber", [](const Vec3& p) {
+        return p.x() > 9 && p.x() < 51 && p.y() > 4 && p.y() < 8 && p.z() > 5 && p.z() < 11;
+      });
+      spec.quadratic = true;
+    }
+    const Model model = compile(spec);
+    ASSERT_EQ(model.actuators.size(), 6u);
+    EXPECT_EQ(model.actuators[3].name, "poke_fz");
+    EXPECT_EQ(model.actuators[3].rest, -0.1);
+    EXPECT_EQ(model.actuators[5].name, "tip_fz");
+    EXPECT_FALSE(model.actuators[5].cavity.empty());
+    const Statics statics(model);
+    for (const Actuation& commands : {model.rest_actuation(), values({1.2, 0.3, -0.2, 0.5, 0.1, -0.3})})
+      expect_differences(model, statics, settled(statics, commands), 1e-6, {5e-4, 1e-3, 1e-2});
+  }
+}
+
+/// As the same forces without a range.
+TEST(Sensitivity, CommandedForcesDoAsOthers) {
+  RobotSpec spec = pushed_finger();
+  const Model commanded = compile(spec);
+  const Equilibrium found = settled(Statics(commanded), values({1.2, 0.3, -0.2, 0.5, 0.1, -0.3}));
+  spec.forces[0].force = {0.3, -0.2, 0.5};
+  spec.forces[1].force = {0.1, 0.5, -0.3};
+  for (ForceSpec& force : spec.forces) force.range.reset();
+  const Model held = compile(spec);
+  const Equilibrium expected = settled(Statics(held), values({1.2}));
+  EXPECT_LT((found.state.positions - expected.state.positions).cwiseAbs().maxCoeff(), 1e-6);
+}
+
 /// Bent by 163 degrees at a volume of 6, by 84 at 340 kPa.
 TEST(Sensitivity, LargeBend) {
   RobotSpec spec = curling_finger();

@@ -5,6 +5,7 @@
 #include <mutex>
 #include <softkin/calibration/robot_problem.hpp>
 #include <softkin/core/error.hpp>
+#include <softkin/kinematics/estimate/readings.hpp>
 #include <softkin/kinematics/jacobian.hpp>
 #include <softkin/statics/deformation.hpp>
 #include <thread>
@@ -21,12 +22,10 @@ constexpr double medians[3] = {0.6745, 1.1774, 1.5382};
 /// Distances over the deviation from which a reading counts less: 95 % efficiency where all errors are normal.
 /// source  Huber 1981; Rey 1983
 constexpr double huber_at = 1.345, cauchy_at = 2.385;
-/// Largest move of a vertex, over the diagonal, by which lengths and volumes are differentiated along known moves.
-constexpr double small_move = 1e-6;
 
-/// Is it a length or a volume?
+/// Is it a length, a volume or an angle, which turns with no frame?
 bool measures(const PoseColumn& column) {
-  return column.kind == Reading::length || column.kind == Reading::volume;
+  return column.marker < 0 && estimate::is_of_shape(column);
 }
 
 /// On the robot, of a support.
@@ -36,9 +35,8 @@ Vec3 force_of(const Model& model, const PoseColumn& column, const Points& positi
   return reactions(model, positions, deformation)[static_cast<std::size_t>(column.support)].force;
 }
 
-double measure_of(const Model& model, const PoseColumn& column, const Points& positions) {
-  const Actuator& actuator = model.actuators[static_cast<std::size_t>(column.actuator)];
-  return achieved_ratio(model, actuator, positions) * actuator.rest_measure;
+double measure_of(const Model& model, const PoseColumn& column, const State& state) {
+  return estimate::reading_at(model, column, state, {});
 }
 
 }  // namespace
@@ -287,7 +285,7 @@ void RobotProblem::compute(RobotPoint& point, const Changes* changes, Index pose
                    point.model->markers[static_cast<std::size_t>(column.marker)].at(found.state.positions) +
                point.frame.place)[column.axis];
     else if (measures(column))
-      value = measure_of(*point.model, column, found.state.positions);
+      value = measure_of(*point.model, column, found.state);
     else if (column.support >= 0)
       value = (point.frame.rotation *
                force_of(*point.model, column, found.state.positions, reactions.reactions))[column.axis];
@@ -327,15 +325,11 @@ void RobotProblem::add_slopes(RobotPoint& point, const Changes& changes, Index p
     for (Index c = 0; c < static_cast<Index>(slopes.rows()); ++c) {
       const PoseColumn& column = poses_.columns[static_cast<std::size_t>(c)];
       if (measures(column)) {
-        const auto of = [&](const Model& model, const Points& positions) {
-          return measure_of(model, column, positions);
-        };
         const Perturbed& number = changes.perturbed[k];
-        const double own = (of(number.more, state.positions) - of(number.less, state.positions)) / number.difference;
-        const double h = small_move * point.model->diagonal_mm / (1e-300 + found.positions[k].cwiseAbs().maxCoeff());
-        slopes(c, i) += own + (of(*point.model, state.positions + h * found.positions[k]) -
-                               of(*point.model, state.positions - h * found.positions[k])) /
-                                  (2 * h);
+        const double own =
+            (measure_of(number.more, column, state) - measure_of(number.less, column, state)) / number.difference;
+        const Eigen::VectorXd none;
+        slopes(c, i) += own + estimate::reading_change(*point.model, column, state, {found.positions[k], none, {}});
         continue;
       }
       if (column.support >= 0) {

@@ -23,6 +23,7 @@ constexpr std::pair<const char*, const char*> short_names[] = {
     {"cantilever", "magnetic_cantilever"},
     {"chambers", "three_chamber_actuator"},
     {"crawler", "dea_crawler"},
+    {"feel", "estimate"},
     {"fibres", "fibre_actuator"},
     {"finger", "pneumatic_finger"},
     {"gripper", "cable_gripper"},

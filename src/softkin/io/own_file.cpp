@@ -25,7 +25,7 @@ bool is_own_json(std::string_view text) {
   constexpr std::string_view key = "\"softkin\"";
   if (!text.starts_with('{')) return false;
   text = without_blanks(text.substr(1));
-  if (text.starts_with("\"softkin_robot_fit\":")) return true;
+  if (text.starts_with("\"softkin_robot_fit\":") || text.starts_with("\"softkin_estimate\":")) return true;
   if (!text.starts_with(key)) return false;
   text = without_blanks(text.substr(key.size()));
   return text.starts_with(':') && without_blanks(text.substr(1)).starts_with('"');
@@ -80,6 +80,7 @@ bool is_own_table(std::string_view text) {
                                Header{"run,line,t_s,stretch,stress_mpa,", ",off"},
                                Header{"line,strain,stress_mpa,linear_mpa,", ",yeoh_mpa"},
                                Header{"pose,line,column,measured", ",kept"},
+                               Header{"reading,line,t_s,", ",chi_square,freedoms,left_out,status"},
                                Header{"line,l1_mm,dl_mm,dl1_mm", "_off_mm"}};
   const std::string_view line = text.substr(0, text.find('\n'));
   return std::any_of(headers.begin(), headers.end(), [line](const Header& header) {

@@ -11,6 +11,7 @@
 #include <softkin/model/magnetic_field.hpp>
 #include <softkin/model/mesh/mesh_joining.hpp>
 #include <softkin/model/names.hpp>
+#include <softkin/model/sensor.hpp>
 
 namespace softkin {
 
@@ -160,6 +161,29 @@ class Joiner {
       layer.where = full(std::get<RegionRef>(layer.where));
     return layer;
   }
+  [[nodiscard]] std::shared_ptr<const SensorSpec> full(const SensorSpec& sensor) const {
+    SensorSpec all = sensor;
+    all.name = placed_.name + "." + sensor.name;
+    all.robot = placed_.name;
+    for (Vec3& point : all.points) point = placed_.place(point);
+    if (sensor.kind == SensorKind::angle)
+      for (std::string& section : all.sections) section = full(section);
+    all.axis = placed_.place.rotation * sensor.axis;
+    return std::make_shared<const SensorSpec>(std::move(all));
+  }
+  /// Forces are commanded along the common axes: a robot that is turned must have its own along these.
+  [[nodiscard]] std::optional<std::array<Vec3, 2>> turned_range(const ForceSpec& force) const {
+    if (!force.range) return std::nullopt;
+    const Mat3& turn = placed_.place.rotation;
+    const Mat3 whole = turn.array().round().matrix();
+    constexpr double rounding = 1e-9;
+    if (!((turn - whole).cwiseAbs().maxCoeff() < rounding))
+      throw InvalidInput(force.at.origin, "force '" + force.name + "' of " + robot_label(placed_) +
+                                              " is commanded along x, y and z, but the robot is turned, and not by "
+                                              "quarters: command the force in the scene of all robots");
+    const Vec3 a = whole * (*force.range)[0], b = whole * (*force.range)[1];
+    return std::array<Vec3, 2>{a.cwiseMin(b), a.cwiseMax(b)};
+  }
   [[nodiscard]] PointRef full(const PointRef& point) const {
     if (const auto* name = std::get_if<std::string>(&point.point)) return {full(*name), point.origin};
     return {placed_.place(std::get<Vec3>(point.point)), point.origin, placed_.name};
@@ -268,7 +292,8 @@ class Joiner {
 
   void add_points() {
     for (const ForceSpec& force : robot_.forces)
-      all_.forces.push_back({placed_.name + "." + force.name, full(force.at), placed_.place.rotation * force.force});
+      all_.forces.push_back(
+          {placed_.name + "." + force.name, full(force.at), placed_.place.rotation * force.force, turned_range(force)});
     for (TractionSpec& traction : robot_.tractions) {
       traction.name = placed_.name + "." + traction.name;
       traction.where = full(traction.where);
@@ -278,6 +303,7 @@ class Joiner {
     for (FibreSpec& fibre : robot_.fibres) all_.fibres.push_back(full(std::move(fibre)));
     for (const auto& layer : robot_.layers) all_.layers.push_back(std::make_shared<const LayerSpec>(full(*layer)));
     for (const MarkerSpec& marker : robot_.markers) all_.markers.push_back(full(marker));
+    for (const auto& sensor : robot_.sensors) all_.sensors.push_back(full(*sensor));
     for (FootSpec& foot : robot_.feet) {
       foot.marker = placed_.name + "." + foot.marker;
       all_.feet.push_back(std::move(foot));
@@ -351,6 +377,7 @@ void add_common(RobotSpec& robots, RobotSpec common) {
   append_parts(robots.fibres, common.fibres);
   append_parts(robots.layers, common.layers);
   append_parts(robots.markers, common.markers);
+  append_parts(robots.sensors, common.sensors);
   append_parts(robots.feet, common.feet);
   robots.contact = std::move(common.contact);
   robots.liquid_around = common.liquid_around;

@@ -8,12 +8,13 @@
 namespace softkin {
 
 /// A kind of reading, and its unit: coordinates of markers; pressures and tensions with which actuators answer; lengths
-/// of cables and volumes of chambers whose loads are commanded; what supports exert on the robot.
-enum class Reading { coordinate, pressure, tension, length, volume, force };
-constexpr int readings = 6;
-constexpr std::array<const char*, readings> reading_names{"coordinate", "pressure", "tension",
-                                                          "length",     "volume",   "force"};
-constexpr std::array<const char*, readings> reading_units{"mm", "kPa", "N", "mm", "mm^3", "N"};
+/// of cables and volumes of chambers whose loads are commanded; what supports exert on the robot; lengths of curves on
+/// the body and angles between its sections, as sensors measure them.
+enum class Reading { coordinate, pressure, tension, length, volume, force, angle };
+constexpr int readings = 7;
+constexpr std::array<const char*, readings> reading_names{"coordinate", "pressure", "tension", "length",
+                                                          "volume",     "force",    "angle"};
+constexpr std::array<const char*, readings> reading_units{"mm", "kPa", "N", "mm", "mm^3", "N", "deg"};
 
 /// What a column of measured poses holds.
 struct PoseColumn {
@@ -23,6 +24,7 @@ struct PoseColumn {
   Index actuator = -1;  // of the model; -1: none
   Reading kind = Reading::coordinate;
   Index support = -1;  // of the model; -1: none
+  Index sensor = -1;   // the same
 };
 
 /// Poses of a real robot: what it was told, and what was read.
@@ -30,6 +32,8 @@ struct MeasuredPoses {
   std::string file;
   std::vector<PoseColumn> columns;
   std::vector<Actuation> commands;  // per pose, all in the model's order
+  std::vector<Index> commanded{};   // actuators that the file has commands of
+  std::vector<double> times{};      // per pose [s], ascending; empty: the file has none
   std::vector<std::size_t> lines;   // of the file, per pose
   Eigen::MatrixXd values;           // poses by columns; NaN: not read
 };

@@ -12,6 +12,7 @@ struct Magnetism;  // magnetic_field.hpp
 struct Growth;     // growth.hpp
 struct Families;   // families.hpp
 struct Layer;      // layer.hpp
+struct Sensor;     // sensor.hpp
 
 struct Material {
   std::string region;
@@ -178,6 +179,7 @@ struct Model {
   std::vector<Material> materials;
   std::vector<Actuator> actuators;
   std::vector<Marker> markers;
+  std::vector<std::shared_ptr<const Sensor>> sensors;
   std::vector<Foot> feet;          // none, or the rear one and the front one
   std::vector<RigidRegion> rigid;  // disjoint; bodies, too
   std::vector<FreeBody> bodies;

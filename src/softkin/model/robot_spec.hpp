@@ -18,6 +18,7 @@ struct RemanenceSpec;  // the same
 struct GrowthSpec;     // growth.hpp
 struct FamiliesSpec;   // families.hpp
 struct LayerSpec;      // layer.hpp
+struct SensorSpec;     // sensor.hpp
 
 // Selectors choose vertices (inside or on the boundary) and elements (centroid inside); shapes are in mm.
 struct VertexList {
@@ -274,6 +275,7 @@ struct RobotSpec {
   std::vector<RigidSpec> rigid;
   std::vector<ActuatorSpec> actuators;
   std::vector<MarkerSpec> markers;
+  std::vector<std::shared_ptr<const SensorSpec>> sensors;
   std::vector<FootSpec> feet;          // none, or the rear one and the front one
   std::optional<ContactSpec> contact;  // physical; none: everything passes through everything
   std::vector<RobotPart> robots;       // none, or those that joined() made this of, in the mesh's order

@@ -141,4 +141,19 @@ std::string finding_text(const Model& model, const Finding& finding) {
   return "warning: the iteration diverged";
 }
 
+void OverlapTally::add(std::size_t number, const StepRecord& record) {
+  if (record.self_overlap.points == 0) return;
+  numbers_.push_back(number);
+  if (record.self_overlap.deepest_mm <= deepest_.deepest_mm) return;
+  deepest_ = record.self_overlap;
+  at_ = number;
+}
+
+std::string OverlapTally::text(const std::string& what) const {
+  if (numbers_.empty()) return "";
+  return "warning: the shape passes through itself in " + what + (numbers_.size() == 1 ? " " : "s ") +
+         list_text(numbers_) + ", the deepest " + depth_text(deepest_.deepest_mm, deepest_.where) +
+         (numbers_.size() == 1 ? "" : " in " + what + " " + std::to_string(at_)) + overlap_cause(model_);
+}
+
 }  // namespace softkin::runs

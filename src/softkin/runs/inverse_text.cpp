@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <softkin/core/text.hpp>
 #include <softkin/io/table/settings.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/inverse_text.hpp>

@@ -39,4 +39,32 @@ std::string shortfall_text(const Model& model, const InverseResult& found) {
   return "not converged: " + found.remark + "; the best is " + off + ends_text(model, found);
 }
 
+namespace {
+
+/// Where a shape at a limit is deformed most, and what is there.
+std::string worst_text(const WorstPlace& worst) {
+  const bool crushed = worst.volume_ratio < 0.2, by_cable = worst.beside.find("cable") != std::string::npos;
+  return ". Deformed most is " + std::string(worst.prism ? "prism " : "tetrahedron ") + std::to_string(worst.element) +
+         " (from 0)" + (worst.region.empty() ? "" : " of region '" + worst.region + "'") + " at " +
+         point_text(worst.at, 4, 1e-6) + " mm" + (worst.beside.empty() ? "" : ", next to " + worst.beside) +
+         ": strain " + decimal(100 * worst.strain, 1) + " %" + ", " + decimal(100 * worst.volume_ratio, 1) + " %" +
+         " of its volume" +
+         (!crushed   ? ""
+          : by_cable ? "; spread the cable's force over a rigid region there"
+                     : "; make the mesh finer there");
+}
+
+}  // namespace
+
+std::string shortfall_text(const Model& model, const StepRecord& step) {
+  if (step.answered()) return step.remark + "; the shape is the last one";
+  if (model.formulation == Formulation::physical && step.reached_share == 1)
+    return step.remark + "; the shape is the last one";
+  if (model.formulation == Formulation::physical)
+    return reached_text(model, step) + ": " + step.remark + "; the shape is the last good one" +
+           (step.worst ? worst_text(*step.worst) : "");
+  return (step.remark.empty() ? "" : step.remark + ", and ") + "the shape is that after " +
+         counted(static_cast<std::size_t>(step.iterations), "iteration") + ", not an equilibrium";
+}
+
 }  // namespace softkin::runs

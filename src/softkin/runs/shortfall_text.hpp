@@ -13,4 +13,8 @@ namespace softkin::runs {
 /// of its range, 0.5 [-]". found: has errors
 [[nodiscard]] std::string shortfall_text(const Model& model, const InverseResult& found);
 
+/// Why a step did not converge and what its shape is: "air reached 1.62 of 1.8: beyond this point no equilibrium
+/// follows; the shape is the last good one".
+[[nodiscard]] std::string shortfall_text(const Model& model, const StepRecord& step);
+
 }  // namespace softkin::runs

@@ -320,6 +320,17 @@ Sensitivity Statics::sensitivity(const State& at, const StaticsOptions& options,
   return parts_->target_shape->newton.sensitivity(at, options.reuse_factor, accuracy, *team);
 }
 
+ParameterSensitivity Statics::sensitivity_along(const State& at, const std::vector<Actuation>& changes,
+                                                const StaticsOptions& options, double accuracy, bool reactions) const {
+  parts_->check_known(at, options, "the sensitivity of a shape");
+  if (!parts_->physical) throw InvalidInput("sensitivities along changes are for the physical formulation");
+  for (const Actuation& change : changes)
+    if (change.size() != at.actuation.size() || !change.allFinite())
+      throw InvalidInput("a change of the actuation must be of a finite value for each of the robot's actuators");
+  const TeamPool::Lent team = parts_->team(options);
+  return parts_->physical->sensitivity(at, changes, options.reuse_factor, accuracy, reactions, *team);
+}
+
 bool Statics::foresee(const Actuation& actuation, const State& at, const StaticsOptions& options,
                       Points& positions) const {
   check_actuation(parts_->model, actuation);

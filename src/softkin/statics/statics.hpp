@@ -112,6 +112,16 @@ class Statics {
   [[nodiscard]] Sensitivity sensitivity(const State& at, const StaticsOptions& options = {},
                                         double accuracy = 1e-8) const;
 
+  /// The same along some changes of the actuation alone.
+  ///
+  /// changes    k of m values each, in the units of the commands
+  /// reactions  are those of supports asked for
+  /// returns    of each change; see ParameterSensitivity
+  /// throws     InvalidInput as the other, of target shapes, and on a change that is not of m finite values
+  [[nodiscard]] ParameterSensitivity sensitivity_along(const State& at, const std::vector<Actuation>& changes,
+                                                       const StaticsOptions& options = {}, double accuracy = 1e-8,
+                                                       bool reactions = false) const;
+
   /// The shape under another actuation by second order, at the price of a small part of a solve. One that follows, from
   /// the same equilibrium to that actuation or near it, begins there.
   ///

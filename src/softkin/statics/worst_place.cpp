@@ -84,7 +84,7 @@ class Surroundings {
           return std::find(face.corners.begin(), face.corners.end(), v) != face.corners.end();
         });
       };
-      if (!has(on_wall)) continue;
+      if (chamber.kind != ActuatorKind::pneumatic || !has(on_wall)) continue;
       place.beside = "the wall of chamber '" + chamber.name + "'";
     }
     return !place.beside.empty();

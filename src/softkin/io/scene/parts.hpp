@@ -75,6 +75,7 @@ void read_mesh_of(const Context& context, const Map& scene, RobotSpec& spec);
 [[nodiscard]] std::shared_ptr<const LayerSpec> read_layer(const Context& context, const Node& node, Names& names);
 /// Of a node that may be left out: false.
 [[nodiscard]] bool is_true(const Map& map, std::string_view key);
+[[nodiscard]] std::shared_ptr<const SensorSpec> read_sensor(const Context& context, const Node& node, Names& names);
 [[nodiscard]] double read_density(const Node& node);
 /// Target-shape keys, elastic constants, or both.
 [[nodiscard]] MaterialSpec read_material(const Context& context, const Node& node);

@@ -95,9 +95,23 @@ MarkerSpec read_marker(const Context& context, const Node& node, Names& names) {
   return marker;
 }
 
+/// Of a commanded force along x, y and z: [low, high] each.
+std::array<Vec3, 2> read_force_range(const Node& node) {
+  std::array<Vec3, 2> range{};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto& ends = list_of(2, *list_of(3, node)[axis]);
+    for (std::size_t end = 0; end < 2; ++end) range[end][static_cast<Eigen::Index>(axis)] = number(*ends[end]);
+  }
+  return range;
+}
+
 ForceSpec read_force(const Context& context, const Node& node, Names& names) {
-  const Map map(node, {"name", "point", "region", "force"});
-  return {names.add_label(map.at("name")), read_point_or_region(context, map), read_vector(map.at("force"))};
+  const Map map(node, {"name", "point", "region", "force", "range"});
+  ForceSpec spec{names.add_label(map.at("name")), read_point_or_region(context, map)};
+  const Node* range = map.find("range");
+  if (range != nullptr) spec.range = read_force_range(*range);
+  if (range == nullptr || map.find("force") != nullptr) spec.force = read_vector(map.at("force"));
+  return spec;
 }
 
 /// A traction that keeps its direction or turns with the surface, or a pressure.
@@ -156,7 +170,7 @@ void read_parts(const Context& context, const Map& map, RobotSpec& spec) {
     if (const Node* node = map.find(key))
       for (const auto& item : list(*node)) read(*item);
   };
-  Names forces, tractions, fibres, layers, markers;
+  Names forces, tractions, fibres, layers, markers, sensors;
   if (const Node* node = map.find("regions")) spec.regions = read_regions(context, *node);
   each("materials", [&](const Node& item) { spec.materials.push_back(read_material(context, item)); });
   spec.formulation = formulation_of(context, map, spec.materials);
@@ -176,6 +190,7 @@ void read_parts(const Context& context, const Map& map, RobotSpec& spec) {
   each("fibres", [&](const Node& item) { spec.fibres.push_back(read_fibre(context, item, fibres)); });
   each("layers", [&](const Node& item) { spec.layers.push_back(read_layer(context, item, layers)); });
   each("markers", [&](const Node& item) { spec.markers.push_back(read_marker(context, item, markers)); });
+  each("sensors", [&](const Node& item) { spec.sensors.push_back(read_sensor(context, item, sensors)); });
   if (const Node* node = map.find("feet"))
     for (const auto& item : list_of(2, *node)) spec.feet.push_back(read_foot(*item));
   spec.contact = read_contact(context, map);
@@ -215,7 +230,7 @@ RobotSpec parse_scene(const scene::Node& root, const std::string& file_name, con
   const scene::Map map(
       root, {"softkin", "units", "mesh",    "meshes",    "robots",  "formulation", "weights",   "regions", "materials",
              "void",    "fixed", "rigid",   "actuators", "gravity", "forces",      "tractions", "fibres",  "layers",
-             "markers", "feet",  "contact", "obstacles", "bodies",  "atmosphere",  "submerged"});
+             "markers", "feet",  "contact", "obstacles", "bodies",  "atmosphere",  "submerged", "sensors"});
   scene::Context context{std::filesystem::path(file_name).parent_path(), files};
   if (const scene::Node* node = map.find("units")) context.to_mm = scene::read_length_unit(*node);
   if (map.find("robots") != nullptr) return scene::read_several(context, map, file_name);

@@ -6,6 +6,7 @@
 #include <softkin/io/table/csv.hpp>
 #include <softkin/io/table/measured_poses.hpp>
 #include <softkin/model/names.hpp>
+#include <softkin/model/sensor.hpp>
 
 namespace softkin {
 
@@ -26,7 +27,7 @@ class Columns {
       table.fail_header(
           "no column is a reading: a coordinate such as tip_x_mm, a pressure or volume such as air_pressure_kPa or "
           "air_volume_mm3, a tension or length such as tendon_tension_N or tendon_length_mm, a support's force such as "
-          "base_force_x_N");
+          "base_force_x_N, a sensor's length or angle such as strain_length_mm or bend_angle_deg");
   }
 
   [[nodiscard]] MeasuredPoses poses() const {
@@ -34,11 +35,7 @@ class Columns {
     poses.file = table_.file;
     poses.columns = readings_;
     poses.lines = table_.lines;
-    if (commands_.empty())
-      poses.commands.resize(table_.rows.size(), model_.rest_actuation());
-    else
-      for (const ActuationStep& step : actuation_steps(model_, commands(), Settings(model_.actuators.size())))
-        poses.commands.push_back(step.actuation);
+    add_commands(poses);
     poses.values.resize(static_cast<Index>(table_.rows.size()), static_cast<Index>(at_.size()));
     for (std::size_t row = 0; row < table_.rows.size(); ++row)
       for (std::size_t c = 0; c < at_.size(); ++c)
@@ -47,7 +44,33 @@ class Columns {
     return poses;
   }
 
+  [[nodiscard]] std::vector<PoseColumn> readings_alone() const {
+    for (const std::size_t c : commands_)
+      table_.fail_header("column " + excerpt(table_.columns[c]) + " is no reading" +
+                         (actuator_of_column(model_, table_.columns[c]) ? ", but a command" : ""));
+    return readings_;
+  }
+
  private:
+  void add_commands(MeasuredPoses& poses) const {
+    for (const std::size_t c : commands_)
+      if (const auto a = actuator_of_column(model_, table_.columns[c])) poses.commanded.push_back(*a);
+    if (commands_.empty()) return poses.commands.resize(table_.rows.size(), model_.rest_actuation());
+    if (poses.commanded.empty() && commands_.size() == 1 && table_.columns[commands_[0]] == time_column) {
+      poses.commands.resize(table_.rows.size(), model_.rest_actuation());
+      for (std::size_t row = 0; row < table_.rows.size(); ++row) {
+        poses.times.push_back(table_.rows[row][commands_[0]]);
+        if (!std::isfinite(poses.times[row]) || (row > 0 && !(poses.times[row] > poses.times[row - 1])))
+          table_.fail(row, std::string(time_column) + " must increase from row to row");
+      }
+      return;
+    }
+    for (const ActuationStep& step : actuation_steps(model_, commands(), Settings(model_.actuators.size()))) {
+      poses.commands.push_back(step.actuation);
+      if (step.time) poses.times.push_back(*step.time);
+    }
+  }
+
   /// A table of the commands alone.
   [[nodiscard]] CsvTable commands() const {
     CsvTable some = table_;
@@ -80,6 +103,12 @@ class Columns {
     }
     for (std::size_t a = 0; a < model_.actuators.size(); ++a)
       if (const auto read = reading_of(column, static_cast<Index>(a))) return read;
+    for (std::size_t s = 0; s < model_.sensors.size(); ++s) {
+      const Sensor& sensor = *model_.sensors[s];
+      const bool length = sensor.kind == SensorKind::length;
+      if (column != sensor.name + (length ? "_length_mm" : "_angle_deg")) continue;
+      return PoseColumn{column, -1, -1, -1, length ? Reading::length : Reading::angle, -1, static_cast<Index>(s)};
+    }
     return force_of(column);
   }
 
@@ -115,6 +144,13 @@ class Columns {
 };
 
 }  // namespace
+
+std::vector<PoseColumn> reading_columns(const Model& model, const std::vector<std::string>& names) {
+  CsvTable table;
+  table.file = "readings";
+  table.columns = names;
+  return Columns(table, model).readings_alone();
+}
 
 MeasuredPoses read_measured_poses(const std::filesystem::path& file, const Model& model) {
   const CsvTable table = read_csv_with_gaps(file);

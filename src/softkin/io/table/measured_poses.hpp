@@ -13,4 +13,9 @@ namespace softkin {
 /// throws  InvalidInput naming file, line and column: what these refuse; a command that is missing; no reading
 [[nodiscard]] MeasuredPoses read_measured_poses(const std::filesystem::path& file, const Model& model);
 
+/// What readings of these names are.
+///
+/// throws  InvalidInput on a name that is no reading, with what could be one
+[[nodiscard]] std::vector<PoseColumn> reading_columns(const Model& model, const std::vector<std::string>& names);
+
 }  // namespace softkin

@@ -42,6 +42,12 @@ bool answers_with_ratio(const Model& model, const Actuator& actuator) {
          (answers_with_measure(actuator) || !answers_with_load(model, actuator) || is_cable(model, actuator));
 }
 
+/// A force at a place of the robot is a command of its maps, too.
+bool is_input(const Actuator& actuator) {
+  return varies(actuator) ||
+         (actuator.kind == ActuatorKind::force && !actuator.points.empty() && actuator.low < actuator.high);
+}
+
 }  // namespace
 
 MapData outline_of(const Model& model) {
@@ -67,7 +73,7 @@ MapData outline_of(const Model& model) {
     if (answers_with_ratio(model, actuator)) data.outputs.push_back({actuator.name + "_ratio", ""});
     if (is_cable(model, actuator))
       data.cables.push_back({number, varies(actuator) ? input : -1, data.actuation[number], next, next + 1});
-    if (varies(actuator))
+    if (is_input(actuator))
       data.inputs.push_back({actuator.name, command_unit(actuator), number, actuator.low, actuator.high});
   }
   if (data.inputs.empty()) throw InvalidInput("no actuator of the robot has a range, so that there is nothing to map");

@@ -160,12 +160,14 @@ Model compile(const RobotSpec& spec) {
   compile_loads(c);
   compile_fibres(c);
   compile_layers(c);
+  compile_sensors(c);
   check_anchoring(c.model, c.origin);
   check_hinges(c.model, c.origin);
   doubt_units(c);
   doubt_linear_tetrahedra(c);
   doubt_straight_edges(c);
   add_turn_commands(c);
+  add_force_commands(c);
   compile_contact(c);
   return std::move(c.model);
 }

@@ -16,8 +16,13 @@ constexpr double unstretchable = 1e4;    // E A of a fibre that does not stretch
 constexpr int corners_per_turn = 120;    // a helix is shorter by 1.1e-4 through them
 constexpr double most_corners = 100000;  // of a helix
 
+/// Curves of sensors are cut as fibres are, and have none of their stiffness.
+bool is_sensor(const FibreSpec& spec) {
+  return spec.stiffness_N == 0.0;
+}
+
 [[noreturn]] void refuse_fibre(const FibreSpec& spec, const std::string& what) {
-  throw InvalidInput(spec.origin, "fibre '" + spec.name + "' " + what);
+  throw InvalidInput(spec.origin, (is_sensor(spec) ? "sensor '" : "fibre '") + spec.name + "' " + what);
 }
 
 std::vector<Vec3> corners_of(const FibreSpec& spec, const Helix& helix) {
@@ -129,12 +134,11 @@ void add_places(const Compilation& c, const Embedder& embedder, Index element, c
   }
 }
 
-void check_numbers(Compilation& c, const FibreSpec& spec, const std::set<std::string>& names) {
+void check_numbers(const FibreSpec& spec, const std::set<std::string>& names) {
   if (names.contains(spec.name)) throw InvalidInput(spec.origin, "there are two fibres '" + spec.name + "'");
   if (spec.stiffness_N && (!(*spec.stiffness_N > 0) || !std::isfinite(*spec.stiffness_N)))
-    refuse_fibre(spec, "needs a stiffness above 0 N, Young's modulus times the area of its section");
-  if (body_of(c, spec.robot).embedder.empty())
-    refuse_fibre(spec, "needs a body to run in, but every element belongs to a chamber");
+    throw InvalidInput(spec.origin, "fibre '" + spec.name +
+                                        "' needs a stiffness above 0 N, Young's modulus times the area of its section");
 }
 
 /// What a fibre that does not stretch is held with [N].
@@ -172,6 +176,8 @@ Outside cut(const Compilation& c, const Embedder& embedder, const std::vector<Ve
 }
 
 Fibre fibre_of(Compilation& c, const FibreSpec& spec, std::vector<std::pair<double, std::string>>& told) {
+  if (body_of(c, spec.robot).embedder.empty())
+    refuse_fibre(spec, "needs a body to run in, but every element belongs to a chamber");
   const Carrier carrier(c, spec);
   const std::vector<Vec3> corners = corners_of(spec);
   Fibre fibre{spec.name, 0, spec.tension_only, {}, {}};
@@ -193,6 +199,17 @@ Fibre fibre_of(Compilation& c, const FibreSpec& spec, std::vector<std::pair<doub
 
 }  // namespace
 
+std::vector<FibrePlace> places_along(Compilation& c, const std::string& name, const std::vector<Vec3>& points,
+                                     const std::string& robot, const Origin& origin) {
+  FibreSpec spec{.name = name, .way = points, .stiffness_N = 0.0, .region = {}, .robot = robot, .origin = origin};
+  std::vector<std::pair<double, std::string>> outside;
+  std::vector<FibrePlace> places = fibre_of(c, spec, outside).places;
+  if (outside.front().first > 1e-6 * c.model.diagonal_mm)
+    c.model.notes.push_back("Sensor '" + name + "' runs outside the elements, by " + number(outside.front().first) +
+                            " mm: the nearest elements carry it there.");
+  return places;
+}
+
 void compile_fibres(Compilation& c) {
   if (c.spec.fibres.empty()) return;
   if (c.spec.formulation != Formulation::physical) {
@@ -203,7 +220,7 @@ void compile_fibres(Compilation& c) {
   std::set<std::string> names;
   std::vector<std::pair<double, std::string>> outside;  // by how much [mm], which
   for (const FibreSpec& spec : c.spec.fibres) {
-    check_numbers(c, spec, names);
+    check_numbers(spec, names);
     names.insert(spec.name);
     c.model.fibres.push_back(fibre_of(c, spec, outside));
   }

@@ -5,6 +5,7 @@
 #include <softkin/model/compile/parts.hpp>
 #include <softkin/model/layer.hpp>
 #include <softkin/model/mesh/quadratic_elements.hpp>
+#include <softkin/model/names.hpp>
 
 namespace softkin {
 
@@ -74,12 +75,60 @@ void check_density(Compilation& c) {
                               "' has no density and so no weight.");
 }
 
+std::string label(const ForceSpec& spec) {
+  return spec.name.empty() ? "a force" : "force '" + spec.name + "'";
+}
+
+/// Is it commanded along an axis, and not held to one value there.
+bool is_commanded(const ForceSpec& spec, int axis) {
+  return spec.range && (*spec.range)[0][axis] < (*spec.range)[1][axis];
+}
+
+void check_range(const ForceSpec& spec) {
+  if (!spec.range) return;
+  const auto refuse = [&](const std::string& why) { throw InvalidInput(spec.at.origin, label(spec) + " " + why); };
+  const auto& [low, high] = *spec.range;
+  if (spec.name.empty()) refuse("is commanded, and so needs a name");
+  if (!low.allFinite() || !high.allFinite()) refuse("has a range that is not finite");
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::string along = std::string(" along ") + "xyz"[axis];
+    if (low[axis] > high[axis])
+      refuse("has the range " + interval_text(low[axis], high[axis]) + " N" + along + ": the low end comes first");
+    if (spec.force[axis] < low[axis] || spec.force[axis] > high[axis])
+      refuse("is " + number(spec.force[axis]) + " N" + along + ", outside its range " +
+             interval_text(low[axis], high[axis]) + " N");
+  }
+}
+
+Actuator command_of(const ForceSpec& spec, int axis, const EmbeddedPoint& at) {
+  Actuator command;
+  command.name = spec.name + "_f" + "xyz"[axis];
+  command.kind = ActuatorKind::force;
+  command.control = Control::load;
+  command.axis = axis;
+  command.points = {at};
+  command.low = (*spec.range)[0][axis];
+  command.high = (*spec.range)[1][axis];
+  command.rest = spec.force[axis];
+  return command;
+}
+
 void add_force(Compilation& c, const ForceSpec& spec) {
-  const std::string what = spec.name.empty() ? "a force" : "force '" + spec.name + "'";
-  if (!spec.force.allFinite()) throw InvalidInput(spec.at.origin, what + " is not finite");
-  const EmbeddedPoint at = embed_point(c, spec.at, "the point of " + what);
-  for (std::size_t i = 0; i < at.vertices.size(); ++i)
-    c.model.dead_load.row(at.vertices[i]) += at.weights[i] * spec.force.transpose();
+  if (!spec.force.allFinite()) throw InvalidInput(spec.at.origin, label(spec) + " is not finite");
+  check_range(spec);
+  const EmbeddedPoint at = embed_point(c, spec.at, "the point of " + label(spec));
+  std::vector<CavityFace> faces;
+  if (const auto* region = std::get_if<std::string>(&spec.at.point); region != nullptr && spec.range)
+    for (const LoadedFace& face : surface_faces(c, {*region, spec.at.origin})) faces.push_back(face.face);
+  for (int axis = 0; axis < 3; ++axis) {
+    if (is_commanded(spec, axis)) {
+      c.force_commands.push_back(command_of(spec, axis, at));
+      c.force_commands.back().cavity = faces;
+      continue;
+    }
+    for (std::size_t i = 0; i < at.vertices.size(); ++i)
+      c.model.dead_load(at.vertices[i], axis) += at.weights[i] * spec.force[axis];
+  }
 }
 
 }  // namespace
@@ -112,6 +161,15 @@ void compile_loads(Compilation& c) {
   }
   compile_tractions(c);
   compile_liquid_around(c);
+}
+
+void add_force_commands(Compilation& c) {
+  for (Actuator& command : c.force_commands) {
+    if (find_actuator(c.model, command.name))
+      throw InvalidInput(c.origin, "the command '" + command.name +
+                                       "' of a force has the name of an actuator: give one of them another name");
+    c.model.actuators.push_back(std::move(command));
+  }
 }
 
 }  // namespace softkin

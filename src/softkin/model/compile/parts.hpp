@@ -41,6 +41,7 @@ struct Compilation {
   // physical: what elements of the body and chambers enclose, found when an actuator first asks, and whose it is
   std::optional<std::vector<EmptySpace>> empty_spaces;
   std::vector<Index> space_actuators;        // -1: no actuator's
+  std::vector<Actuator> force_commands;      // of forces that are commanded
   std::map<std::string, Body> robot_bodies;  // by robot, made when they are first asked for; "": of all
 };
 
@@ -187,11 +188,24 @@ void compile_loads(Compilation& c);
 [[nodiscard]] LoadedFace loaded_face(const Compilation& c, const Triangle& corners, double share);
 /// The part of compile_loads() that is about a liquid around the robot.
 void compile_liquid_around(Compilation& c);
+/// A command for each axis along which a force has a range.
+///
+/// throws  InvalidInput where its name is taken
+void add_force_commands(Compilation& c);
 /// The part of compile_loads() that is about tractions.
 void compile_tractions(Compilation& c);
+/// The faces of the body's surface that a region has, or that lie between its vertices, with normals outwards.
+[[nodiscard]] std::vector<LoadedFace> surface_faces(const Compilation& c, const RegionRef& where);
 
 /// Physical, after the materials: cuts threads into the pieces that single elements carry along.
 void compile_fibres(Compilation& c);
+
+/// The places along a sensor's curve, as those of a fibre. robot: of several, whose elements carry it; empty: all
+[[nodiscard]] std::vector<FibrePlace> places_along(Compilation& c, const std::string& name,
+                                                   const std::vector<Vec3>& points, const std::string& robot,
+                                                   const Origin& origin);
+/// After the materials.
+void compile_sensors(Compilation& c);
 
 /// Refuses what can be told of contact before anything is compiled: of target shapes, numbers outside their ranges,
 /// names that are taken or that nothing has, shapes without extent.

@@ -22,9 +22,16 @@ class BodyFaces {
   explicit BodyFaces(const Compilation& c) : c_(c), boundary_(boundary_of(c.model.tetrahedra, c.model.prisms)) {}
 
   [[nodiscard]] std::vector<LoadedFace> of(const TractionSpec& spec) const {
-    const Region region = c_.regions.resolve(spec.where);
+    std::set<std::vector<Index>> others;
+    std::vector<LoadedFace> faces = of(spec.where, others);
+    refuse_others(spec, others, faces);
+    return faces;
+  }
+
+  /// wanted: becomes what is of the region, but not on the surface
+  [[nodiscard]] std::vector<LoadedFace> of(const RegionRef& where, std::set<std::vector<Index>>& wanted) const {
+    const Region region = c_.regions.resolve(where);
     const bool named = region.dimension == 2;  // a group of faces: these; else all between its vertices
-    std::set<std::vector<Index>> wanted;
     if (named) {
       for (const Index i : region.triangles) wanted.insert(sorted(c_.mesh.triangles[i]));
       for (const Index i : region.quads) wanted.insert(sorted(c_.mesh.quads[i]));
@@ -41,7 +48,6 @@ class BodyFaces {
     for (const Quad& q : boundary_.quads)
       if (is_loaded(q))
         for (int i = 0; i < 4; ++i) faces.push_back(loaded_face(c_, {q[i], q[(i + 1) % 4], q[(i + 2) % 4]}, 0.5));
-    refuse_others(spec, wanted, faces);
     return faces;
   }
 
@@ -91,6 +97,11 @@ LoadedFace loaded_face(const Compilation& c, const Triangle& corners, double sha
   LoadedFace face{{corners}, share};
   if (!c.regions.edges().empty()) face.face.edges = c.regions.edges().of(corners);
   return face;
+}
+
+std::vector<LoadedFace> surface_faces(const Compilation& c, const RegionRef& where) {
+  std::set<std::vector<Index>> others;
+  return BodyFaces(c).of(where, others);
 }
 
 void compile_tractions(Compilation& c) {

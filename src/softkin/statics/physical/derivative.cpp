@@ -159,6 +159,52 @@ Sensitivity Derivative::of(const Iterate& at, const Demand& demand) {
   return result;
 }
 
+/// The right-hand side of a change of the commands. Returns how forces change by it where nothing moves.
+Points Derivative::ask_along(const Iterate& at, const Demand& demand, Index column, const Actuation& change) {
+  for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)
+    right_.multipliers(i, column) = system_.measures().sign(held_[i]) * change[held_[i]] *
+                                    system_.measures().target_by_command(held_[i], at.multipliers[held_[i]]);
+  Points force, moves, pulled = Points::Zero(at.positions.rows(), 3);
+  Points sum = pulled, way = pulled;
+  for (Index a = 0; a < system_.actuators(); ++a) {
+    if (change[a] == 0 || system_.measures().constrains(a)) continue;
+    system_.command_force(at, demand, balance_, a, work_, force, moves, team_);
+    sum += change[a] * force;
+    if (!moves.isZero(0)) way += change[a] * moves;
+  }
+  if (!way.isZero(0)) system_.add_pull(at, demand, balance_, way, work_, pulled, team_);
+  ask(at, column, sum, way);
+  return sum - pulled;
+}
+
+ParameterSensitivity Derivative::of(const Iterate& at, const Demand& demand, const std::vector<Actuation>& changes,
+                                    bool reactions) {
+  const auto count = static_cast<Index>(changes.size());
+  const Points nothing = Points::Zero(at.positions.rows(), 3);
+  hold(at, demand);
+  make_room(count);
+  std::vector<Points> forces;
+  for (Index p = 0; p < count; ++p) {
+    Points force = ask_along(at, demand, p, changes[static_cast<std::size_t>(p)]);
+    if (reactions) forces.push_back(std::move(force));
+  }
+  ParameterSensitivity result{{}, Eigen::MatrixXd::Zero(system_.actuators(), count), false};
+  result.regular = count == 0 || find(at, demand);
+  for (Index p = 0; p < count; ++p) {
+    result.positions.push_back(result.regular ? positions(at, p) : nothing);
+    if (reactions)
+      result.reactions.push_back(
+          result.regular ? this->reactions(at, demand, p, std::move(forces[static_cast<std::size_t>(p)])) : nothing);
+    if (!result.regular) continue;
+    result.multipliers.col(p) = multipliers(p);
+    for (Index a = 0; a < system_.actuators(); ++a)
+      if (system_.measures().given_load(a))
+        result.multipliers(a, p) +=
+            changes[static_cast<std::size_t>(p)][a] * system_.measures().rate(a) / system_.measures().unit(a);
+  }
+  return result;
+}
+
 namespace {
 
 /// What a robot's equations find in a shape, and where it has what is held.
@@ -237,6 +283,18 @@ Sensitivity Equilibria::sensitivity(const State& state, bool reuse_factor, doubl
   Sensitivity found =
       Derivative(system_, lease.work(), accuracy, team).of(system_.iterate(*at), {at->actuation, at->share});
   for (Points& moves : found.positions) drop_vertices(moves);
+  return found;
+}
+
+ParameterSensitivity Equilibria::sensitivity(const State& state, const std::vector<Actuation>& changes,
+                                             bool reuse_factor, double accuracy, bool reactions, Team& team) const {
+  const Inside at(*this, state, team);
+  Lease lease(*this, at->positions, reuse_factor);
+  system_.set_time(at->history, at->elapsed_s, lease.work(), team);
+  ParameterSensitivity found = Derivative(system_, lease.work(), accuracy, team)
+                                   .of(system_.iterate(*at), {at->actuation, at->share}, changes, reactions);
+  for (Points& moves : found.positions) drop_vertices(moves);
+  for (Points& forces : found.reactions) drop_vertices(forces);
   return found;
 }
 

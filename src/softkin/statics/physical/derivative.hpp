@@ -24,6 +24,9 @@ class Derivative {
 
   /// at  multipliers in internal units
   [[nodiscard]] Sensitivity of(const Iterate& at, const Demand& demand);
+  /// Along some changes of the commands.
+  [[nodiscard]] ParameterSensitivity of(const Iterate& at, const Demand& demand, const std::vector<Actuation>& changes,
+                                        bool reactions);
   /// By numbers of the robot: F and T are what the equations miss in the shape with more and less of them, over the
   /// difference. history, elapsed_s: of the equilibrium. reactions: are those of supports asked for
   [[nodiscard]] ParameterSensitivity of(const Iterate& at, const Demand& demand,
@@ -36,6 +39,7 @@ class Derivative {
   void make_room(Index columns);
   void ask(const Iterate& at, const Demand& demand);
   void ask(const Iterate& at, Index column, const Points& force, Points moves);
+  Points ask_along(const Iterate& at, const Demand& demand, Index column, const Actuation& change);
   bool find(const Iterate& at, const Demand& demand);
   bool solve(const Iterate& at, bool exact_factor);
   [[nodiscard]] Points positions(const Iterate& at, Index column) const;

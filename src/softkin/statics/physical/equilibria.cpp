@@ -9,14 +9,14 @@ namespace softkin::physical {
 namespace {
 
 /// The rest shape is one of any angles of what turns, as nothing of them is there: of those that are asked for, so that
-/// the way goes straight there.
+/// the way goes straight there. And it is one without forces, whatever they are where no command says another.
 Demand at_rest(const Model& model, const Actuation& wanted) {
   Demand demand{model.rest_actuation(), 0};
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
-    if (model.actuators[a].kind == ActuatorKind::turn)
-      demand.actuation[static_cast<Index>(a)] = wanted[static_cast<Index>(a)];
-    if (model.actuators[a].kind == ActuatorKind::growth)  // whatever its range
-      demand.actuation[static_cast<Index>(a)] = model.actuators[a].rest;
+    const ActuatorKind kind = model.actuators[a].kind;
+    if (kind == ActuatorKind::turn) demand.actuation[static_cast<Index>(a)] = wanted[static_cast<Index>(a)];
+    if (kind == ActuatorKind::force) demand.actuation[static_cast<Index>(a)] = 0;
+    if (kind == ActuatorKind::growth) demand.actuation[static_cast<Index>(a)] = model.actuators[a].rest;
   }
   return demand;
 }

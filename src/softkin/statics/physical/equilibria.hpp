@@ -49,6 +49,8 @@ class Equilibria {
 
   [[nodiscard]] ParameterSensitivity sensitivity(const State& at, const std::vector<Perturbation>& perturbations,
                                                  bool reuse_factor, double accuracy, bool reactions, Team& team) const;
+  [[nodiscard]] ParameterSensitivity sensitivity(const State& at, const std::vector<Actuation>& changes,
+                                                 bool reuse_factor, double accuracy, bool reactions, Team& team) const;
 
   /// See Statics::foresee.
   bool foresee(const Actuation& actuation, const State& at, Points& positions, Team& team) const;

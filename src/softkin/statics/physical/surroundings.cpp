@@ -22,7 +22,9 @@ double firm_slope(double command) {
 }  // namespace
 
 Surroundings::Surroundings(const Model& model)
-    : model_(model), stiffest_(firmness * model.contact.modulus_MPa * model.diagonal_mm) {}
+    : model_(model), stiffest_(firmness * model.contact.modulus_MPa * model.diagonal_mm) {
+  for (Index a = 0; a < static_cast<Index>(model.actuators.size()); ++a) any_ = any_ || loads(a);
+}
 
 bool Surroundings::loads(Index command) const {
   const ActuatorKind kind = model_.actuators[static_cast<std::size_t>(command)].kind;
@@ -35,9 +37,15 @@ void Surroundings::add_spring(const FreeBody& body, double stiffness, const Poin
   for (const Index v : body.vertices) gradient.row(v) += each * (positions.row(v) - model_.rest.row(v));
 }
 
+void Surroundings::add_force(const Actuator& actuator, double newtons, Points& gradient) const {
+  const EmbeddedPoint& place = place_of(actuator);
+  for (std::size_t i = 0; i < place.vertices.size(); ++i)
+    gradient(place.vertices[i], actuator.axis) -= newtons * place.weights[i];
+}
+
 void Surroundings::evaluate(const Iterate& at, const Demand& demand, Scratch& /*scratch*/, Sum& sum,
                             Team& /*team*/) const {
-  if (!any_body()) return;
+  if (!any_) return;
   const Points& positions = at.positions;
   double energy = 0;
   for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
@@ -51,10 +59,11 @@ void Surroundings::evaluate(const Iterate& at, const Demand& demand, Scratch& /*
         energy += 0.5 * stiffness / static_cast<double>(body.vertices.size()) *
                   (positions.row(v) - model_.rest.row(v)).squaredNorm();
     } else if (actuator.kind == ActuatorKind::force && command != 0) {
-      const EmbeddedPoint& center = model_.bodies[static_cast<std::size_t>(actuator.other)].center;
-      for (std::size_t i = 0; i < center.vertices.size(); ++i) {
-        sum.gradient(center.vertices[i], actuator.axis) -= command * center.weights[i];
-        energy -= command * center.weights[i] * (positions - model_.rest)(center.vertices[i], actuator.axis);
+      add_force(actuator, command, sum.gradient);
+      const EmbeddedPoint& place = place_of(actuator);
+      for (std::size_t i = 0; i < place.vertices.size(); ++i) {
+        const Index v = place.vertices[i];
+        energy -= command * place.weights[i] * (positions(v, actuator.axis) - model_.rest(v, actuator.axis));
       }
     }
   }
@@ -89,6 +98,11 @@ void Surroundings::add_change(const Demand& from, const Demand& to, const Points
   for (Index a = 0; a < static_cast<Index>(model_.actuators.size()); ++a) {
     const double change = to.actuation[a] - from.actuation[a];
     if (change == 0 || !loads(a)) continue;
+    if (const Actuator& actuator = model_.actuators[static_cast<std::size_t>(a)];
+        actuator.kind == ActuatorKind::force) {
+      add_force(actuator, change, force);
+      continue;
+    }
     slope.setZero(positions.rows(), 3);
     add_derivative(a, from, positions, scratch, slope, team);
     force += change * slope;
@@ -99,11 +113,10 @@ void Surroundings::add_derivative(Index command, const Demand& demand, const Poi
                                   Points& force, Team& /*team*/) const {
   if (!loads(command)) return;
   const Actuator& actuator = model_.actuators[static_cast<std::size_t>(command)];
-  const FreeBody& body = model_.bodies[static_cast<std::size_t>(actuator.other)];
   if (actuator.kind == ActuatorKind::hold)
-    return add_spring(body, stiffest_ * firm_slope(demand.actuation[command]), positions, force);
-  for (std::size_t i = 0; i < body.center.vertices.size(); ++i)
-    force(body.center.vertices[i], actuator.axis) -= body.center.weights[i];
+    return add_spring(model_.bodies[static_cast<std::size_t>(actuator.other)],
+                      stiffest_ * firm_slope(demand.actuation[command]), positions, force);
+  add_force(actuator, 1, force);
 }
 
 }  // namespace softkin::physical

@@ -5,7 +5,8 @@
 
 namespace softkin::physical {
 
-/// What is done to bodies: springs that hold them where they are at rest, forces on them.
+/// What is done to bodies and to the robot: springs that hold bodies where they are at rest, forces on these and at
+/// places of the robot.
 ///
 /// A body is held by a spring at each of its vertices. Of a command between 0 and 1 their stiffness falls by the same
 /// factor for every part of the way, to nothing at 0: the body settles where it is free while it is being released.
@@ -39,9 +40,15 @@ class Surroundings : public Term {
 
  private:
   void add_spring(const FreeBody& body, double stiffness, const Points& positions, Points& gradient) const;
+  void add_force(const Actuator& actuator, double newtons, Points& gradient) const;
+  /// Where a force acts: at a body's center, or at a place of the robot.
+  [[nodiscard]] const EmbeddedPoint& place_of(const Actuator& force) const {
+    return force.points.empty() ? model_.bodies[static_cast<std::size_t>(force.other)].center : force.points.front();
+  }
 
   const Model& model_;
   double stiffest_ = 0;  // of a body that is held [N/mm]
+  bool any_ = false;     // is there a command to evaluate
   std::int64_t first_slot_ = 0;
 };
 

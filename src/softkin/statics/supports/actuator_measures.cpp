@@ -124,7 +124,7 @@ ActuatorMeasures::ActuatorMeasures(const Model& model)
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const Actuator& actuator = model.actuators[a];
     const Index first = vertices_ + static_cast<Index>(points_.size());
-    if (actuator.kind == ActuatorKind::dea) continue;
+    if (actuator.kind == ActuatorKind::dea || !drives(actuator)) continue;
     for (const EmbeddedPoint& point : actuator.points) points_.push_back(&point);
     if (actuator.kind == ActuatorKind::cable)
       for (Index i = 0; i + 1 < static_cast<Index>(actuator.points.size()); ++i)

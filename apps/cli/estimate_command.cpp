@@ -1,0 +1,111 @@
+#include <cstdio>
+#include <softkin/core/error.hpp>
+#include <softkin/io/table/measured_poses.hpp>
+#include <softkin/runs/estimate_report.hpp>
+
+#include "command.hpp"
+#include "run_text.hpp"
+#include "solve_options.hpp"
+#include "terminal.hpp"
+
+namespace softkin::cli {
+
+namespace fs = std::filesystem;
+
+namespace {
+
+/// In the order of Reading.
+constexpr const char* deviation_options[][2] = {{"--deviation", "MM"},          {"--deviation-pressure", "KPA"},
+                                                {"--deviation-tension", "N"},   {"--deviation-length", "MM"},
+                                                {"--deviation-volume", "MM^3"}, {"--deviation-force", "N"},
+                                                {"--deviation-angle", "DEG"}};
+
+/// What the user asks of `softkin estimate`.
+struct EstimateAsked : SolveOptions {
+  std::string readings_file, report, table;
+  std::vector<std::string> unknowns;
+  std::array<std::optional<double>, readings> deviations{};
+  EstimatorOptions how;
+  bool keep_all = false, json = false, may_replace = false;
+};
+
+int run_estimate(const EstimateAsked& asked) {
+  check_extension("--report", asked.report, {{".json", ""}});
+  check_extension("--table", asked.table, {{".csv", ""}});
+  check_solver(asked);
+  std::vector<EstimatedUnknown> unknowns;
+  for (const std::string& text : asked.unknowns) unknowns.push_back(parse_unknown("--unknown", text));
+  std::vector<fs::path> inputs{asked.scene, asked.readings_file};
+  const Model model = asked_robot(asked, inputs);
+  const std::vector<Output> outputs = asked_outputs({{"--report", asked.report}, {"--table", asked.table}});
+  check_outputs(outputs, inputs, asked.may_replace);
+  const OutputFolders folders(outputs);
+  const MeasuredPoses poses = read_measured_poses(asked.readings_file, model);
+  std::array<double, readings> deviations{};
+  std::array<std::string, readings> names;
+  for (std::size_t k = 0; k < readings; ++k) {
+    deviations[k] = asked.deviations[k].value_or(0);
+    names[k] = deviation_options[k][0];
+  }
+  EstimatorOptions how = asked.how;
+  how.statics = asked.statics();
+  how.leave_out = !asked.keep_all;
+  catch_interrupt();
+  ProgressLine line;
+  std::size_t done_rows = 0;
+  const auto row = [&](std::size_t number, const Estimate&) { done_rows = number + 1; };
+  const runs::EstimateReport report =
+      runs::estimate_poses(model, poses, unknowns, deviations, names, how, row, [&](const Progress&) {
+        line.show(static_cast<double>(done_rows) / static_cast<double>(poses.commands.size()),
+                  "row " + std::to_string(done_rows + 1) + " of " + std::to_string(poses.commands.size()));
+        return !interrupted();
+      });
+  line.clear();
+  if (!asked.report.empty()) write_file(asked.report, runs::estimate_json(report));
+  if (!asked.table.empty()) write_file(asked.table, runs::estimate_table(report).csv());
+  for (std::size_t r = 0; r < report.told.size() && !asked.json; ++r) print(runs::estimate_row_text(report, r));
+  print(asked.json ? runs::estimate_json(report)
+                   : runs::estimate_text(report) + written_text({{"report", asked.report}, {"table", asked.table}}));
+  return report.good() ? done : not_converged;
+}
+
+void add_options(CLI::App& command, EstimateAsked& asked) {
+  add_scene(command, asked);
+  add_value(command, "READINGS", asked.readings_file, "F.csv",
+            "Readings, a row each: measured commands as in a path (air_kPa),\nt_s, then what was read: tip_x_mm, "
+            "air_volume_mm3, tendon_tension_N,\nbase_force_x_N, strain_length_mm, bend_angle_deg; empty cells were not "
+            "read")
+      ->required();
+  add_repeated(command, "--unknown", asked.unknowns, "NAME",
+               "What is to be told: a force with a `range`, or NAME:place, where on\nits region it acts, too; or a "
+               "command that was not measured. With\n=MEAN+-DEVIATION: known before (default: half of its range)")
+      ->required();
+  for (std::size_t k = 0; k < readings; ++k)
+    add_value(command, deviation_options[k][0], asked.deviations[k], deviation_options[k][1],
+              std::string("Standard deviation of a ") + reading_names[k] + " that was read",
+              positive(std::string("a number > 0 in ") + reading_units[k]));
+  add_value(command, "--fade", asked.how.fade_s, "S",
+            "Time in which what pushes may become anything else: rows go on\nfrom each other (default: each by itself)",
+            positive_time());
+  command.add_flag("--keep-all", asked.keep_all, "Leave no reading out that contradicts the others");
+  add_value(command, "--report", asked.report, "F.json", "All that is told, as JSON");
+  add_value(command, "--table", asked.table, "F.csv", "A line for each row");
+  add_solver(command, asked);
+  add_overwriting(command, asked.may_replace);
+  command.add_flag("--json", asked.json, "Print JSON; its keys name the units");
+}
+
+}  // namespace
+
+void add_estimate(CLI::App& app, Run& run) {
+  add_command<EstimateAsked>(
+      app, run, "estimate", "What pushes a robot, where, and its shape, from a few readings",
+      "Each number with its standard deviation, and in words what the readings do not tell. Exit code: 0 done, 1 a "
+      "row\n"
+      "that does not converge or fit the model, or interrupted, 2 bad usage or bad input.\nExample:\n"
+      "  softkin estimate examples/estimate/finger.yaml examples/estimate/readings.csv --unknown touch:place "
+      "--deviation 0.2",
+      add_options, run_estimate);
+}
+
+}  // namespace softkin::cli

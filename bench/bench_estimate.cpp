@@ -1,0 +1,366 @@
+// What is told of a force of unknown place on a made-up finger, against what was drawn; how wrong readings are found;
+// how many updates a second there are.
+
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <ctime>
+#include <random>
+#include <softkin/core/dense.hpp>
+#include <softkin/kinematics/estimate/problem.hpp>
+#include <softkin/kinematics/estimator.hpp>
+
+#include "command_line.hpp"
+#include "machine.hpp"
+#include "model/block_mesh.hpp"
+
+namespace {
+
+using namespace softkin;
+using softkin::testing::add_volume_region;
+using softkin::testing::block_mesh;
+
+constexpr double finger_length = 100;  // [mm]
+/// 90 % of a chi-square of 2 and 3 freedoms.
+constexpr double ninety_of_2 = 4.6052, ninety_of_3 = 6.2514;
+
+struct Options {
+  int draws = 100, swaps = 100, updates = 300;
+  double noise_mm = 0.2, most_force_N = 2;
+  unsigned seed = 1;
+  double fade_s = 0;
+  bool quadratic = false, volume_only = false;
+  int threads = 1;
+};
+
+/// A finger of about 6,000 linear tetrahedra, or 1,300 quadratic ones, with a chamber inside, held at x = 0; four
+/// markers, none of which is on its back.
+RobotSpec finger(bool quadratic) {
+  RobotSpec spec;
+  spec.name = "finger";
+  const std::array<int, 3> cells = quadratic ? std::array<int, 3>{12, 5, 5} : std::array<int, 3>{24, 7, 7};
+  spec.mesh = block_mesh(cells, {finger_length, 15, 20});
+  add_volume_region(spec.mesh, "chamber", [](const Vec3& p) {
+    return p.x() > 16 && p.x() < 84 && std::abs(p.y() - 7.5) < 3.3 && std::abs(p.z() - 10) < 4.4;
+  });
+  spec.formulation = Formulation::physical;
+  spec.quadratic = quadratic;
+  MaterialSpec material;
+  material.region = "body";
+  material.shape_ratio.reset();
+  ElasticSpec elastic;
+  elastic.youngs_modulus = 1;
+  elastic.poisson_ratio = 0.45;
+  material.elastic = elastic;
+  spec.materials = {material};
+  spec.fixed.push_back({{std::string("x_low"), {}}, {true, true, true}});
+  ActuatorSpec air;
+  air.name = "air";
+  air.region = "chamber";
+  air.control = Control::load;
+  air.low = -20;
+  air.high = 60;
+  air.rest = 0;
+  spec.actuators = {air};
+  spec.forces = {
+      {"touch", {std::string("z_high"), {}}, {0, 0, 0}, std::array<Vec3, 2>{Vec3::Constant(-3), Vec3::Constant(3)}}};
+  spec.markers = {{"m1", {Vec3(30, 0.5, 3), {}}},
+                  {"m2", {Vec3(55, 14.5, 3), {}}},
+                  {"m3", {Vec3(80, 0.5, 3), {}}},
+                  {"m4", {Vec3(99, 14.5, 17), {}}}};
+  return spec;
+}
+
+std::vector<PoseColumn> columns_of(const Model& model, bool volume_only) {
+  if (volume_only) return {{"air_volume_mm3", -1, -1, 0, Reading::volume}};
+  std::vector<PoseColumn> columns;
+  for (Index m = 0; m < static_cast<Index>(model.markers.size()); ++m)
+    for (int axis = 0; axis < 3; ++axis)
+      columns.push_back({model.markers[static_cast<std::size_t>(m)].name + "_" + "xyz"[axis] + "_mm", m, axis});
+  return columns;
+}
+
+/// What was drawn, and what the robot does.
+struct Truth {
+  Actuation commands;
+  Vec3 force{0, 0, 0}, place{0, 0, 0};  // at rest
+  Points positions;
+  Eigen::VectorXd readings;  // without noise
+};
+
+class Draws {
+ public:
+  Draws(const Model& model, const std::vector<PoseColumn>& columns, const Options& options)
+      : model_(model),
+        options_(options),
+        random_(options.seed),
+        problem_(model, {{"touch", true}}, columns, statics(options)) {}
+
+  static StaticsOptions statics(const Options& options) {
+    StaticsOptions statics;
+    statics.threads = options.threads;
+    return statics;
+  }
+
+  Truth draw() {
+    for (;;) {
+      Truth truth;
+      truth.commands = model_.rest_actuation();
+      truth.commands[0] = 20 * uniform_(random_);
+      Vec3 direction(normal_(random_), normal_(random_), normal_(random_));
+      truth.force = options_.most_force_N * uniform_(random_) * direction.normalized();
+      const estimate::Patch& patch = *problem_.variables().forces()[0].patch;
+      const estimate::Place place = patch.nearest({finger_length * uniform_(random_), 15 * uniform_(random_), 20});
+      truth.place = patch.at(place, model_.rest);
+      const estimate::Guess guess = problem_.solve(truth.commands, truth.force, {place}, nullptr, {});
+      if (!guess.solved()) {
+        ++without_equilibrium_;
+        continue;
+      }
+      truth.positions = guess.equilibrium.state.positions;
+      truth.readings = guess.computed;
+      return truth;
+    }
+  }
+
+  Eigen::VectorXd noisy(const Truth& truth, double deviation) {
+    Eigen::VectorXd values = truth.readings;
+    for (double& value : values) value += deviation * normal_(random_);
+    return values;
+  }
+  std::mt19937& random() { return random_; }
+  [[nodiscard]] int without_equilibrium() const { return without_equilibrium_; }
+
+ private:
+  const Model& model_;
+  const Options& options_;
+  std::mt19937 random_;
+  std::normal_distribution<double> normal_;
+  std::uniform_real_distribution<double> uniform_{0, 1};
+  estimate::Problem problem_;
+  int without_equilibrium_ = 0;
+};
+
+/// Of this thread, whatever else the machine does.
+double processor_seconds() {
+  timespec now{};
+  clock_gettime(CLOCK_THREAD_CPUTIME_ID, &now);
+  return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
+}
+
+double quantile(std::vector<double> values, double share) {
+  if (values.empty()) return 0;
+  const auto at = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
+  return values[at];
+}
+
+/// Off squared over the covariance; of a place in the tangent plane of a flat back: along x and y.
+double distance2(const Eigen::VectorXd& off, const Eigen::MatrixXd& covariance) {
+  return off.dot(solve_symmetric(covariance, off));
+}
+
+/// Errors of some draws, and how often ellipsoids of 90 % hold the truth.
+struct Errors {
+  std::vector<double> force_N, force_share, force_deviation_N, place_mm, place_deviation_mm, shape_mm,
+      shape_deviation_mm, seconds;
+  int draws = 0, converged = 0, force_held = 0, place_held = 0, misfits = 0, left_out = 0;
+  double vertices_held = 0;
+
+  void add(const Truth& truth, const Estimate& told) {
+    ++draws;
+    seconds.push_back(told.seconds);
+    if (told.status != Status::converged) return;
+    ++converged;
+    misfits += told.misfit() > 3;
+    left_out += !told.left_out.empty();
+    const Vec3 off(told.numbers[0].value - truth.force[0], told.numbers[1].value - truth.force[1],
+                   told.numbers[2].value - truth.force[2]);
+    const Mat3 covariance = told.covariance.topLeftCorner<3, 3>();
+    force_N.push_back(off.norm());
+    if (truth.force.norm() > 0.1) force_share.push_back(off.norm() / truth.force.norm());
+    force_deviation_N.push_back(std::sqrt(covariance.trace()));
+    force_held += distance2(off, covariance) < ninety_of_3;
+    const Eigen::Vector2d slid = (told.places[0].at_rest - truth.place).head<2>();
+    const Eigen::Matrix2d place_covariance = told.places[0].covariance.topLeftCorner<2, 2>();
+    place_mm.push_back(slid.norm());
+    place_deviation_mm.push_back(std::sqrt(place_covariance.trace()));
+    place_held += distance2(slid, place_covariance) < ninety_of_2;
+    add_shape(truth, told);
+  }
+
+  void add_shape(const Truth& truth, const Estimate& told) {
+    double worst = 0, deviation = 0, held = 0;
+    const auto count = static_cast<Index>(truth.positions.rows());
+    for (Index v = 0; v < count; ++v) {
+      const Vec3 off = vertex_at(told.state.positions, v) - vertex_at(truth.positions, v);
+      const Vec3 own = told.vertex_deviation(v);
+      if (off.norm() >= worst) {
+        worst = off.norm();
+        deviation = own.norm();
+      }
+      for (int axis = 0; axis < 3; ++axis) held += std::abs(off[axis]) <= 1.645 * own[axis] + 1e-9;
+    }
+    shape_mm.push_back(worst);
+    shape_deviation_mm.push_back(deviation);
+    vertices_held += held / (3.0 * count);
+  }
+
+  void print(const char* what) const {
+    const double n = std::max(1, converged);
+    std::printf("%s: %d draws, %d converged, %d whose readings do not fit, %d with a reading left out\n", what, draws,
+                converged, misfits, left_out);
+    std::printf(
+        "  force: median error %.3f N, %.2f %% of it; 90 %% below %.3f N; stated deviation, median %.3f N; "
+        "ellipsoids of 90 %% hold %.1f %%\n",
+        quantile(force_N, 0.5), 100 * quantile(force_share, 0.5), quantile(force_N, 0.9),
+        quantile(force_deviation_N, 0.5), 100 * force_held / n);
+    std::printf(
+        "  place: median error %.2f mm, %.2f %% of the length; 90 %% below %.2f mm; stated deviation, median "
+        "%.2f mm; ellipses of 90 %% hold %.1f %%\n",
+        quantile(place_mm, 0.5), 100 * quantile(place_mm, 0.5) / finger_length, quantile(place_mm, 0.9),
+        quantile(place_deviation_mm, 0.5), 100 * place_held / n);
+    std::printf(
+        "  shape: largest error anywhere, median %.3f mm, %.2f %% of the length; 90 %% below %.3f mm; stated there, "
+        "median %.3f mm; intervals of 90 %% hold %.1f %% of all coordinates\n",
+        quantile(shape_mm, 0.5), 100 * quantile(shape_mm, 0.5) / finger_length, quantile(shape_mm, 0.9),
+        quantile(shape_deviation_mm, 0.5), 100 * vertices_held / n);
+    std::printf("  seconds: median %.3f, 90 %% below %.3f\n", quantile(seconds, 0.5), quantile(seconds, 0.9));
+  }
+};
+
+EstimatorOptions estimator_options(const Options& options) {
+  EstimatorOptions own;
+  own.statics = Draws::statics(options);
+  own.fade_s = options.fade_s;
+  return own;
+}
+
+void run_draws(const Model& model, const Options& options) {
+  const std::vector<PoseColumn> columns = columns_of(model, options.volume_only);
+  const double deviation = options.volume_only ? 5 : options.noise_mm;  // [mm^3] or [mm]
+  Draws draws(model, columns, options);
+  Estimator estimator(model, {{"touch", true}}, columns,
+                      Eigen::VectorXd::Constant(static_cast<Index>(columns.size()), deviation),
+                      estimator_options(options));
+  Errors errors;
+  for (int d = 0; d < options.draws; ++d) {
+    const Truth truth = draws.draw();
+    estimator.forget();
+    errors.add(truth, estimator.update(truth.commands, draws.noisy(truth, deviation)));
+  }
+  errors.print(options.volume_only ? "volume at a pressure, no marker" : "four markers");
+  std::printf("  forces that were drawn again, as the finger has no equilibrium under them: %d\n",
+              draws.without_equilibrium());
+}
+
+/// Two markers exchanged, or one that is 30 mm off.
+void run_swaps(const Model& model, const Options& options) {
+  const std::vector<PoseColumn> columns = columns_of(model, false);
+  Draws draws(model, columns, options);
+  Estimator estimator(model, {{"touch", true}}, columns,
+                      Eigen::VectorXd::Constant(static_cast<Index>(columns.size()), options.noise_mm),
+                      estimator_options(options));
+  for (const bool swap : {true, false}) {
+    int named = 0, exact = 0;
+    std::vector<double> force_N, seconds;
+    for (int d = 0; d < options.swaps; ++d) {
+      const Truth truth = draws.draw();
+      Eigen::VectorXd values = draws.noisy(truth, options.noise_mm);
+      const auto a = static_cast<std::size_t>(draws.random()() % 4), b = (a + 1 + draws.random()() % 3) % 4;
+      std::vector<std::size_t> wrong{a};
+      if (swap) {
+        const Vec3 first = values.segment<3>(3 * static_cast<Index>(a));
+        values.segment<3>(3 * static_cast<Index>(a)) = values.segment<3>(3 * static_cast<Index>(b)).eval();
+        values.segment<3>(3 * static_cast<Index>(b)) = first;
+        wrong = {std::min(a, b), std::max(a, b)};
+      } else {
+        Vec3 off(1 - 2.0 * (draws.random()() % 2), 0.3, 0.5);
+        values.segment<3>(3 * static_cast<Index>(a)) += 30 * off.normalized();
+      }
+      estimator.forget();
+      const Estimate& told = estimator.update(truth.commands, values);
+      named += std::includes(told.left_out.begin(), told.left_out.end(), wrong.begin(), wrong.end());
+      exact += told.left_out == wrong;
+      seconds.push_back(told.seconds);
+      if (told.status == Status::converged)
+        force_N.push_back(
+            (Vec3(told.numbers[0].value, told.numbers[1].value, told.numbers[2].value) - truth.force).norm());
+    }
+    std::printf("%s: %d of %d named, %d no other beside; force off by %.3f N in the median; %.2f s each\n",
+                swap ? "two markers exchanged" : "one marker 30 mm off", named, options.swaps, exact,
+                quantile(force_N, 0.5), quantile(seconds, 0.5));
+    std::fflush(stdout);
+  }
+}
+
+/// A force that wanders over the back while the pressure goes up and down.
+void run_updates(const Model& model, const Options& options) {
+  const std::vector<PoseColumn> columns = columns_of(model, false);
+  Draws draws(model, columns, options);
+  const estimate::Problem problem(model, {{"touch", true}}, columns, Draws::statics(options));
+  Estimator estimator(model, {{"touch", true}}, columns,
+                      Eigen::VectorXd::Constant(static_cast<Index>(columns.size()), options.noise_mm),
+                      estimator_options(options));
+  std::vector<double> seconds, processor, equilibria, force_N, place_mm;
+  estimate::Guess guess;
+  int failed = 0;
+  for (int u = 0; u < options.updates; ++u) {
+    const double t = 0.01 * u;  // [s], at 100 a second
+    Truth truth;
+    truth.commands = model.rest_actuation();
+    truth.commands[0] = 10 + 5 * std::sin(t);
+    truth.force = Vec3(0.1 * std::sin(2 * t), 0.2 * std::cos(1.5 * t), -0.8 - 0.4 * std::sin(3 * t));
+    const estimate::Patch& patch = *problem.variables().forces()[0].patch;
+    const estimate::Place place = patch.nearest({65 + 20 * std::sin(0.7 * t), 7.5 + 4 * std::cos(t), 20});
+    truth.place = patch.at(place, model.rest);
+    guess = problem.solve(truth.commands, truth.force, {place}, u > 0 ? &guess : nullptr, {});
+    truth.readings = guess.computed;
+    const Eigen::VectorXd values = draws.noisy(truth, options.noise_mm);
+    const double begin = processor_seconds();
+    const Estimate& told = estimator.update(truth.commands, values, 0.01);
+    if (u > 0) processor.push_back(processor_seconds() - begin);
+    failed += told.status != Status::converged;
+    if (u == 0) continue;
+    seconds.push_back(told.seconds);
+    equilibria.push_back(told.equilibria);
+    force_N.push_back((Vec3(told.numbers[0].value, told.numbers[1].value, told.numbers[2].value) - truth.force).norm());
+    place_mm.push_back((told.places[0].at_rest - truth.place).norm());
+  }
+  double total = 0, solves = 0;
+  for (const double s : seconds) total += s;
+  for (const double e : equilibria) solves += e;
+  const auto n = static_cast<double>(seconds.size());
+  std::printf(
+      "updates: %.1f a second (median %.1f; by processor time of this thread, median %.1f); %.2f equilibria each; %d "
+      "not converged; force off by %.3f N, place by "
+      "%.2f mm in the median\n",
+      n / total, 1 / quantile(seconds, 0.5), 1 / quantile(processor, 0.5), solves / n, failed, quantile(force_N, 0.5),
+      quantile(place_mm, 0.5));
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  Options options;
+  CLI::App app{"What is told of a force of unknown place on a made-up finger"};
+  app.add_option("--draws", options.draws, "Forces that are drawn and told");
+  app.add_option("--swaps", options.swaps, "Readings with two markers exchanged, and with one 30 mm off");
+  app.add_option("--updates", options.updates, "Updates in time");
+  app.add_option("--fade", options.fade_s, "Time in which an update forgets the last one [s]; 0: each by itself");
+  app.add_option("--noise", options.noise_mm, "Of markers [mm]");
+  app.add_option("--force", options.most_force_N, "Largest force [N]");
+  app.add_option("--seed", options.seed, "Of what is drawn");
+  app.add_option("--threads", options.threads, "Of the solver");
+  app.add_flag("--quadratic", options.quadratic, "Elements of order 2");
+  app.add_flag("--volume-only", options.volume_only, "Read the chamber's volume at a pressure instead of markers");
+  CLI11_PARSE(app, argc, argv);
+  const Model model = compile(finger(options.quadratic));
+  std::printf("%zu tetrahedra of order %d, %lld vertices\n", model.tetrahedra.size(), options.quadratic ? 2 : 1,
+              static_cast<long long>(model.rest.rows()));
+  if (options.draws > 0) run_draws(model, options);
+  if (options.updates > 1) run_updates(model, options);
+  if (options.swaps > 0) run_swaps(model, options);
+  return 0;
+}

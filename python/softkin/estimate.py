@@ -1,0 +1,218 @@
+"""What pushes a robot, where, and its shape, from a few readings. docs/estimate.md"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from . import _core
+from ._arrays import Floats
+from ._compiled import Command, Commands
+from .shape import Shape
+from .solver import USUAL, Solver, options_of
+
+if TYPE_CHECKING:
+    from .robot import Robot
+
+__all__ = ["Estimate", "Estimator", "ToldNumber", "ToldPlace"]
+
+
+@dataclass(frozen=True)
+class ToldNumber:
+    """A command or a component of a force, as readings told it."""
+
+    name: str
+    unit: str
+    value: float
+    deviation: float
+    """standard deviation"""
+    known_mean: float
+    known_deviation: float
+    """what was known before the readings"""
+    at_bound: int
+    """-1, 1: at the low or high end of its range; else 0"""
+
+
+@dataclass(frozen=True)
+class ToldPlace:
+    """Where readings told a force to act."""
+
+    force: str
+    at_rest: Floats
+    """(3,) on the robot at rest [mm]"""
+    present: Floats
+    """(3,) now [mm]"""
+    covariance: Floats
+    """(3, 3) of at_rest, in the surface [mm^2]"""
+
+
+class Estimate:
+    """What readings told."""
+
+    def __init__(self, robot: Robot, core: _core.Told) -> None:
+        self._robot = robot
+        self._core = core
+
+    @property
+    def converged(self) -> bool:
+        return self._core.status == "converged"
+
+    @property
+    def status(self) -> str:
+        """'converged', 'not converged' or 'interrupted'."""
+        return self._core.status
+
+    @property
+    def remark(self) -> str:
+        """Why it is not converged."""
+        return self._core.remark
+
+    @cached_property
+    def numbers(self) -> dict[str, ToldNumber]:
+        """By the names of their commands: touch_fx, air, ..."""
+        fields = ("name", "unit", "value", "deviation", "known_mean", "known_deviation", "at_bound")
+        return {n.name: ToldNumber(*(getattr(n, field) for field in fields)) for n in self._core.numbers}
+
+    @cached_property
+    def places(self) -> dict[str, ToldPlace]:
+        """By the names of their forces."""
+        return {p.force: ToldPlace(p.force, p.at_rest, p.present, p.covariance) for p in self._core.places}
+
+    @cached_property
+    def covariance(self) -> Floats:
+        """Of the numbers in their order, then two tangents of each place [mm]."""
+        return self._core.covariance
+
+    @property
+    def computed(self) -> Floats:
+        """The readings as the estimate has them, in the order of `Estimator.readings`."""
+        return self._core.computed
+
+    @property
+    def chi_square(self) -> float:
+        return self._core.chi_square
+
+    @property
+    def freedoms(self) -> float:
+        """What the chi-square is to be compared with: readings less what they had to tell."""
+        return self._core.freedoms
+
+    @property
+    def misfit(self) -> float:
+        """By how many standard deviations the chi-square is too large."""
+        return self._core.misfit
+
+    @property
+    def left_out(self) -> list[str]:
+        """Readings that contradict the others."""
+        return self._core.left_out
+
+    @property
+    def words(self) -> list[str]:
+        """What the readings hardly tell, and whether they fit the model."""
+        return self._core.words
+
+    @property
+    def seconds(self) -> float:
+        return self._core.seconds
+
+    @property
+    def equilibria(self) -> int:
+        """How many were solved for it."""
+        return self._core.equilibria
+
+    @cached_property
+    def shape(self) -> Shape | None:
+        """The whole shape; None: none was found."""
+        return None if self._core.shape is None else Shape(self._robot, self._core.shape)
+
+    @cached_property
+    def vertex_deviations(self) -> Floats:
+        """(n, 3) standard deviations of the vertices along each axis [mm]."""
+        return self._core.vertex_deviations(len(self._robot.vertices))
+
+    def __repr__(self) -> str:
+        told = ", ".join(f"{n.name} {n.value:.3g} +- {n.deviation:.2g} {n.unit}" for n in self.numbers.values())
+        return f"<softkin.Estimate {self.status}: {told}>"
+
+
+class Estimator:
+    """Goes on from its last estimate with every update. For one thread at a time."""
+
+    def __init__(
+        self,
+        robot: Robot,
+        unknowns: str | Sequence[str],
+        deviations: Mapping[str, float],
+        *,
+        fade_s: float = 0,
+        leave_out: bool = True,
+        solver: Solver | str = USUAL,
+    ) -> None:
+        if not (fade_s >= 0 and math.isfinite(fade_s)):
+            raise ValueError(f"fade_s must be a time of 0 s or more, not {fade_s}")
+        self._robot = robot
+        self._fades = fade_s > 0
+        self._last: float | None = None
+        self.readings = tuple(deviations)
+        """columns of the readings, in their order"""
+        names = [unknowns] if isinstance(unknowns, str) else list(unknowns)
+        values = np.array([float(value) for value in deviations.values()], dtype=np.float64)
+        self._core = _core.Estimator(
+            robot._core, names, list(self.readings), values, float(fade_s), leave_out, options_of(solver)
+        )
+
+    @property
+    def robot(self) -> Robot:
+        return self._robot
+
+    @property
+    def told_commands(self) -> list[str]:
+        """Commands that are told and so need no value."""
+        return self._core.told_commands
+
+    def update(
+        self,
+        readings: Mapping[str, float],
+        actuation: Commands | None = None,
+        /,
+        *,
+        time_s: float | None = None,
+        **commands: Command,
+    ) -> Estimate:
+        """What readings tell.
+
+        readings   by their columns; those that are left out, None or NaN were not read
+        actuation  measured commands, as solve's
+        time_s     when it was read [s], not before the last time; None: now. Read where estimates fade
+        """
+        unknown = set(readings) - set(self.readings)
+        if unknown:
+            raise ValueError(f"no deviation is known of {sorted(unknown)}; readings are {list(self.readings)}")
+        asked = self._robot._actuation(actuation, commands)
+        read = [readings.get(name) for name in self.readings]
+        values = np.array([math.nan if value is None else float(value) for value in read], dtype=np.float64)
+        elapsed = self._elapsed(time_s) if self._fades else 0.0
+        return Estimate(self._robot, self._core.update(asked, values, elapsed))
+
+    def _elapsed(self, time_s: float | None) -> float:
+        now = time.monotonic() if time_s is None else float(time_s)
+        elapsed = 0.0 if self._last is None else now - self._last
+        if not elapsed >= 0:
+            raise ValueError(f"time_s must not go back: {now} s is {-elapsed:.3g} s before the last readings")
+        self._last = now
+        return elapsed
+
+    def forget(self) -> None:
+        """Drops the last estimate: the next one is searched for."""
+        self._last = None
+        self._core.forget()
+
+    def __repr__(self) -> str:
+        return f"<softkin.Estimator of {self._robot.name}: {', '.join(self.told_commands)}>"

@@ -1,0 +1,129 @@
+#include <nanobind/stl/optional.h>
+#include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
+
+#include <softkin/io/table/measured_poses.hpp>
+#include <softkin/kinematics/estimator.hpp>
+#include <softkin/model/names.hpp>
+
+#include "bindings.hpp"
+#include "convert.hpp"
+#include "robot.hpp"
+#include "solve.hpp"
+#include "watch.hpp"
+
+namespace softkin::python {
+
+namespace {
+
+/// An estimate with its words and its shape.
+struct Told {
+  Estimate estimate;
+  std::vector<std::string> words, left_out;
+  ShapePtr shape;  // null: none was found
+};
+
+/// An estimator with the robot that it is of; for one thread at a time.
+class RobotEstimator {
+ public:
+  RobotEstimator(RobotPtr robot, const std::vector<std::string>& unknowns, const std::vector<std::string>& columns,
+                 const VectorIn& deviations, const EstimatorOptions& options)
+      : robot_(std::move(robot)), options_(options) {
+    std::vector<EstimatedUnknown> all;
+    for (const std::string& text : unknowns) all.push_back(parse_unknown("unknown", text));
+    estimator_.emplace(robot_->model(), all, reading_columns(robot_->model(), columns), vector_of(deviations), options);
+  }
+
+  Told update(const VectorIn& commands, const VectorIn& values, double elapsed_s) {
+    const Actuation asked = vector_of(commands);
+    const Eigen::VectorXd read = vector_of(values);
+    return watched(std::nullopt, [&](const ProgressCallback& progress) {
+      Told told{estimator_->update(asked, read, elapsed_s, progress), {}, {}, {}};
+      if (told.estimate.status == Status::interrupted || told.estimate.numbers.empty()) return told;
+      told.words = estimate_words(told.estimate, estimator_->groups());
+      for (const std::size_t g : told.estimate.left_out) told.left_out.push_back(estimator_->groups()[g].name);
+      Equilibrium found{told.estimate.state, told.estimate.actuation, {}};
+      found.report.status = told.estimate.status;
+      told.shape = std::make_shared<Shape>(robot_, std::move(found), options_.statics);
+      return told;
+    });
+  }
+
+  void forget() { estimator_->forget(); }
+  [[nodiscard]] std::vector<std::string> told_commands() const {
+    std::vector<std::string> names;
+    for (const Index a : estimator_->told_actuators())
+      names.push_back(robot_->model().actuators[static_cast<std::size_t>(a)].name);
+    return names;
+  }
+
+ private:
+  RobotPtr robot_;
+  EstimatorOptions options_;
+  std::optional<Estimator> estimator_;
+};
+
+TableOut matrix_out(const Eigen::MatrixXd& matrix) {
+  const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = matrix;
+  return table_of<double>(rows.data(), static_cast<std::size_t>(rows.rows()), static_cast<std::size_t>(rows.cols()));
+}
+
+/// Of every vertex, along each axis [mm].
+TableOut vertex_deviations(const Told& told, Index vertices) {
+  Eigen::MatrixXd deviations(vertices, 3);
+  for (Index v = 0; v < vertices; ++v) deviations.row(v) = told.estimate.vertex_deviation(v).transpose();
+  return matrix_out(deviations);
+}
+
+}  // namespace
+
+void bind_estimate(nb::module_& module) {
+  nb::class_<ToldNumber>(module, "ToldNumber", "A number that readings told, with its standard deviation.")
+      .def_ro("name", &ToldNumber::name)
+      .def_ro("unit", &ToldNumber::unit)
+      .def_ro("value", &ToldNumber::value)
+      .def_ro("deviation", &ToldNumber::deviation)
+      .def_ro("known_mean", &ToldNumber::known_mean)
+      .def_ro("known_deviation", &ToldNumber::known_deviation)
+      .def_ro("at_bound", &ToldNumber::at_bound);
+  nb::class_<ToldPlace>(module, "ToldPlace", "Where readings told a force to act.")
+      .def_ro("force", &ToldPlace::force)
+      .def_prop_ro("at_rest", [](const ToldPlace& p) { return vector_out(p.at_rest); })
+      .def_prop_ro("present", [](const ToldPlace& p) { return vector_out(p.present); })
+      .def_prop_ro("covariance", [](const ToldPlace& p) { return matrix_out(p.covariance); });
+  nb::class_<Told>(module, "Told", "What readings told.")
+      .def_prop_ro("status", [](const Told& t) { return std::string(name_of(t.estimate.status)); })
+      .def_prop_ro("remark", [](const Told& t) { return t.estimate.remark; })
+      .def_prop_ro("numbers", [](const Told& t) { return t.estimate.numbers; })
+      .def_prop_ro("places", [](const Told& t) { return t.estimate.places; })
+      .def_prop_ro("covariance", [](const Told& t) { return matrix_out(t.estimate.covariance); })
+      .def_prop_ro("computed", [](const Told& t) { return vector_out(t.estimate.computed); })
+      .def_prop_ro("chi_square", [](const Told& t) { return t.estimate.chi_square; })
+      .def_prop_ro("freedoms", [](const Told& t) { return t.estimate.freedoms; })
+      .def_prop_ro("misfit", [](const Told& t) { return t.estimate.misfit(); })
+      .def_prop_ro("seconds", [](const Told& t) { return t.estimate.seconds; })
+      .def_prop_ro("equilibria", [](const Told& t) { return t.estimate.equilibria; })
+      .def_ro("words", &Told::words)
+      .def_ro("left_out", &Told::left_out)
+      .def_ro("shape", &Told::shape)
+      .def("vertex_deviations", &vertex_deviations, nb::arg("vertices"));
+  nb::class_<RobotEstimator>(module, "Estimator", "Tells what pushes a robot from its readings.")
+      .def(
+          "__init__",
+          [](RobotEstimator* self, const RobotPtr& robot, const std::vector<std::string>& unknowns,
+             const std::vector<std::string>& columns, const VectorIn& deviations, double fade_s, bool leave_out,
+             const StaticsOptions& solver) {
+            EstimatorOptions options;
+            options.statics = solver;
+            options.fade_s = fade_s;
+            options.leave_out = leave_out;
+            new (self) RobotEstimator(robot, unknowns, columns, deviations, options);
+          },
+          nb::arg("robot"), nb::arg("unknowns"), nb::arg("columns"), nb::arg("deviations"), nb::arg("fade_s"),
+          nb::arg("leave_out"), nb::arg("solver"))
+      .def("update", &RobotEstimator::update, nb::arg("commands"), nb::arg("values"), nb::arg("elapsed_s"))
+      .def("forget", &RobotEstimator::forget)
+      .def_prop_ro("told_commands", &RobotEstimator::told_commands);
+}
+
+}  // namespace softkin::python

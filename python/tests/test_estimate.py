@@ -1,0 +1,104 @@
+"""What pushes a robot, told from readings that the robot itself made up."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from beams import block
+
+import softkin
+from softkin import Estimate, Estimator, InvalidInput, Robot, ToldNumber, ToldPlace
+
+
+@pytest.fixture(scope="module")
+def beam() -> Robot:
+    """64 x 12 x 12 mm along x, held at x = 0, to be pushed on its top."""
+    vertices, tetrahedra = block((8, 2, 2), (64, 12, 12))
+    top = np.flatnonzero(vertices[:, 2] == 12)
+    return Robot(
+        vertices,
+        tetrahedra,
+        regions={"base": {"vertices": np.flatnonzero(vertices[:, 0] == 0)}, "top": {"vertices": top}},
+        materials=[{"youngs_modulus": 1, "poisson_ratio": 0.4}],
+        fixed=[{"region": "base"}],
+        forces=[{"name": "push", "region": "top", "range": [[0, 0], [-0.1, 0.1], [-0.1, 0.1]]}],
+        markers={"middle": [32, 12, 6], "end": [64, 6, 6], "side": [48, 0, 6]},
+        sensors=[{"name": "strain", "kind": "length", "points": [[1, 6, 1], [60, 6, 1]]}],
+        name="beam",
+    )
+
+
+DEVIATIONS = {f"{marker}_{axis}_mm": 0.02 for marker in ("middle", "end", "side") for axis in "xyz"}
+
+
+def readings_of(shape: softkin.Shape) -> dict[str, float]:
+    return {f"{name}_{axis}_mm": float(at[i]) for name, at in shape.markers.items() for i, axis in enumerate("xyz")}
+
+
+def test_a_push_is_told_with_its_shape(beam: Robot) -> None:
+    shape = beam.solve(push_fy=0.01, push_fz=-0.02)
+    estimator = beam.estimator("push", DEVIATIONS)
+    assert isinstance(estimator, Estimator)
+    assert estimator.told_commands == ["push_fy", "push_fz"]
+    told = estimator.update(readings_of(shape))
+    assert isinstance(told, Estimate)
+    assert told.converged, told.remark
+    assert isinstance(told.numbers["push_fz"], ToldNumber)
+    assert told.numbers["push_fy"].value == pytest.approx(0.01, abs=2e-4)
+    assert told.numbers["push_fz"].value == pytest.approx(-0.02, abs=2e-4)
+    assert told.numbers["push_fz"].unit == "N"
+    assert 0 < told.numbers["push_fz"].deviation < told.numbers["push_fz"].known_deviation
+    assert told.covariance.shape == (2, 2)
+    assert not told.left_out
+    assert told.shape is not None
+    np.testing.assert_allclose(told.shape.positions, shape.positions, atol=0.05)
+    assert told.vertex_deviations.shape == (len(beam.vertices), 3)
+    assert told.computed.shape == (9,)
+    assert told.misfit < 3
+    assert told.freedoms == pytest.approx(7, abs=0.5)
+
+
+def test_where_it_is_told_too(beam: Robot) -> None:
+    shape = beam.solve(push_fy=0.01, push_fz=-0.02)
+    told = beam.estimator(["push:place"], DEVIATIONS).update(readings_of(shape))
+    place = told.places["push"]
+    assert isinstance(place, ToldPlace)
+    assert place.at_rest.shape == (3,)
+    assert np.trace(place.covariance) > 0
+
+
+def test_readings_that_are_missing_widen_what_is_told(beam: Robot) -> None:
+    readings = readings_of(beam.solve(push_fz=-0.02))
+    estimator = beam.estimator("push", DEVIATIONS, fade_s=1)
+    first = estimator.update(readings, time_s=0).numbers["push_fz"]
+    second = estimator.update(readings, time_s=0.01).numbers["push_fz"]
+    assert second.deviation < first.deviation
+    later = estimator.update({"end_x_mm": math.nan}, time_s=50).numbers["push_fz"]
+    assert later.deviation == pytest.approx(later.known_deviation)
+    with pytest.raises(ValueError, match="must not go back"):
+        estimator.update(readings, time_s=1)
+    estimator.forget()
+    assert estimator.update(readings, time_s=0).converged
+
+
+def test_a_wrong_marker_is_named(beam: Robot) -> None:
+    readings = readings_of(beam.solve(push_fz=-0.02))
+    readings["side_z_mm"] += 4
+    told = beam.estimator("push", DEVIATIONS).update(readings)
+    assert told.left_out == ["marker side"]
+    assert told.words[-1] == "left out, as it contradicts the other readings: marker side"
+
+
+def test_refusals(beam: Robot) -> None:
+    with pytest.raises(InvalidInput, match="no command of that name"):
+        beam.estimator("pull", DEVIATIONS)
+    with pytest.raises(InvalidInput, match="no marker"):
+        beam.estimator("push", {"tip_x_mm": 1})
+    with pytest.raises(InvalidInput, match="needs a deviation above 0"):
+        beam.estimator("push", {"end_x_mm": 0})
+    with pytest.raises(ValueError, match="no deviation is known"):
+        beam.estimator("push", DEVIATIONS).update({"air": 1})
+    with pytest.raises(ValueError, match="fade_s"):
+        beam.estimator("push", DEVIATIONS, fade_s=-1)

@@ -1,0 +1,85 @@
+#include <cmath>
+#include <softkin/core/dense.hpp>
+#include <softkin/kinematics/estimate/knowledge.hpp>
+
+namespace softkin::estimate {
+
+namespace {
+
+/// A variance below this share of what is known before any reading is that of a direction that is held, as across a
+/// flat patch.
+constexpr double held = 1e-8;
+
+Eigen::MatrixXd covariance_before(const Variables& variables) {
+  const Index numbers = variables.numbers(), size = numbers + 3 * static_cast<Index>(variables.forces().size());
+  Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
+  for (Index i = 0; i < numbers; ++i) {
+    const double deviation = variables.all()[static_cast<std::size_t>(i)].deviation;
+    covariance(i, i) = deviation * deviation;
+  }
+  for (std::size_t f = 0; f < variables.forces().size(); ++f) {
+    const Index first = numbers + 3 * static_cast<Index>(f);
+    covariance.block<3, 3>(first, first) = variables.forces()[f].patch->covariance();
+  }
+  return covariance;
+}
+
+Eigen::VectorXd mean_before(const Variables& variables) {
+  const Index numbers = variables.numbers();
+  Eigen::VectorXd mean(numbers + 3 * static_cast<Index>(variables.forces().size()));
+  mean.head(numbers) = variables.means();
+  for (std::size_t f = 0; f < variables.forces().size(); ++f)
+    mean.segment<3>(numbers + 3 * static_cast<Index>(f)) = variables.forces()[f].patch->middle();
+  return mean;
+}
+
+/// Inverse on what it spans, by coordinates in units of what is known before.
+Eigen::MatrixXd information_of(const Variables& variables, const Eigen::MatrixXd& covariance) {
+  Eigen::VectorXd units(covariance.rows());
+  for (Index i = 0; i < variables.numbers(); ++i) units[i] = variables.all()[static_cast<std::size_t>(i)].deviation;
+  for (std::size_t f = 0; f < variables.forces().size(); ++f)
+    units.segment<3>(variables.numbers() + 3 * static_cast<Index>(f))
+        .setConstant(std::sqrt(variables.forces()[f].patch->covariance().trace()));
+  const Eigen::VectorXd inverse_units = units.cwiseInverse();
+  const SymmetricEigen eigen = symmetric_eigen(inverse_units.asDiagonal() * covariance * inverse_units.asDiagonal());
+  Eigen::MatrixXd inverse = Eigen::MatrixXd::Zero(covariance.rows(), covariance.rows());
+  for (Index k = 0; k < static_cast<Index>(eigen.values.size()); ++k)
+    if (eigen.values[k] > held) inverse += eigen.vectors.col(k) * eigen.vectors.col(k).transpose() / eigen.values[k];
+  return inverse_units.asDiagonal() * inverse * inverse_units.asDiagonal();
+}
+
+}  // namespace
+
+Eigen::VectorXd coordinates_of(const Variables& variables, const Eigen::VectorXd& values,
+                               const std::vector<Place>& places) {
+  Eigen::VectorXd coordinates(variables.numbers() + 3 * static_cast<Index>(places.size()));
+  coordinates.head(variables.numbers()) = values;
+  for (std::size_t f = 0; f < places.size(); ++f)
+    coordinates.segment<3>(variables.numbers() + 3 * static_cast<Index>(f)) =
+        variables.forces()[f].patch->at(places[f], variables.model().rest);
+  return coordinates;
+}
+
+Eigen::MatrixXd directions_at(const Variables& variables, const std::vector<Place>& places) {
+  const Index numbers = variables.numbers();
+  Eigen::MatrixXd directions =
+      Eigen::MatrixXd::Zero(numbers + 3 * static_cast<Index>(places.size()), variables.columns());
+  directions.topLeftCorner(numbers, numbers).setIdentity();
+  for (std::size_t f = 0; f < places.size(); ++f)
+    directions.block<3, 2>(numbers + 3 * static_cast<Index>(f), numbers + 2 * static_cast<Index>(f)) =
+        variables.forces()[f].patch->tangents(places[f]);
+  return directions;
+}
+
+Knowledge::Knowledge(const Variables& variables)
+    : mean(mean_before(variables)), information(information_of(variables, covariance_before(variables))) {}
+
+Knowledge::Knowledge(const Variables& variables, const Eigen::VectorXd& told, const Eigen::MatrixXd& covariance,
+                     double share)
+    : mean(mean_before(variables)) {
+  mean += share * (told - mean);
+  information =
+      information_of(variables, share * share * covariance + (1 - share * share) * covariance_before(variables));
+}
+
+}  // namespace softkin::estimate

@@ -1,0 +1,60 @@
+#include <softkin/kinematics/estimate/readings.hpp>
+#include <softkin/model/sensor.hpp>
+#include <softkin/statics/deformation.hpp>
+
+namespace softkin::estimate {
+
+namespace {
+
+/// Largest move of a vertex, over the diagonal, by which lengths and volumes are differentiated along known moves.
+constexpr double small_move = 1e-6;
+
+double force_on(const Model& model, const PoseColumn& column, const Points& positions, const Points& at_vertices) {
+  ElementDeformation deformation;
+  deformation.reactions = at_vertices;
+  return reactions(model, positions, deformation)[static_cast<std::size_t>(column.support)].force[column.axis];
+}
+
+/// Of a cable or a chamber, [mm] or [mm^3].
+double measure_at(const Model& model, Index actuator, const Points& positions) {
+  const Actuator& of = model.actuators[static_cast<std::size_t>(actuator)];
+  return achieved_ratio(model, of, positions) * of.rest_measure;
+}
+
+bool is_measure(const PoseColumn& column) {
+  return column.actuator >= 0 && (column.kind == Reading::length || column.kind == Reading::volume);
+}
+
+}  // namespace
+
+bool is_of_shape(const PoseColumn& column) {
+  return column.marker >= 0 || column.sensor >= 0 || is_measure(column);
+}
+
+double reading_at(const Model& model, const PoseColumn& column, const State& state, const Points& reactions) {
+  if (column.marker >= 0)
+    return model.markers[static_cast<std::size_t>(column.marker)].at(state.positions)[column.axis];
+  if (column.sensor >= 0) return model.sensors[static_cast<std::size_t>(column.sensor)]->at(state.positions);
+  if (is_measure(column)) return measure_at(model, column.actuator, state.positions);
+  if (column.support >= 0) return force_on(model, column, state.positions, reactions);
+  return state.multipliers[column.actuator];
+}
+
+double reading_change(const Model& model, const PoseColumn& column, const State& state, const ShapeChange& change) {
+  const Points& at = state.positions;
+  if (column.marker >= 0)
+    return model.markers[static_cast<std::size_t>(column.marker)].velocity(at, change.moves)[column.axis];
+  if (column.sensor >= 0) return model.sensors[static_cast<std::size_t>(column.sensor)]->velocity(at, change.moves);
+  if (is_measure(column)) {
+    const double largest = change.moves.cwiseAbs().maxCoeff();
+    if (!(largest > 0)) return 0;
+    const double h = small_move * model.diagonal_mm / largest;
+    return (measure_at(model, column.actuator, at + h * change.moves) -
+            measure_at(model, column.actuator, at - h * change.moves)) /
+           (2 * h);
+  }
+  if (column.support >= 0) return force_on(model, column, at, change.reactions);
+  return change.multipliers[column.actuator];
+}
+
+}  // namespace softkin::estimate

@@ -1,0 +1,187 @@
+#include <algorithm>
+#include <cmath>
+#include <softkin/core/error.hpp>
+#include <softkin/core/text.hpp>
+#include <softkin/kinematics/estimate/variables.hpp>
+#include <softkin/model/names.hpp>
+
+namespace softkin::estimate {
+
+namespace {
+
+[[noreturn]] void refuse_unknown(const EstimatedUnknown& unknown, const std::string& why) {
+  throw InvalidInput((unknown.option.empty() ? "unknown '" : unknown.option + " '") + unknown.name + "': " + why);
+}
+
+/// The commands of a force that the scene gives a range: NAME_fx and so on.
+std::vector<Index> commands_of_force(const Model& model, const std::string& name) {
+  std::vector<Index> commands;
+  for (const char* axis : axis_names)
+    if (const auto a = find_actuator(model, name + "_f" + axis))
+      if (model.actuators[static_cast<std::size_t>(*a)].kind == ActuatorKind::force) commands.push_back(*a);
+  return commands;
+}
+
+}  // namespace
+
+Variables::Variables(const Model& model, const std::vector<EstimatedUnknown>& unknowns)
+    : model_(std::make_unique<Model>(model)), own_actuators_(static_cast<Index>(model.actuators.size())) {
+  if (model.formulation != Formulation::physical)
+    throw InvalidInput({.file = model.name},
+                       "forces are told in the physical formulation; this scene is of target shapes");
+  if (rubs(model))
+    throw InvalidInput({.file = model.name},
+                       "shapes depend on the way there where something rubs: what pushes cannot be told from them");
+  if (unknowns.empty()) throw InvalidInput("there is no unknown to tell");
+  for (const EstimatedUnknown& unknown : unknowns) add(unknown);
+}
+
+void Variables::add(const EstimatedUnknown& unknown) {
+  const std::optional<Index> command = find_actuator(*model_, unknown.name);
+  const std::vector<Index> force = commands_of_force(*model_, unknown.name);
+  if (command && !force.empty()) refuse_unknown(unknown, "both a command and a force have that name");
+  if (!command && force.empty()) {
+    std::vector<std::string> names;
+    for (Index a = 0; a < own_actuators_; ++a) names.push_back(model_->actuators[static_cast<std::size_t>(a)].name);
+    std::string list;
+    for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+    refuse_unknown(unknown, "the scene has no command of that name, and no force with a 'range'; commands: " + list);
+  }
+  if (unknown.somewhere && command) refuse_unknown(unknown, "a command has no place: name a force");
+  if (unknown.deviation && !(*unknown.deviation > 0 && std::isfinite(*unknown.deviation)))
+    refuse_unknown(unknown, "the deviation must be above 0");
+  if (unknown.somewhere) return add_patch(unknown, force);
+  if (command) return add_variable(unknown, *command, -1);
+  for (const Index a : force) add_variable(unknown, a, -1);
+}
+
+void Variables::add_variable(const EstimatedUnknown& unknown, Index actuator, Index force) {
+  const Actuator& of = model_->actuators[static_cast<std::size_t>(actuator)];
+  if (std::any_of(variables_.begin(), variables_.end(), [&](const Variable& v) { return v.actuator == actuator; }))
+    refuse_unknown(unknown, "command '" + of.name + "' is to be told twice");
+  if (!(of.low < of.high))
+    refuse_unknown(unknown, "command '" + of.name + "' has one value, so there is nothing to tell");
+  if (of.kind == ActuatorKind::hold || of.kind == ActuatorKind::motion)
+    refuse_unknown(unknown, "a command of kind '" + std::string(kind_name(of)) + "' cannot be told");
+  Variable variable{
+      actuator, force,  unknown.mean.value_or(of.rest), unknown.deviation.value_or((of.high - of.low) / 2),
+      of.low,   of.high};
+  if (!(variable.mean >= of.low && variable.mean <= of.high))
+    refuse_unknown(unknown, "its mean, " + command_text(of, variable.mean) + ", is outside " + range_text(of));
+  variables_.push_back(variable);
+}
+
+void Variables::add_patch(const EstimatedUnknown& unknown, const std::vector<Index>& commands) {
+  const auto number = static_cast<Index>(forces_.size());
+  FreeForce force;
+  force.name = unknown.name;
+  for (const Index a : commands) {
+    const Actuator& of = model_->actuators[static_cast<std::size_t>(a)];
+    if (of.cavity.empty())
+      refuse_unknown(unknown,
+                     "its place can be told on a region of faces of the body's surface; it is at a point, or at a "
+                     "region without such");
+    if (!force.patch) force.patch = std::make_unique<Patch>(*model_, of.cavity);
+    force.variables[static_cast<std::size_t>(of.axis)] = numbers();
+    add_variable(unknown, a, number);
+  }
+  add_node_commands(force);
+  forces_.push_back(std::move(force));
+}
+
+void Variables::add_node_commands(FreeForce& force) {
+  force.first_command = static_cast<Index>(model_->actuators.size());
+  for (const Index node : force.patch->nodes())
+    for (int axis = 0; axis < 3; ++axis) {
+      Actuator command;
+      command.name = force.name + ":" + std::to_string(node) + axis_names[axis];
+      command.kind = ActuatorKind::force;
+      command.control = Control::load;
+      command.axis = axis;
+      command.points = {{{node}, {1.0}}};
+      command.rest = 0;
+      command.high = std::numeric_limits<double>::max();
+      command.low = -command.high;
+      model_->actuators.push_back(std::move(command));
+    }
+}
+
+Actuation Variables::actuation(const Actuation& commands, const Eigen::VectorXd& values,
+                               const std::vector<Place>& places) const {
+  Actuation all = Actuation::Zero(static_cast<Index>(model_->actuators.size()));
+  all.head(own_actuators_) = commands;
+  for (Index i = 0; i < numbers(); ++i) {
+    const Variable& variable = variables_[static_cast<std::size_t>(i)];
+    all[variable.actuator] = variable.force < 0 ? values[i] : 0;
+  }
+  for (std::size_t f = 0; f < forces_.size(); ++f) {
+    const std::vector<Actuation> along = changes_at(f, places[f]);
+    std::size_t next = 0;
+    for (const Index variable : forces_[f].variables)
+      if (variable >= 0) all += values[variable] * along[next++];
+  }
+  return all;
+}
+
+std::vector<Actuation> Variables::changes_at(std::size_t number, const Place& place) const {
+  const FreeForce& force = forces_[number];
+  const Patch::Shares at = force.patch->shares(place);
+  std::vector<Actuation> changes;
+  for (Index axis = 0; axis < 3; ++axis) {
+    if (force.variables[static_cast<std::size_t>(axis)] < 0) continue;
+    Actuation& change = changes.emplace_back(Actuation::Zero(static_cast<Index>(model_->actuators.size())));
+    for (std::size_t i = 0; i < at.nodes.size(); ++i)
+      change[force.first_command + 3 * at.nodes[i] + axis] = at.shares[static_cast<Index>(i)];
+  }
+  return changes;
+}
+
+std::vector<Actuation> Variables::changes(const Eigen::VectorXd& values, const std::vector<Place>& places) const {
+  const Actuation none = Actuation::Zero(static_cast<Index>(model_->actuators.size()));
+  std::vector<Actuation> changes(static_cast<std::size_t>(columns()), none);
+  for (Index i = 0; i < numbers(); ++i)
+    if (const Variable& variable = variables_[static_cast<std::size_t>(i)]; variable.force < 0)
+      changes[static_cast<std::size_t>(i)][variable.actuator] = 1;
+  for (std::size_t f = 0; f < forces_.size(); ++f) {
+    const FreeForce& force = forces_[f];
+    const Patch::Shares at = force.patch->shares(places[f]);
+    std::vector<Actuation> along = changes_at(f, places[f]);
+    std::size_t next = 0;
+    for (Index axis = 0; axis < 3; ++axis) {
+      const Index variable = force.variables[static_cast<std::size_t>(axis)];
+      if (variable < 0) continue;
+      changes[static_cast<std::size_t>(variable)] = std::move(along[next++]);
+      for (Index t = 0; t < 2; ++t)
+        for (std::size_t i = 0; i < at.nodes.size(); ++i)
+          changes[static_cast<std::size_t>(numbers() + t) + 2 * f][force.first_command + 3 * at.nodes[i] + axis] =
+              values[variable] * at.slopes(static_cast<Index>(i), t);
+    }
+  }
+  return changes;
+}
+
+std::vector<Index> Variables::measured() const {
+  std::vector<Index> measured;
+  for (Index a = 0; a < own_actuators_; ++a) {
+    const Actuator& actuator = model_->actuators[static_cast<std::size_t>(a)];
+    const bool told =
+        std::any_of(variables_.begin(), variables_.end(), [&](const Variable& v) { return v.actuator == a; });
+    if (!told && actuator.low < actuator.high && drives(actuator)) measured.push_back(a);
+  }
+  return measured;
+}
+
+Eigen::VectorXd Variables::means() const {
+  Eigen::VectorXd means(numbers());
+  for (Index i = 0; i < numbers(); ++i) means[i] = variables_[static_cast<std::size_t>(i)].mean;
+  return means;
+}
+
+Eigen::VectorXd Variables::clamped(Eigen::VectorXd values) const {
+  for (Index i = 0; i < numbers(); ++i)
+    values[i] = std::clamp(values[i], variables_[static_cast<std::size_t>(i)].low,
+                           variables_[static_cast<std::size_t>(i)].high);
+  return values;
+}
+
+}  // namespace softkin::estimate

@@ -1,0 +1,241 @@
+#include <algorithm>
+#include <chrono>
+#include <cmath>
+#include <limits>
+#include <softkin/core/dense.hpp>
+#include <softkin/core/error.hpp>
+#include <softkin/core/text.hpp>
+#include <softkin/kinematics/estimate/fit.hpp>
+#include <softkin/kinematics/estimate/outliers.hpp>
+#include <softkin/kinematics/estimator.hpp>
+#include <softkin/model/names.hpp>
+
+namespace softkin {
+
+using namespace estimate;
+
+double Estimate::misfit() const {
+  return estimate::excess(chi_square, freedoms);
+}
+
+Vec3 Estimate::vertex_deviation(Index vertex) const {
+  Eigen::MatrixXd by(3, static_cast<Index>(moves.size()));
+  for (std::size_t c = 0; c < moves.size(); ++c) by.col(static_cast<Index>(c)) = vertex_at(moves[c], vertex);
+  return (by * covariance * by.transpose()).diagonal().cwiseMax(0).cwiseSqrt();
+}
+
+namespace {
+
+/// Of the deviation of markers: what shapes need not be more exact than.
+constexpr double exact = 2e-3;
+
+StaticsOptions exact_enough(StaticsOptions options, const std::vector<PoseColumn>& columns,
+                            const Eigen::VectorXd& deviations) {
+  if (options.step_tolerance_mm > 0) return options;
+  bool markers_alone = true;
+  double least = std::numeric_limits<double>::infinity();
+  for (std::size_t r = 0; r < columns.size(); ++r) {
+    markers_alone = markers_alone && columns[r].kind == Reading::coordinate;
+    least = std::min(least, deviations[static_cast<Index>(r)]);
+  }
+  if (markers_alone) options.step_tolerance_mm = exact * least;
+  return options;
+}
+
+}  // namespace
+
+struct Estimator::Parts {
+  const Model& model;
+  EstimatorOptions options;
+  Eigen::VectorXd deviations;
+  Problem problem;
+  std::vector<ReadingGroup> groups;
+  std::optional<Fit> last{};
+  Actuation last_commands{};
+  Estimate estimate{};
+
+  Parts(const Model& robot, const std::vector<EstimatedUnknown>& unknowns, std::vector<PoseColumn> columns,
+        Eigen::VectorXd given, EstimatorOptions asked)
+      : model(robot),
+        options(std::move(asked)),
+        deviations(std::move(given)),
+        problem(robot, unknowns, columns, exact_enough(options.statics, columns, deviations)) {
+    make_groups();
+  }
+
+  void make_groups();
+  void check(const Actuation& commands, const Eigen::VectorXd& values, double elapsed_s) const;
+  [[nodiscard]] Knowledge known(double elapsed_s) const;
+  [[nodiscard]] Fit fit(const Fitter& fitter, const Readings& read, bool anew) const;
+  void tell(const Fit& found, const Readings& read, const Actuation& commands);
+  void tell_numbers(const Fit& found);
+  void tell_places(const Fit& found);
+};
+
+void Estimator::Parts::make_groups() {
+  const std::vector<PoseColumn>& columns = problem.columns();
+  for (Index c = 0; c < static_cast<Index>(columns.size()); ++c) {
+    const PoseColumn& column = columns[static_cast<std::size_t>(c)];
+    std::string name = column.marker >= 0 ? "marker " + model.markers[static_cast<std::size_t>(column.marker)].name
+                       : column.support >= 0
+                           ? "force of " + model.supports[static_cast<std::size_t>(column.support)].name
+                           : column.name;
+    const auto same = std::find_if(groups.begin(), groups.end(), [&](const ReadingGroup& g) { return g.name == name; });
+    if (same == groups.end())
+      groups.push_back({std::move(name), {c}});
+    else
+      same->columns.push_back(c);
+  }
+}
+
+void Estimator::Parts::check(const Actuation& commands, const Eigen::VectorXd& values, double elapsed_s) const {
+  if (values.size() != deviations.size())
+    throw InvalidInput("there are " + std::to_string(values.size()) + " readings, expected " +
+                       std::to_string(deviations.size()));
+  if (values.array().isInf().any()) throw InvalidInput("a reading is infinite");
+  if (!(elapsed_s >= 0)) throw InvalidInput("the time since the last readings must be 0 s or more");
+  if (commands.size() != static_cast<Index>(model.actuators.size()))
+    throw InvalidInput("there are " + std::to_string(commands.size()) + " commands, the robot has " +
+                       std::to_string(model.actuators.size()));
+}
+
+/// Readings tell from what the last estimate left of itself since then.
+Knowledge Estimator::Parts::known(double elapsed_s) const {
+  const Variables& variables = problem.variables();
+  if (!last || !(options.fade_s > 0)) return Knowledge(variables);
+  const Eigen::MatrixXd directions = directions_at(variables, last->at.places);
+  return {variables, coordinates_of(variables, last->at.values, last->at.places),
+          directions * estimate.covariance * directions.transpose(), std::exp(-elapsed_s / options.fade_s)};
+}
+
+Fit Estimator::Parts::fit(const Fitter& fitter, const Readings& read, bool anew) const {
+  if (anew || !last) return fitter.search(read);
+  return fitter.refine(last->at, read, &last->slopes, last_commands == read.commands ? nullptr : &last_commands);
+}
+
+void Estimator::Parts::tell_numbers(const Fit& found) {
+  const std::vector<Variable>& variables = problem.variables().all();
+  estimate.numbers.clear();
+  for (std::size_t i = 0; i < variables.size(); ++i) {
+    const Variable& v = variables[i];
+    const Actuator& actuator = model.actuators[static_cast<std::size_t>(v.actuator)];
+    const auto at = static_cast<Index>(i);
+    const double value = found.at.values[at];
+    estimate.numbers.push_back({actuator.name, command_unit(actuator), value,
+                                std::sqrt(std::max(0.0, estimate.covariance(at, at))), v.mean, v.deviation,
+                                value <= v.low    ? -1
+                                : value >= v.high ? 1
+                                                  : 0,
+                                v.actuator});
+    estimate.actuation[v.actuator] = value;
+  }
+}
+
+void Estimator::Parts::tell_places(const Fit& found) {
+  estimate.places.clear();
+  const std::vector<FreeForce>& forces = problem.variables().forces();
+  for (std::size_t f = 0; f < forces.size(); ++f) {
+    const Patch& patch = *forces[f].patch;
+    const Place& place = found.at.places[f];
+    const auto tangents = patch.tangents(place);
+    const Index first = problem.variables().numbers() + 2 * static_cast<Index>(f);
+    estimate.places.push_back(
+        {forces[f].name, patch.at(place, model.rest), patch.at(place, found.at.equilibrium.state.positions),
+         tangents * estimate.covariance.block(first, first, 2, 2) * tangents.transpose(), patch.covariance()});
+  }
+}
+
+void Estimator::Parts::tell(const Fit& found, const Readings& read, const Actuation& commands) {
+  const Eigen::MatrixXd& slopes = found.slopes.of_readings;
+  const CholeskyFactor factor(found.normal.matrix);
+  estimate.covariance = factor.solve(Eigen::MatrixXd(Eigen::MatrixXd::Identity(slopes.cols(), slopes.cols())));
+  estimate.computed = found.at.computed;
+  const Eigen::VectorXd leverage = (slopes * estimate.covariance).cwiseProduct(slopes).rowwise().sum().cwiseMax(0);
+  estimate.deviations = leverage.cwiseSqrt();
+  estimate.chi_square = estimate.freedoms = 0;
+  for (Index r = 0; r < read.values.size(); ++r) {
+    if (read.weights[r] == 0) continue;
+    const double off = found.at.computed[r] - read.values[r];
+    estimate.chi_square += read.weights[r] * off * off;
+    estimate.freedoms += std::max(0.0, 1 - read.weights[r] * leverage[r]);
+  }
+  estimate.actuation = commands;
+  tell_numbers(found);
+  tell_places(found);
+  estimate.state = found.at.equilibrium.state;
+  const auto own = static_cast<Index>(model.actuators.size());
+  estimate.state.actuation = estimate.state.actuation.head(own).eval();
+  estimate.state.multipliers = estimate.state.multipliers.head(own).eval();
+  estimate.moves = found.slopes.moves;
+}
+
+Estimator::Estimator(const Model& model, const std::vector<EstimatedUnknown>& unknowns, std::vector<PoseColumn> columns,
+                     Eigen::VectorXd deviations, EstimatorOptions options) {
+  if (columns.empty()) throw InvalidInput("there is no reading");
+  if (deviations.size() != static_cast<Index>(columns.size())) throw InvalidInput("each reading needs a deviation");
+  for (std::size_t r = 0; r < columns.size(); ++r)
+    if (const double d = deviations[static_cast<Index>(r)]; !(d > 0 && std::isfinite(d)))
+      throw InvalidInput("reading '" + columns[r].name + "' needs a deviation above 0, not " + number(d));
+  parts_ = std::make_unique<Parts>(model, unknowns, std::move(columns), std::move(deviations), std::move(options));
+}
+Estimator::~Estimator() = default;
+Estimator::Estimator(Estimator&&) noexcept = default;
+Estimator& Estimator::operator=(Estimator&&) noexcept = default;
+
+const Estimate& Estimator::update(const Actuation& commands, const Eigen::VectorXd& values, double elapsed_s,
+                                  const ProgressCallback& progress) {
+  const auto begin = std::chrono::steady_clock::now();
+  Parts& parts = *parts_;
+  parts.check(commands, values, elapsed_s);
+  Estimate& estimate = parts.estimate;
+  const int solves = parts.problem.solves();
+  Eigen::VectorXd weights = parts.deviations.cwiseAbs2().cwiseInverse();
+  for (Index r = 0; r < values.size(); ++r)
+    if (std::isnan(values[r])) weights[r] = 0;
+  const Knowledge known = parts.known(elapsed_s), nothing(parts.problem.variables());
+  const Fitter fitter(parts.problem, parts.options, progress);
+  const auto fit = [&](const Eigen::VectorXd& some, bool anew) {
+    return parts.fit(fitter, {commands, values, some, anew ? nothing : known}, anew);
+  };
+  const auto forecast = [&](const Eigen::VectorXd& some) { return fitter.forecast({commands, values, some, nothing}); };
+  Fit found = fit(weights, false);
+  std::vector<std::size_t> out;
+  if (found.at.solved() && !found.interrupted && parts.options.leave_out)
+    found =
+        without_outliers(parts.groups, values, weights, std::move(found), parts.last.has_value(), fit, forecast, out);
+  estimate.left_out = std::move(out);
+  estimate.iterations = found.iterations;
+  estimate.status = found.interrupted ? Status::interrupted
+                    : found.converged ? Status::converged
+                                      : Status::not_converged;
+  estimate.remark = found.interrupted || found.converged ? ""
+                    : found.at.solved()
+                        ? "its iterations were not enough"
+                        : "the robot has no equilibrium where the search begins: " + found.at.equilibrium.report.remark;
+  if (found.at.solved() && found.normal.matrix.size() > 0) {
+    parts.tell(found, {commands, values, weights, known}, commands);
+    if (found.converged) {
+      parts.last = std::move(found);
+      parts.last_commands = commands;
+    }
+  }
+  estimate.equilibria = parts.problem.solves() - solves;
+  estimate.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+  return estimate;
+}
+
+void Estimator::forget() {
+  parts_->last.reset();
+}
+
+const std::vector<ReadingGroup>& Estimator::groups() const {
+  return parts_->groups;
+}
+
+std::vector<Index> Estimator::told_actuators() const {
+  std::vector<Index> told;
+  for (const Variable& variable : parts_->problem.variables().all()) told.push_back(variable.actuator);
+  return told;
+}
+
+}  // namespace softkin

@@ -1,0 +1,232 @@
+#include <algorithm>
+#include <cmath>
+#include <nlohmann/json.hpp>
+#include <softkin/core/error.hpp>
+#include <softkin/core/text.hpp>
+#include <softkin/io/json_text.hpp>
+#include <softkin/model/names.hpp>
+#include <softkin/runs/estimate_report.hpp>
+
+namespace softkin::runs {
+
+namespace {
+
+Json vector_json(const Vec3& v) {
+  return Json{v[0], v[1], v[2]};
+}
+
+Json matrix_json(const Eigen::MatrixXd& m) {
+  Json rows = Json::array();
+  for (Eigen::Index i = 0; i < m.rows(); ++i) {
+    Json row = Json::array();
+    for (Eigen::Index j = 0; j < m.cols(); ++j) row.push_back(m(i, j));
+    rows.push_back(std::move(row));
+  }
+  return rows;
+}
+
+/// Standard deviations along the axes.
+Vec3 deviations_of(const Mat3& covariance) {
+  return covariance.diagonal().cwiseMax(0).cwiseSqrt();
+}
+
+std::string plus_minus(double value, double deviation, const std::string& unit) {
+  if (!(deviation > 1e-9)) return number(value) + (unit.empty() ? "" : " " + unit);
+  const int decimals = std::clamp(1 - static_cast<int>(std::floor(std::log10(deviation))), 0, 9);
+  return decimal(value, decimals) + " +- " + decimal(deviation, decimals) + (unit.empty() ? "" : " " + unit);
+}
+
+std::string unit_key(const std::string& unit) {
+  return unit.empty() ? "" : "_" + unit;
+}
+
+std::string left_out_text(const EstimateReport& report, const Estimate& told) {
+  std::string text;
+  for (const std::size_t g : told.left_out) text += (text.empty() ? "" : "; ") + report.groups[g].name;
+  return text;
+}
+
+Eigen::VectorXd deviations_of(const MeasuredPoses& poses, const std::array<double, readings>& given,
+                              const std::array<std::string, readings>& options) {
+  Eigen::VectorXd deviations(static_cast<Index>(poses.columns.size()));
+  for (std::size_t c = 0; c < poses.columns.size(); ++c) {
+    const auto kind = static_cast<std::size_t>(poses.columns[c].kind);
+    if (!(given[kind] > 0))
+      throw InvalidInput({poses.file}, "column '" + poses.columns[c].name + "' needs the deviation of a " +
+                                           reading_names[kind] + ": " + options[kind] + " in " + reading_units[kind]);
+    deviations[static_cast<Index>(c)] = given[kind];
+  }
+  return deviations;
+}
+
+void refuse_commanded(const Model& model, const MeasuredPoses& poses, const std::vector<Index>& told) {
+  for (const Index a : poses.commanded)
+    if (std::find(told.begin(), told.end(), a) != told.end())
+      throw InvalidInput({poses.file}, "a column commands '" + model.actuators[static_cast<std::size_t>(a)].name +
+                                           "', which is to be told: leave out one of them");
+}
+
+Json row_json(const EstimateReport& report, std::size_t row) {
+  const Estimate& told = report.told[row];
+  Json numbers = Json::array(), places = Json::array(), left_out = Json::array();
+  for (const ToldNumber& n : told.numbers)
+    numbers.push_back({{"name", n.name},
+                       {"unit", n.unit},
+                       {"value", n.value},
+                       {"deviation", n.deviation},
+                       {"known_mean", n.known_mean},
+                       {"known_deviation", n.known_deviation},
+                       {"at_bound", n.at_bound}});
+  for (const ToldPlace& p : told.places)
+    places.push_back({{"force", p.force},
+                      {"at_rest_mm", vector_json(p.at_rest)},
+                      {"present_mm", vector_json(p.present)},
+                      {"covariance_mm2", matrix_json(p.covariance)}});
+  for (const std::size_t g : told.left_out) left_out.push_back(report.groups[g].name);
+  Json readings = Json::array();
+  for (std::size_t c = 0; c < report.poses.columns.size(); ++c) {
+    const double read = report.poses.values(static_cast<Index>(row), static_cast<Index>(c));
+    if (std::isnan(read) || told.computed.size() == 0) continue;
+    const double computed = told.computed[static_cast<Index>(c)];
+    readings.push_back({{"column", report.poses.columns[c].name},
+                        {"read", read},
+                        {"computed", computed},
+                        {"computed_deviation", told.deviations[static_cast<Index>(c)]}});
+  }
+  Json json{{"line", report.poses.lines[row]}, {"status", name_of(told.status)}, {"remark", told.remark}};
+  if (!report.poses.times.empty()) json["t_s"] = report.poses.times[row];
+  json["numbers"] = std::move(numbers);
+  json["places"] = std::move(places);
+  json["covariance"] = matrix_json(told.covariance);
+  json["chi_square"] = told.chi_square;
+  json["freedoms"] = told.freedoms;
+  json["misfit"] = told.misfit();
+  json["left_out"] = std::move(left_out);
+  json["readings"] = std::move(readings);
+  json["words"] = report.words[row];
+  json["equilibria"] = told.equilibria;
+  json["seconds"] = told.seconds;
+  return json;
+}
+
+}  // namespace
+
+bool EstimateReport::good() const {
+  constexpr double doubtful = 3;
+  return !interrupted && std::all_of(told.begin(), told.end(), [](const Estimate& e) {
+    return e.status == Status::converged && e.misfit() < doubtful;
+  });
+}
+
+EstimateReport estimate_poses(const Model& model, const MeasuredPoses& poses,
+                              const std::vector<EstimatedUnknown>& unknowns,
+                              const std::array<double, readings>& deviations,
+                              const std::array<std::string, readings>& options, const EstimatorOptions& how,
+                              const EstimateCallback& row, const ProgressCallback& progress) {
+  if (how.fade_s > 0 && poses.times.empty())
+    throw InvalidInput({poses.file}, "estimates that fade need the times of readings, column t_s [s]");
+  Estimator estimator(model, unknowns, poses.columns, deviations_of(poses, deviations, options), how);
+  refuse_commanded(model, poses, estimator.told_actuators());
+  EstimateReport report{model, poses, unknowns, deviations, how.fade_s};
+  report.groups = estimator.groups();
+  for (std::size_t r = 0; r < poses.commands.size(); ++r) {
+    const double elapsed = r > 0 && !poses.times.empty() ? poses.times[r] - poses.times[r - 1] : 0;
+    const Estimate& told =
+        estimator.update(poses.commands[r], poses.values.row(static_cast<Index>(r)).transpose(), elapsed, progress);
+    if (told.status == Status::interrupted) {
+      report.interrupted = true;
+      break;
+    }
+    Estimate kept = told;
+    kept.moves.clear();
+    kept.state = {};
+    report.told.push_back(std::move(kept));
+    report.words.push_back(estimate_words(told, report.groups));
+    if (row) row(r, told);
+  }
+  return report;
+}
+
+std::string estimate_row_text(const EstimateReport& report, std::size_t row) {
+  const Estimate& told = report.told[row];
+  std::string text = "line " + std::to_string(report.poses.lines[row]);
+  if (!report.poses.times.empty()) text += ", " + number(report.poses.times[row]) + " s";
+  text += ":";
+  if (told.status != Status::converged) text += std::string(" ") + name_of(told.status) + ": " + told.remark;
+  for (const ToldNumber& n : told.numbers) text += " " + n.name + " " + plus_minus(n.value, n.deviation, n.unit) + ";";
+  for (const ToldPlace& p : told.places) {
+    const Vec3 off = deviations_of(p.covariance);
+    text += " " + p.force + " at rest at";
+    for (Index axis = 0; axis < 3; ++axis)
+      text += std::string(axis > 0 ? ", " : " ") + axis_names[axis] + " " + plus_minus(p.at_rest[axis], off[axis], "");
+    text += " mm;";
+  }
+  text += " chi-square " + number(told.chi_square, 3) + " for " + number(told.freedoms, 3) + "\n";
+  for (const std::string& words : report.words[row]) text += "  " + words + "\n";
+  return text;
+}
+
+std::string estimate_text(const EstimateReport& report) {
+  std::size_t fit = 0, left_out = 0;
+  double chi_square = 0, freedoms = 0, seconds = 0;
+  for (const Estimate& told : report.told) {
+    fit += told.status == Status::converged && told.misfit() < 3;
+    left_out += !told.left_out.empty();
+    chi_square += told.chi_square;
+    freedoms += told.freedoms;
+    seconds += told.seconds;
+  }
+  std::string text = std::to_string(fit) + " of " + counted(report.told.size(), "row") + " fit the model";
+  if (left_out > 0) text += "; readings were left out of " + counted(left_out, "row");
+  text += "; chi-square " + number(chi_square, 3) + " for " + number(freedoms, 3) + " freedoms of all; " +
+          number(1e3 * seconds / std::max<double>(1, static_cast<double>(report.told.size())), 3) + " ms a row\n";
+  return text;
+}
+
+std::string estimate_json(const EstimateReport& report) {
+  Json rows = Json::array(), unknowns = Json::array(), deviations = Json::object();
+  for (std::size_t r = 0; r < report.told.size(); ++r) rows.push_back(row_json(report, r));
+  for (const EstimatedUnknown& u : report.unknowns) unknowns.push_back({{"name", u.name}, {"place", u.somewhere}});
+  for (std::size_t k = 0; k < readings; ++k)
+    if (report.deviations[k] > 0)
+      deviations[std::string(reading_names[k]) + unit_key(reading_units[k])] = report.deviations[k];
+  return json_text(Json{{"softkin_estimate", 1},
+                        {"complete", !report.interrupted},
+                        {"unknowns", unknowns},
+                        {"deviations", deviations},
+                        {"fade_s", report.fade_s},
+                        {"rows", rows}}) +
+         "\n";
+}
+
+Table estimate_table(const EstimateReport& report) {
+  Table table;
+  const auto add = [&](const std::string& key) { table.columns.push_back({.key = key}); };
+  add("reading");
+  add("line");
+  add("t_s");
+  if (!report.told.empty()) {
+    for (const ToldNumber& n : report.told[0].numbers)
+      for (const char* what : {"", "_deviation"}) add(n.name + what + unit_key(n.unit));
+    for (const ToldPlace& p : report.told[0].places)
+      for (const char* what : {"_at_rest_", "_present_", "_deviation_"})
+        for (const char* axis : axis_names) add(p.force + what + axis + "_mm");
+  }
+  for (const char* key : {"chi_square", "freedoms", "left_out", "status"}) add(key);
+  for (std::size_t r = 0; r < report.told.size(); ++r) {
+    const Estimate& told = report.told[r];
+    Row row{static_cast<std::int64_t>(r + 1), static_cast<std::int64_t>(report.poses.lines[r]),
+            report.poses.times.empty() ? Cell() : Cell(report.poses.times[r])};
+    for (const ToldNumber& n : told.numbers) row.insert(row.end(), {Cell(n.value), Cell(n.deviation)});
+    for (const ToldPlace& p : told.places)
+      for (const Vec3& v : {p.at_rest, p.present, deviations_of(p.covariance)})
+        for (const double x : v) row.emplace_back(x);
+    row.resize(table.columns.size() - 4);
+    row.insert(row.end(), {Cell(told.chi_square), Cell(told.freedoms), Cell(left_out_text(report, told)),
+                           Cell(std::string(name_of(told.status)))});
+    table.rows.push_back(std::move(row));
+  }
+  return table;
+}
+
+}  // namespace softkin::runs

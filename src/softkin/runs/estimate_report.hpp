@@ -1,0 +1,49 @@
+#pragma once
+
+#include <functional>
+#include <softkin/io/table/table.hpp>
+#include <softkin/kinematics/estimator.hpp>
+#include <string>
+
+namespace softkin::runs {
+
+/// What readings told, row by row of their table.
+struct EstimateReport {
+  const Model& model;
+  const MeasuredPoses& poses;
+  std::vector<EstimatedUnknown> unknowns;
+  std::array<double, readings> deviations{};  // of each kind of reading, in its unit
+  double fade_s = 0;
+  std::vector<ReadingGroup> groups{};
+  std::vector<Estimate> told{};                   // without shapes and how they move
+  std::vector<std::vector<std::string>> words{};  // of each
+  bool interrupted = false;                       // some rows are missing
+
+  /// Has every reading told, and was none contradicted by the model?
+  [[nodiscard]] bool good() const;
+};
+
+/// Called after each row with its number, from 0, and what it told.
+using EstimateCallback = std::function<void(std::size_t row, const Estimate& told)>;
+
+/// Tells of every row, in order.
+///
+/// deviations  of each kind of reading; 0: none is given
+/// throws      InvalidInput: what Estimator throws; a reading of a kind whose deviation is not given, naming its option;
+///             a column that commands what is to be told; fading without times
+[[nodiscard]] EstimateReport estimate_poses(const Model& model, const MeasuredPoses& poses,
+                                            const std::vector<EstimatedUnknown>& unknowns,
+                                            const std::array<double, readings>& deviations,
+                                            const std::array<std::string, readings>& options,
+                                            const EstimatorOptions& how, const EstimateCallback& row,
+                                            const ProgressCallback& progress);
+
+/// Of one row: numbers and places with their deviations, then words.
+[[nodiscard]] std::string estimate_row_text(const EstimateReport& report, std::size_t row);
+/// What is known before, deviations, how well all rows fit.
+[[nodiscard]] std::string estimate_text(const EstimateReport& report);
+[[nodiscard]] std::string estimate_json(const EstimateReport& report);
+/// A line for each row: numbers, places, deviations, chi-square, what was left out.
+[[nodiscard]] Table estimate_table(const EstimateReport& report);
+
+}  // namespace softkin::runs

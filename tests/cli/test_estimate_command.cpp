@@ -1,0 +1,93 @@
+#include <nlohmann/json.hpp>
+
+#include "fk_samples.hpp"
+
+namespace {
+
+using namespace softkin::testing;
+using nlohmann::json;
+
+/// The block, its loads commanded, that is pushed at its tip.
+std::string pushed_scene() {
+  return loaded_scene() + "forces: [{name: push, region: tip, range: [[0, 0], [-0.2, 0.2], [-0.2, 0.2]]}]\n" +
+         "sensors: [{name: strain, kind: length, points: [[1, 6, 1], [19, 6, 1]]}]\n";
+}
+
+/// Readings of three poses, made up by fk.
+struct PushedBlock : BlockFolder {
+  PushedBlock() : BlockFolder(pushed_scene()) {
+    const std::string path = write("path.csv", "air_kPa,push_fy_N,push_fz_N\n0,0,0.02\n50,0.03,-0.05\n100,-0.1,0\n");
+    const ProgramResult made = run_fk(scene, {"--path", path, "--report", *this / "made.json"});
+    EXPECT_EQ(made.exit_code, 0) << made.errors;
+    const json report = json::parse(read_text(*this / "made.json"));
+    std::string text = "t_s,air_kPa,tip_x_mm,tip_y_mm,tip_z_mm,corner_x_mm,corner_y_mm,corner_z_mm\n";
+    int row = 0;
+    for (const json& step : report["steps"]) {
+      text += std::to_string(row++) + "," + step["actuation"]["air"].dump();
+      for (const char* marker : {"tip", "corner"})
+        for (const json& coordinate : step["markers"][marker]) text += "," + coordinate.dump();
+      text += "\n";
+    }
+    readings = write("readings.csv", text);
+  }
+
+  [[nodiscard]] ProgramResult estimate(const std::vector<std::string>& more) const {
+    std::vector<std::string> words{"estimate", scene, readings, "--threads", "1"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(words);
+  }
+
+  std::string readings;
+};
+
+TEST(EstimateCommand, TellsThePushOfEveryRow) {
+  const PushedBlock folder;
+  const std::string report = folder / "told.json", table = folder / "told.csv";
+  const std::vector<std::string> asked{"--unknown", "push", "--deviation", "0.001",
+                                       "--report",  report, "--table",     table};
+  const ProgramResult told = folder.estimate(asked);
+  ASSERT_EQ(told.exit_code, 0) << told.errors << told.output;
+  expect_words(told.output, {"line 2, 0 s: push_fy ", " N; push_fz 0.02", "3 of 3 rows fit the model", "chi-square"});
+  const json found = json::parse(read_text(report));
+  EXPECT_EQ(found["softkin_estimate"], 1);
+  ASSERT_EQ(found["rows"].size(), 3u);
+  const double expected[3][2] = {{0, 0.02}, {0.03, -0.05}, {-0.1, 0}};
+  for (std::size_t r = 0; r < 3; ++r)
+    for (std::size_t n = 0; n < 2; ++n)
+      EXPECT_NEAR(found["rows"][r]["numbers"][n]["value"].get<double>(), expected[r][n], 1e-4);
+  expect_words(read_text(table), {"reading,line,t_s,push_fy_N,push_fy_deviation_N,push_fz_N"});
+  EXPECT_EQ(folder.estimate(asked).exit_code, 0) << "what it wrote it replaces";
+  const ProgramResult fading =
+      folder.estimate({"--unknown", "push:place", "--deviation", "0.001", "--fade", "5", "--json"});
+  ASSERT_EQ(fading.exit_code, 0) << fading.errors << fading.output;
+  EXPECT_EQ(json::parse(fading.output)["rows"][2]["places"].size(), 1u);
+}
+
+/// A tip that is 3 mm off with one marker alone beside it: which of them is wrong cannot be told, but that one is.
+TEST(EstimateCommand, ReadingsThatDoNotFitAreSaidByTheExitCode) {
+  const PushedBlock folder;
+  const std::string text = read_text(folder.readings);
+  const std::string line = text.substr(0, text.find('\n')) + "\n0,0,23,6,6,20,12,15\n";
+  const std::string wrong = folder.write("wrong.csv", line);
+  const ProgramResult told =
+      run_program({"estimate", folder.scene, wrong, "--unknown", "push", "--deviation", "0.01", "--keep-all"});
+  EXPECT_EQ(told.exit_code, 1);
+  expect_words(told.output, {"the readings do not fit the model", "0 of 1 row fit the model"});
+}
+
+TEST(EstimateCommand, Refusals) {
+  const PushedBlock folder;
+  const auto refused = [&](const std::vector<std::string>& more, const std::string& why) {
+    const ProgramResult told = folder.estimate(more);
+    EXPECT_EQ(told.exit_code, 2) << why;
+    EXPECT_NE(told.errors.find(why), std::string::npos) << told.errors;
+  };
+  refused({"--deviation", "1"}, "--unknown");
+  refused({"--unknown", "pull", "--deviation", "1"}, "the scene has no command of that name");
+  refused({"--unknown", "push"}, "needs the deviation of a coordinate: --deviation in mm");
+  refused({"--unknown", "air", "--deviation", "1"}, "a column commands 'air', which is to be told");
+  refused({"--unknown", "push:there", "--deviation", "1"}, "can only be 'place'");
+  refused({"--unknown", "push=0+-0", "--deviation", "1"}, "the deviation must be above 0");
+}
+
+}  // namespace

@@ -1,0 +1,351 @@
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+#include <random>
+#include <softkin/core/error.hpp>
+#include <softkin/kinematics/estimate/problem.hpp>
+#include <softkin/kinematics/estimator.hpp>
+#include <softkin/model/sensor.hpp>
+#include <softkin/statics/deformation.hpp>
+
+#include "statics/physical_samples.hpp"
+
+/// Forces, places and shapes that are told from made-up readings.
+
+namespace softkin {
+
+namespace {
+
+using namespace testing;
+using estimate::Guess;
+using estimate::Place;
+using estimate::Problem;
+
+/// A finger of 60 mm that can be touched anywhere on its back, with four markers and what else can be read.
+RobotSpec touched_finger() {
+  RobotSpec spec = bending_finger();
+  spec.actuators[0] = by_load(spec.actuators[0]);
+  spec.forces = {
+      {"touch", {std::string("z_high"), {}}, {0, 0, 0}, std::array<Vec3, 2>{Vec3(-1, -1, -1), Vec3(1, 1, 1)}}};
+  spec.markers = {{"a", {Vec3(20, 1, 15), {}}},
+                  {"b", {Vec3(35, 11, 15), {}}},
+                  {"c", {Vec3(50, 1, 15), {}}},
+                  {"d", {Vec3(59, 11, 2), {}}}};
+  SensorSpec strain{.name = "strain", .kind = SensorKind::length, .points = {{5, 6, 1}, {30, 6, 1}, {55, 6, 1}}};
+  add_volume_region(spec.mesh, "first", [](const Vec3& p) { return p.x() < 15; });
+  add_volume_region(spec.mesh, "last", [](const Vec3& p) { return p.x() > 45; });
+  SensorSpec bend{
+      .name = "bend", .kind = SensorKind::angle, .points = {}, .sections = {"first", "last"}, .axis = Vec3(0, 1, 0)};
+  spec.sensors = {std::make_shared<const SensorSpec>(strain), std::make_shared<const SensorSpec>(bend)};
+  return spec;
+}
+
+std::vector<PoseColumn> marker_columns(const Model& model) {
+  std::vector<PoseColumn> columns;
+  for (Index m = 0; m < static_cast<Index>(model.markers.size()); ++m)
+    for (int axis = 0; axis < 3; ++axis)
+      columns.push_back({model.markers[static_cast<std::size_t>(m)].name + "_" + "xyz"[axis] + "_mm", m, axis});
+  return columns;
+}
+
+/// Markers, both sensors, the chamber's volume and what the support bears.
+std::vector<PoseColumn> all_columns(const Model& model) {
+  std::vector<PoseColumn> columns = marker_columns(model);
+  columns.push_back({"strain_length_mm", -1, -1, -1, Reading::length, -1, 0});
+  columns.push_back({"bend_angle_deg", -1, -1, -1, Reading::angle, -1, 1});
+  columns.push_back({"air_volume_mm3", -1, -1, 0, Reading::volume});
+  for (int axis = 0; axis < 3; ++axis) columns.push_back({"base_force", -1, axis, -1, Reading::force, 0});
+  return columns;
+}
+
+StaticsOptions exactly() {
+  StaticsOptions options;
+  options.step_tolerance_mm = 1e-9;
+  return options;
+}
+
+Actuation commands_of(const Model& model, double pressure) {
+  Actuation commands = model.rest_actuation();
+  commands[0] = pressure;
+  return commands;
+}
+
+}  // namespace
+
+/// By central differences of equilibria, of forces, places along both tangents, and the pressure.
+TEST(Estimator, SlopesAreThoseOfDifferences) {
+  for (const bool quadratic : {false, true}) {
+    RobotSpec spec = touched_finger();
+    if (quadratic) {
+      spec.mesh = block_mesh({6, 3, 3}, {60, 12, 16});
+      add_volume_region(spec.mesh, "chamber", [](const Vec3& p) {
+        return p.x() > 10 && p.x() < 50 && p.y() > 4 && p.y() < 8 && p.z() > 5 && p.z() < 11;
+      });
+      add_volume_region(spec.mesh, "first", [](const Vec3& p) { return p.x() < 10; });
+      add_volume_region(spec.mesh, "last", [](const Vec3& p) { return p.x() > 50; });
+      spec.forces[0].at.point = std::string("z_low");
+      spec.quadratic = true;
+    }
+    const Model model = compile(spec);
+    const Problem problem(model, {{"touch", true}, {model.actuators[0].name}}, all_columns(model), exactly(), 1e-9);
+    const Actuation commands = commands_of(model, 0);
+    Eigen::VectorXd values(4);
+    values << 0.1, -0.2, 0.25, 20;
+    const std::vector<Place> places = {{7, 0.3, 0.25}};
+    const Guess at = problem.solve(commands, values, places, nullptr, {});
+    ASSERT_TRUE(at.solved());
+    const Eigen::MatrixXd slopes = problem.slopes(at).of_readings;
+    ASSERT_EQ(slopes.cols(), 6);
+    const estimate::Patch& patch = *problem.variables().forces()[0].patch;
+    const Eigen::MatrixXd tangents = patch.shares(places[0]).tangents;
+    for (Index c = 0; c < 6; ++c) {
+      const double h = c < 3 ? 0.02 : c == 3 ? 0.5 : 0.1;
+      const auto computed = [&](double times) {
+        Eigen::VectorXd step = Eigen::VectorXd::Zero(6), moved;
+        step[c] = times * h;
+        std::vector<Place> there;
+        problem.move(at, step, moved, there);
+        EXPECT_EQ(there[0].face, 7);
+        const Guess found = problem.solve(commands, moved, there, &at, {});
+        EXPECT_TRUE(found.solved());
+        return found.computed;
+      };
+      const Eigen::VectorXd difference = (8 * (computed(1) - computed(-1)) - (computed(2) - computed(-2))) / (12 * h);
+      const std::vector<PoseColumn> columns = all_columns(model);
+      for (Index r = 0; r < difference.size(); ++r) {
+        double size = 0;  // of what is read of the same kind
+        for (Index other = 0; other < difference.size(); ++other)
+          if (columns[static_cast<std::size_t>(other)].kind == columns[static_cast<std::size_t>(r)].kind)
+            size = std::max(size, slopes.row(other).cwiseAbs().maxCoeff());
+        EXPECT_NEAR(slopes(r, c), difference[r], 1e-6 * size) << "reading " << r << ", column " << c;
+      }
+    }
+  }
+}
+
+namespace {
+
+/// What a force does that is laid on a face's corners by their shares, as no estimator does.
+struct Touch {
+  Actuation commands;
+  Vec3 force, place;
+  Equilibrium found;
+  Eigen::VectorXd readings;
+};
+
+Touch touched(const Vec3& force, const Vec3& place, double pressure) {
+  RobotSpec spec = touched_finger();
+  spec.forces = {{"touch", {place, {}}, force}};
+  const Model model = compile(spec);
+  const Statics statics(model);
+  Touch touch{commands_of(model, pressure), force, place, {}, {}};
+  touch.found = statics.solve(touch.commands, statics.rest());
+  EXPECT_EQ(touch.found.report.status, Status::converged);
+  touch.readings.resize(12);
+  for (Index m = 0; m < 4; ++m)
+    touch.readings.segment<3>(3 * m) = model.markers[static_cast<std::size_t>(m)].at(touch.found.state.positions);
+  // the model that tells has commands more
+  touch.commands.conservativeResize(4);
+  touch.commands.tail(3).setZero();
+  return touch;
+}
+
+Eigen::VectorXd noisy(const Eigen::VectorXd& readings, double deviation, std::mt19937& random) {
+  std::normal_distribution<double> normal(0, deviation);
+  Eigen::VectorXd noisy = readings;
+  for (double& reading : noisy) reading += normal(random);
+  return noisy;
+}
+
+Vec3 force_of(const Estimate& told) {
+  return {told.numbers[0].value, told.numbers[1].value, told.numbers[2].value};
+}
+
+Estimator of_touch(const Model& model, double deviation_mm) {
+  return {model, {{"touch", true}}, marker_columns(model), Eigen::VectorXd::Constant(12, deviation_mm)};
+}
+
+}  // namespace
+
+/// Markers without noise tell force and place: up to what the force's spot does to the markers beside it.
+TEST(Estimator, TellsForceAndPlace) {
+  const Model model = compile(touched_finger());
+  Estimator estimator = of_touch(model, 0.01);
+  for (const Touch& touch : {touched({0.05, -0.1, -0.4}, {41, 7, 16}, 10), touched({-0.1, 0.1, -0.3}, {53, 4, 16}, 0),
+                             touched({0, 0.25, 0.2}, {27, 9, 16}, 20)}) {
+    estimator.forget();
+    const Estimate& told = estimator.update(touch.commands, touch.readings);
+    ASSERT_EQ(told.status, Status::converged) << told.remark;
+    EXPECT_TRUE(told.left_out.empty());
+    EXPECT_LT((force_of(told) - touch.force).norm(), 0.03 * touch.force.norm());
+    ASSERT_EQ(told.places.size(), 1u);
+    EXPECT_LT((told.places[0].at_rest - touch.place).norm(), 0.02 * 60);
+    const Points shape = told.state.positions;
+    EXPECT_LT((shape - touch.found.state.positions).rowwise().norm().maxCoeff(), 0.3);
+  }
+}
+
+/// Ellipsoids of 90 % hold the force about that often, and the chi-square is what it is to be.
+TEST(Estimator, DeviationsAreHonest) {
+  const Model model = compile(touched_finger());
+  Estimator estimator = of_touch(model, 0.1);
+  std::mt19937 random(5);
+  const Touch touch = touched({0.1, -0.2, -0.5}, {45, 5, 16}, 10);
+  int held = 0, places_held = 0;
+  double chi_square = 0, freedoms = 0;
+  constexpr int draws = 40;
+  for (int d = 0; d < draws; ++d) {
+    const Estimate& told = estimator.update(touch.commands, noisy(touch.readings, 0.1, random));
+    ASSERT_EQ(told.status, Status::converged);
+    const Vec3 off = force_of(told) - touch.force;
+    const Mat3 covariance = told.covariance.topLeftCorner<3, 3>();
+    held += off.dot(covariance.inverse() * off) < 6.2514;  // 90 % of three freedoms
+    const Eigen::Vector2d slid = (told.places[0].at_rest - touch.place).head<2>();
+    const Eigen::Matrix2d spread = told.places[0].covariance.topLeftCorner<2, 2>();
+    places_held += slid.dot(spread.inverse() * slid) < 4.6052;  // of two
+    chi_square += told.chi_square;
+    freedoms += told.freedoms;
+  }
+  EXPECT_GE(held, 30);
+  EXPECT_GE(places_held, 30);
+  EXPECT_NEAR(chi_square / freedoms, 1, 0.35);
+}
+
+TEST(Estimator, NamesAndLeavesOutWrongReadings) {
+  const Model model = compile(touched_finger());
+  std::mt19937 random(3);
+  const Touch touch = touched({0.1, -0.1, -0.4}, {42, 6, 16}, 10);
+  Estimator estimator = of_touch(model, 0.1);
+  for (const bool tracked : {false, true}) {
+    Eigen::VectorXd off = noisy(touch.readings, 0.1, random), exchanged = off;
+    if (tracked) (void)estimator.update(touch.commands, off);
+    off.segment<3>(3) += Vec3(20, -15, 15);
+    const Estimate& one = estimator.update(touch.commands, off);
+    EXPECT_EQ(one.left_out, std::vector<std::size_t>{1});
+    EXPECT_LT((force_of(one) - touch.force).norm(), 3 * std::sqrt(one.covariance.topLeftCorner<3, 3>().trace()));
+    const std::vector<std::string> words = estimate_words(one, estimator.groups());
+    EXPECT_NE(std::find(words.begin(), words.end(), "left out, as it contradicts the other readings: marker b"),
+              words.end());
+    if (!tracked) estimator.forget();
+    const Vec3 first = exchanged.head<3>();
+    exchanged.head<3>() = exchanged.segment<3>(6).eval();
+    exchanged.segment<3>(6) = first;
+    EXPECT_EQ(estimator.update(touch.commands, exchanged).left_out, (std::vector<std::size_t>{0, 2}));
+    if (!tracked) estimator.forget();
+  }
+}
+
+/// A camera that is tilted is no wrong reading: nothing is left out, and that the readings do not fit is said.
+TEST(Estimator, SaysWhereTheModelIsWrong) {
+  const Model model = compile(touched_finger());
+  Estimator estimator = of_touch(model, 0.02);
+  const Touch touch = touched({0, 0, -0.4}, {50, 6, 16}, 20);
+  const Mat3 tilt = Eigen::AngleAxisd(0.15, Vec3(1, 1, 0).normalized()).toRotationMatrix();
+  Eigen::VectorXd values = touch.readings;
+  for (Index m = 0; m < 4; ++m) values.segment<3>(3 * m) = tilt * touch.readings.segment<3>(3 * m);
+  const Estimate& told = estimator.update(touch.commands, values);
+  EXPECT_GT(told.misfit(), 4.3);
+  EXPECT_TRUE(told.left_out.empty());
+  const std::vector<std::string> words = estimate_words(told, estimator.groups());
+  ASSERT_FALSE(words.empty());
+  EXPECT_NE(words.back().find("the readings do not fit the model"), std::string::npos) << words.back();
+}
+
+/// A chamber's volume at a pressure is one number: it tells of none of five, and that is said of each.
+TEST(Estimator, SaysWhatAVolumeDoesNotTell) {
+  const Model model = compile(touched_finger());
+  Estimator estimator(model, {{"touch", true}}, {{"air_volume_mm3", -1, -1, 0, Reading::volume}},
+                      Eigen::VectorXd::Constant(1, 1.0));
+  const Statics statics(model);
+  const Equilibrium found = statics.solve(commands_of(model, 10), statics.rest());
+  const double volume =
+      achieved_ratio(model, model.actuators[0], found.state.positions) * model.actuators[0].rest_measure;
+  const Estimate& told = estimator.update(commands_of(model, 10), Eigen::VectorXd::Constant(1, volume));
+  ASSERT_EQ(told.status, Status::converged);
+  EXPECT_LT(told.numbers[2].deviation, told.numbers[2].known_deviation);
+  const std::vector<std::string> words = estimate_words(told, estimator.groups());
+  for (const std::string start : {"touch_fx is told to", "touch_fy is told to", "the place of touch is told to"})
+    EXPECT_TRUE(std::any_of(words.begin(), words.end(), [&](const std::string& w) { return w.starts_with(start); }))
+        << start;
+}
+
+/// A pressure that was not measured, with a force at a place that is known, in sealed and in other words: told from
+/// markers and the strain along the sole.
+TEST(Estimator, TellsCommandsThatWereNotMeasured) {
+  RobotSpec spec = touched_finger();
+  spec.forces[0].at.point = Vec3(50, 6, 16);
+  const Model model = compile(spec);
+  const Statics statics(model);
+  Actuation commands = model.rest_actuation();
+  commands << 24, 0.1, 0, -0.2;
+  const Equilibrium found = statics.solve(commands, statics.rest());
+  std::vector<PoseColumn> columns = all_columns(model);
+  columns.erase(columns.begin() + 14, columns.end());  // without volume and support
+  Eigen::VectorXd values(14), deviations = Eigen::VectorXd::Constant(14, 0.05);
+  for (Index r = 0; r < 12; ++r)
+    values[r] = model.markers[static_cast<std::size_t>(r / 3)].at(found.state.positions)[r % 3];
+  for (Index s = 0; s < 2; ++s) values[12 + s] = model.sensors[static_cast<std::size_t>(s)]->at(found.state.positions);
+  values[4] = std::numeric_limits<double>::quiet_NaN();  // not read
+  Estimator estimator(model, {{model.actuators[0].name}, {"touch"}}, columns, deviations);
+  EXPECT_EQ(estimator.told_actuators(), (std::vector<Index>{0, 1, 2, 3}));
+  const Estimate& told = estimator.update(model.rest_actuation(), values);
+  ASSERT_EQ(told.status, Status::converged);
+  for (Index a = 0; a < 4; ++a)
+    EXPECT_NEAR(told.numbers[static_cast<std::size_t>(a)].value, commands[a],
+                0.2 * told.numbers[static_cast<std::size_t>(a)].deviation);
+  EXPECT_TRUE(told.places.empty());
+  EXPECT_TRUE(told.actuation.isApprox(commands, 1e-2));
+}
+
+/// With a time in which it fades, an estimate goes on from the last one, and dropouts widen it.
+TEST(Estimator, GoesOnFromTheLastEstimateAsFarAsItHolds) {
+  const Model model = compile(touched_finger());
+  EstimatorOptions options;
+  options.fade_s = 1;
+  Estimator estimator(model, {{"touch", true}}, marker_columns(model), Eigen::VectorXd::Constant(12, 0.1), options);
+  std::mt19937 random(9);
+  const Touch touch = touched({0.1, -0.1, -0.4}, {42, 6, 16}, 10);
+  (void)estimator.update(touch.commands, noisy(touch.readings, 0.1, random));
+  const double first = estimator.update(touch.commands, noisy(touch.readings, 0.1, random), 0.01).numbers[2].deviation;
+  for (int u = 0; u < 10; ++u) (void)estimator.update(touch.commands, noisy(touch.readings, 0.1, random), 0.001);
+  const Estimate after = estimator.update(touch.commands, noisy(touch.readings, 0.1, random), 0.001);
+  EXPECT_LT(after.numbers[2].deviation, first);
+  EXPECT_LT((force_of(after) - touch.force).norm(), 0.1);
+  const Eigen::VectorXd nothing = Eigen::VectorXd::Constant(12, std::numeric_limits<double>::quiet_NaN());
+  const Estimate later = estimator.update(touch.commands, nothing, 0.5);
+  EXPECT_EQ(later.status, Status::converged);
+  EXPECT_GT(later.numbers[2].deviation, 2 * after.numbers[2].deviation);
+  const Estimate much_later = estimator.update(touch.commands, nothing, 100);
+  EXPECT_NEAR(much_later.numbers[2].deviation, 1, 1e-6);  // as before any reading
+  EXPECT_NEAR(much_later.numbers[2].value, 0, 1e-2);
+}
+
+TEST(Estimator, Refusals) {
+  const Model model = compile(touched_finger());
+  const auto refused = [&](const std::vector<EstimatedUnknown>& unknowns, double deviation, const std::string& why) {
+    try {
+      const Estimator estimator(model, unknowns, marker_columns(model), Eigen::VectorXd::Constant(12, deviation));
+      ADD_FAILURE() << "not refused: " << why;
+    } catch (const InvalidInput& error) {
+      EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+    }
+  };
+  refused({}, 1, "there is no unknown to tell");
+  refused({{"push"}}, 1, "the scene has no command of that name, and no force with a 'range'");
+  refused({{model.actuators[0].name, true}}, 1, "a command has no place");
+  refused({{"touch"}, {"touch_fx"}}, 1, "command 'touch_fx' is to be told twice");
+  refused({{"touch", true, 5, 1}}, 1, "its mean, 5 N, is outside its range, -1 to 1 N");
+  refused({{"touch", true, 0, -1}}, 1, "the deviation must be above 0");
+  refused({{"touch"}}, 0, "needs a deviation above 0");
+  EXPECT_THROW((void)parse_unknown("--unknown", "touch:where"), InvalidInput);
+  EXPECT_THROW((void)parse_unknown("--unknown", "touch=1"), InvalidInput);
+  EXPECT_THROW((void)parse_unknown("--unknown", "touch=1+-x"), InvalidInput);
+  const EstimatedUnknown parsed = parse_unknown("--unknown", "touch:place=-0.5+-0.25");
+  EXPECT_EQ(parsed.name, "touch");
+  EXPECT_TRUE(parsed.somewhere);
+  EXPECT_EQ(parsed.mean, -0.5);
+  EXPECT_EQ(parsed.deviation, 0.25);
+}
+
+}  // namespace softkin
