@@ -17,6 +17,7 @@ SCENES = {
 }
 PHYSICAL = {  # those of the physical formulation alone
     "examples/bilayer/bilayer.yaml": "warm=60degC",
+    "examples/paper_finger/paper_finger.yaml": "air=2kPa",
     "examples/dea_crawler/voltage/crawler.yaml": "skin=14kV",
     "examples/estimate/finger.yaml": "air=20",
     "examples/fibre_actuator/fibre_actuator.yaml": "air=20",

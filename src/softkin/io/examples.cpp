@@ -27,6 +27,7 @@ constexpr std::pair<const char*, const char*> short_names[] = {
     {"fibres", "fibre_actuator"},
     {"finger", "pneumatic_finger"},
     {"gripper", "cable_gripper"},
+    {"paper_belly", "paper_finger"},
     {"strip", "acrylic_strip"},
     {"tendons", "three_tendon_finger"},
     {"two_fingers", "two_finger_gripper"},

@@ -29,8 +29,8 @@ using EstimateCallback = std::function<void(std::size_t row, const Estimate& tol
 /// Tells of every row, in order.
 ///
 /// deviations  of each kind of reading; 0: none is given
-/// throws      InvalidInput: what Estimator throws; a reading of a kind whose deviation is not given, naming its option;
-///             a column that commands what is to be told; fading without times
+/// throws      InvalidInput: what Estimator throws; a reading of a kind whose deviation is not given, naming its
+///             option; a column that commands what is to be told; fading without times
 [[nodiscard]] EstimateReport estimate_poses(const Model& model, const MeasuredPoses& poses,
                                             const std::vector<EstimatedUnknown>& unknowns,
                                             const std::array<double, readings>& deviations,

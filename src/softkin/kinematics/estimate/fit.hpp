@@ -29,7 +29,8 @@ class Fitter {
   [[nodiscard]] Fit refine(Guess from, const Readings& readings, const Slopes* slopes,
                            const Actuation* before = nullptr) const;
 
-  /// Without a start, under the same commands each time: from what was known before, each force of unknown place begun where a linear fit ranks best.
+  /// Without a start, under the same commands each time: from what was known before, each force of unknown place begun
+  /// where a linear fit ranks best.
   [[nodiscard]] Fit search(const Readings& readings) const;
   /// The least cost that a linear fit foretells of that search; infinite where it cannot begin.
   [[nodiscard]] double forecast(const Readings& readings) const;

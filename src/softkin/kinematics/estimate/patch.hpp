@@ -21,8 +21,8 @@ class Patch {
   [[nodiscard]] const std::vector<Index>& nodes() const { return nodes_; }
 
   /// The nodes that carry a force there, by their place in nodes(), each with its share of it: spread over a spot of
-  /// 1.5 times the longest edge of the patch so that force and moment are those of a force at the place, and so smoothly
-  /// that shapes are smooth functions of the place, as they are not of one that crosses the edges of faces.
+  /// 1.5 times the longest edge of the patch so that force and moment are those of a force at the place, and so
+  /// smoothly that shapes are smooth functions of the place, as they are not of one that crosses the edges of faces.
   ///
   /// source  moving least squares (Lancaster, Salkauskas 1981) of degree 1 in the tangent plane, weights
   ///         (1 - r^2 / R^2)^3
