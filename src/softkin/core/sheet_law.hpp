@@ -22,8 +22,8 @@ struct BendingPlace {
   Vec3 rest = Vec3::Zero();       // k0 [1/mm]
 };
 
-/// What a place of an edge between two faces stores, at which the slope jumps by an angle J: length (mean moment (J - J0)
-/// + penalty (J - J0)^2 / 2), moments less those at rest.
+/// What a place of an edge between two faces stores, at which the slope jumps by an angle J: length (mean moment (J -
+/// J0) + penalty (J - J0)^2 / 2), moments less those at rest.
 ///
 /// source  the C0 interior penalty method: Engel, Garikipati, Hughes, Larson, Mazzei, Taylor 2002; Brenner, Sung 2005;
 ///         here with the angle between present normals in place of the jump of slopes

@@ -4,8 +4,8 @@
 
 namespace softkin {
 
-/// length: of a curve that is drawn on the body or runs in it, as a strain gauge or an optical fibre measures it. angle:
-/// by which one section is turned against another about an axis, as a bend sensor measures it.
+/// length: of a curve that is drawn on the body or runs in it, as a strain gauge or an optical fibre measures it.
+/// angle: by which one section is turned against another about an axis, as a bend sensor measures it.
 enum class SensorKind { length, angle };
 
 /// A sensor as the user describes it.
