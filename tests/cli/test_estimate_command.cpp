@@ -9,7 +9,9 @@ using nlohmann::json;
 
 /// The block, its loads commanded, that is pushed at its tip.
 std::string pushed_scene() {
-  return loaded_scene() + "forces: [{name: push, region: tip, range: [[0, 0], [-0.2, 0.2], [-0.2, 0.2]]}]\n" +
+  const std::string forces = "forces: [{name: payload, region: tip, force: [0, 0, 0]}", end = "]\n";
+  return replaced(loaded_scene(), forces + end,
+                  forces + ", {name: push, region: tip, range: [[0, 0], [-0.2, 0.2], [-0.2, 0.2]]}" + end) +
          "sensors: [{name: strain, kind: length, points: [[1, 6, 1], [19, 6, 1]]}]\n";
 }
 

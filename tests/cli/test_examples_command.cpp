@@ -149,7 +149,7 @@ TEST(ExamplesCopy, ReplacesNothing) {
 
 TEST(ExamplesCopy, RefusesNamesThatAreNone) {
   expect_refused("fingr", "examples: there is none named 'fingr'; did you mean 'finger'?");
-  expect_refused("octopus", "known: acrylic_strip, cable_gripper,");
+  expect_refused("octopus", "known: acrylic_strip, bilayer, cable_gripper,");
   expect_refused("", "examples: there is none named ''");
   expect_refused("../examples/cpp", "there is none named");
   expect_refused("three", "'three' may be three_chamber_actuator or three_tendon_finger");

@@ -424,11 +424,12 @@ TEST(FkHelp, NamesEveryOptionInALine) {
 }
 
 TEST(FkHelp, WithoutACommandOneLineHelps) {
-  EXPECT_EQ(run_program({}).errors,
-            "softkin: a command (fk, ik, follow, workspace, map, walk, grasp, compare, calibrate, measure, drive, "
-            "mesh, view, examples) is "
-            "required "
-            "(softkin --help tells more)\n");
+  EXPECT_EQ(
+      run_program({}).errors,
+      "softkin: a command (fk, ik, follow, workspace, map, walk, grasp, compare, calibrate, estimate, measure, drive, "
+      "mesh, view, examples) is "
+      "required "
+      "(softkin --help tells more)\n");
   EXPECT_EQ(run_program({}).exit_code, 2);
 }
 

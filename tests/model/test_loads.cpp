@@ -120,7 +120,7 @@ TEST(DeadLoad, Refusals) {
   good.forces = {{"push", at(30, 3, 4), {1, 2, 3}}};
   expect_refused(good, {
                            {"density", [](RobotSpec& s) { s.materials[0].density = 0; },
-                            "block: there is gravity but no material has a density"},
+                            "block: there is gravity but no material or layer has a density"},
                            {"gravity", [](RobotSpec& s) { s.gravity[1] = NAN; }, "block: gravity is not finite"},
                            {"force", [](RobotSpec& s) { s.forces[0].force[0] = INFINITY; },
                             "robot.yaml:5: force 'push' is not finite"},

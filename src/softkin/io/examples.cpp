@@ -19,7 +19,6 @@ namespace {
 
 constexpr std::pair<const char*, const char*> short_names[] = {
     {"bar", "two_material_bar"},
-    {"bilayer", "bilayer"},
     {"cantilever", "magnetic_cantilever"},
     {"chambers", "three_chamber_actuator"},
     {"crawler", "dea_crawler"},

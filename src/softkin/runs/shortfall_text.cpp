@@ -46,7 +46,7 @@ std::string worst_text(const WorstPlace& worst) {
   const bool crushed = worst.volume_ratio < 0.2, by_cable = worst.beside.find("cable") != std::string::npos;
   return ". Deformed most is " + std::string(worst.prism ? "prism " : "tetrahedron ") + std::to_string(worst.element) +
          " (from 0)" + (worst.region.empty() ? "" : " of region '" + worst.region + "'") + " at " +
-         point_text(worst.at, 4, 1e-6) + " mm" + (worst.beside.empty() ? "" : ", next to " + worst.beside) +
+         softkin::point_text(worst.at, 4, 1e-6) + " mm" + (worst.beside.empty() ? "" : ", next to " + worst.beside) +
          ": strain " + decimal(100 * worst.strain, 1) + " %" + ", " + decimal(100 * worst.volume_ratio, 1) + " %" +
          " of its volume" +
          (!crushed   ? ""
