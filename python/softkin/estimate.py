@@ -135,7 +135,7 @@ class Estimate:
     @cached_property
     def vertex_deviations(self) -> Floats:
         """(n, 3) standard deviations of the vertices along each axis [mm]."""
-        return self._core.vertex_deviations(len(self._robot.vertices))
+        return self._core.vertex_deviations(len(self._robot.rest))
 
     def __repr__(self) -> str:
         told = ", ".join(f"{n.name} {n.value:.3g} +- {n.deviation:.2g} {n.unit}" for n in self.numbers.values())

@@ -1,4 +1,5 @@
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -88,16 +89,21 @@ void bind_estimate(nb::module_& module) {
       .def_ro("at_bound", &ToldNumber::at_bound);
   nb::class_<ToldPlace>(module, "ToldPlace", "Where readings told a force to act.")
       .def_ro("force", &ToldPlace::force)
-      .def_prop_ro("at_rest", [](const ToldPlace& p) { return vector_out(p.at_rest); })
-      .def_prop_ro("present", [](const ToldPlace& p) { return vector_out(p.present); })
-      .def_prop_ro("covariance", [](const ToldPlace& p) { return matrix_out(p.covariance); });
+      .def_prop_ro(
+          "at_rest", [](const ToldPlace& p) { return vector_out(p.at_rest); }, nb::rv_policy::automatic)
+      .def_prop_ro(
+          "present", [](const ToldPlace& p) { return vector_out(p.present); }, nb::rv_policy::automatic)
+      .def_prop_ro(
+          "covariance", [](const ToldPlace& p) { return matrix_out(p.covariance); }, nb::rv_policy::automatic);
   nb::class_<Told>(module, "Told", "What readings told.")
       .def_prop_ro("status", [](const Told& t) { return std::string(name_of(t.estimate.status)); })
       .def_prop_ro("remark", [](const Told& t) { return t.estimate.remark; })
       .def_prop_ro("numbers", [](const Told& t) { return t.estimate.numbers; })
       .def_prop_ro("places", [](const Told& t) { return t.estimate.places; })
-      .def_prop_ro("covariance", [](const Told& t) { return matrix_out(t.estimate.covariance); })
-      .def_prop_ro("computed", [](const Told& t) { return vector_out(t.estimate.computed); })
+      .def_prop_ro(
+          "covariance", [](const Told& t) { return matrix_out(t.estimate.covariance); }, nb::rv_policy::automatic)
+      .def_prop_ro(
+          "computed", [](const Told& t) { return vector_out(t.estimate.computed); }, nb::rv_policy::automatic)
       .def_prop_ro("chi_square", [](const Told& t) { return t.estimate.chi_square; })
       .def_prop_ro("freedoms", [](const Told& t) { return t.estimate.freedoms; })
       .def_prop_ro("misfit", [](const Told& t) { return t.estimate.misfit(); })

@@ -8,6 +8,7 @@
 #include <nanobind/stl/tuple.h>
 #include <nanobind/stl/vector.h>
 
+#include <softkin/model/layer.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/chamber_json.hpp>
 #include <softkin/runs/reports.hpp>

@@ -54,9 +54,10 @@ def test_a_push_is_told_with_its_shape(beam: Robot) -> None:
     assert not told.left_out
     assert told.shape is not None
     np.testing.assert_allclose(told.shape.positions, shape.positions, atol=0.05)
-    assert told.vertex_deviations.shape == (len(beam.vertices), 3)
+    assert told.vertex_deviations.shape == (len(beam.rest), 3)
     assert told.computed.shape == (9,)
     assert told.misfit < 3
+    assert told.chi_square < 20
     assert told.freedoms == pytest.approx(7, abs=0.5)
 
 

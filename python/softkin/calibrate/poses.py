@@ -72,6 +72,7 @@ def robot(
     deviation_length_mm: float | None = None,
     deviation_volume_mm3: float | None = None,
     deviation_force_N: float | None = None,
+    deviation_angle_deg: float | None = None,
     keep: int = 0,
     ordered: bool = False,
     threads: int = 0,
@@ -105,6 +106,7 @@ def robot(
         "deviation_length_mm": deviation_length_mm,
         "deviation_volume_mm3": deviation_volume_mm3,
         "deviation_force_N": deviation_force_N,
+        "deviation_angle_deg": deviation_angle_deg,
     }
     for name, given in deviations.items():
         if given is not None and not given > 0:
