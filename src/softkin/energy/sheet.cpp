@@ -9,7 +9,7 @@ namespace {
 
 constexpr double pressed_share = 1e-6;
 
-SheetResponse plain(const SheetLaw& law, const Vec3& strain) {
+SheetResponse unrelaxed(const SheetLaw& law, const Vec3& strain) {
   const Vec3 stress = law.stiffness * strain;
   return {strain.dot(stress) / 2, stress, law.stiffness, SheetState::taut};
 }
@@ -86,7 +86,7 @@ double greatest_principal(double x, double y, double xy) {
 }  // namespace
 
 SheetResponse sheet_response(const SheetLaw& law, const Vec3& strain) {
-  const SheetResponse all = plain(law, strain);
+  const SheetResponse all = unrelaxed(law, strain);
   if (!law.tension_only || least_principal(all.stress[0], all.stress[1], all.stress[2]) >= 0) return all;
   SheetResponse out;
   if (greatest_principal(strain[0], strain[1], strain[2] / 2) <= 0)
