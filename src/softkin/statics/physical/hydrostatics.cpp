@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <softkin/model/mesh/quadratic_elements.hpp>
 #include <softkin/statics/physical/hydrostatics.hpp>
 #include <span>
 #include <utility>
@@ -42,9 +43,10 @@ void set_shape(std::size_t nodes, const Parameter& at, Nodes6& shape, Nodes6& by
     by_v << -1, 0, 1, 0, 0, 0;
     return;
   }
-  shape << t * (2 * t - 1), u * (2 * u - 1), v * (2 * v - 1), 4 * t * u, 4 * u * v, 4 * v * t;
-  by_u << 1 - 4 * t, 4 * u - 1, 0, 4 * (t - u), 4 * v, -4 * v;
-  by_v << 1 - 4 * t, 0, 4 * v - 1, -4 * u, 4 * u, 4 * (t - v);
+  const TrianglePoint point = triangle_point(u, v, 0);
+  shape = point.shape;
+  by_u = point.along_u;
+  by_v = point.along_v;
 }
 
 struct Corner {
@@ -83,7 +85,7 @@ Hydrostatics::Hydrostatics(const Model& model) : model_(model) {
   for (const FollowingTraction& traction : model.tractions)
     if (!traction.deeper_MPa_mm.isZero(0))
       for (const LoadedFace& loaded : traction.faces)
-        faces_.push_back({nodes_of(loaded.face), loaded.share, 0, traction.deeper_MPa_mm, traction.level_mm});
+        faces_.push_back({nodes_of(loaded.face), loaded.share, traction.deeper_MPa_mm, traction.level_mm});
   find_rims();
 }
 
@@ -171,15 +173,8 @@ void Hydrostatics::evaluate(const Iterate& at, const Demand& demand, Term::Scrat
   sum.energy += demand.share * energy;
 }
 
-void Hydrostatics::add_cliques(linear::Cliques& cliques) {
-  for (Face& face : faces_) {
-    face.slot = cliques.slots.back();
-    cliques.add(face.nodes);
-  }
-}
-
-/// Derivatives of the gradient of a face's nodes by its nodes, at a share of 1.
-Hydrostatics::Blocks Hydrostatics::slopes(const Face& face, const Points& positions) {
+Hydrostatics::Blocks Hydrostatics::slopes(std::size_t number, const Points& positions) const {
+  const Face& face = faces_[number];
   Blocks blocks;
   for (auto& row : blocks) row.fill(Mat3::Zero());
   const std::size_t count = face.nodes.size();
@@ -194,35 +189,6 @@ Hydrostatics::Blocks Hydrostatics::slopes(const Face& face, const Points& positi
     }
   });
   return blocks;
-}
-
-void Hydrostatics::stiffness(const Iterate& at, const Demand& demand, bool projected, Term::Scratch& /*scratch*/,
-                             LargeVector<double>& slots, Team& team) const {
-  using Block = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
-  team.pieces(static_cast<Index>(faces_.size()), [&](Index begin, Index end) {
-    for (Index f = begin; f < end; ++f) {
-      const Face& face = faces_[static_cast<std::size_t>(f)];
-      const Blocks blocks = slopes(face, at.positions);
-      double* out = slots.data() + 9 * face.slot;
-      const double share = projected ? 0 : demand.share / 2;  // a load has no positive part of its own
-      for (std::size_t i = 0; i < face.nodes.size(); ++i)
-        for (std::size_t j = 0; j <= i; ++j, out += 9)
-          Block(out, 3, 3) = share * (blocks[i][j] + blocks[j][i].transpose());
-    }
-  });
-}
-
-void Hydrostatics::add_response(const Iterate& at, const Points& moves, const Term::Scratch& scratch,
-                                Points& force) const {
-  if (closed_) return;
-  const double share = static_cast<const Scratch&>(scratch).share / 2;
-  for (const Face& face : faces_) {
-    const Blocks blocks = slopes(face, at.positions);
-    for (std::size_t i = 0; i < face.nodes.size(); ++i)
-      for (std::size_t j = 0; j < face.nodes.size(); ++j)
-        force.row(face.nodes[i]) +=
-            (share * (blocks[i][j] - blocks[j][i].transpose()) * vertex_at(moves, face.nodes[j])).transpose();
-  }
 }
 
 void Hydrostatics::add_change(const Demand& from, const Demand& to, const Points& positions, Term::Scratch& /*scratch*/,

@@ -1,7 +1,7 @@
 #pragma once
 
 #include <softkin/model/model.hpp>
-#include <softkin/statics/physical/term.hpp>
+#include <softkin/statics/physical/surface_load.hpp>
 
 namespace softkin::physical {
 
@@ -16,38 +16,24 @@ namespace softkin::physical {
 ///
 /// A face that the level cuts is cut along it: exactly where it is flat, else after eight by eight pieces. As p is 0
 /// there, the derivative of where it is cut is of no account.
-class Hydrostatics : public Term {
+class Hydrostatics : public SurfaceLoad {
  public:
   /// model  must outlive the object; of its tractions those are taken whose pressure grows with depth
   explicit Hydrostatics(const Model& model);
 
   [[nodiscard]] static bool acts(const Model& model);
 
-  struct Scratch : Term::Scratch {
-    double share = 0;  // of the last evaluation
-  };
-  [[nodiscard]] std::unique_ptr<Term::Scratch> new_scratch() const override { return std::make_unique<Scratch>(); }
-
   void evaluate(const Iterate& at, const Demand& demand, Term::Scratch& scratch, Sum& sum, Team& team) const override;
   [[nodiscard]] bool conservative() const override { return closed_; }
-
-  void add_cliques(linear::Cliques& cliques) override;
-  void stiffness(const Iterate& at, const Demand& demand, bool projected, Term::Scratch& scratch,
-                 LargeVector<double>& slots, Team& team) const override;
-  [[nodiscard]] bool symmetric() const override { return closed_; }
-  void add_response(const Iterate& at, const Points& moves, const Term::Scratch& scratch, Points& force) const override;
-
   void add_change(const Demand& from, const Demand& to, const Points& positions, Term::Scratch& scratch, Points& force,
                   Team& team) const override;
-  [[nodiscard]] bool grows() const override { return true; }
 
  private:
   struct Face {
     std::vector<Index> nodes;
     double share = 1;
-    std::int64_t slot = 0;  // its first
-    Vec3 deeper{0, 0, 0};   // b [MPa/mm]
-    Vec3 level{0, 0, 0};    // x0 [mm]
+    Vec3 deeper{0, 0, 0};  // b [MPa/mm]
+    Vec3 level{0, 0, 0};   // x0 [mm]
   };
   /// A wet place of a face: shape functions of its nodes, the surface's slopes by its parameters, its share of them.
   struct Place {
@@ -57,12 +43,13 @@ class Hydrostatics : public Term {
     double pressure = 0;  // [MPa]
   };
   struct Depths;
-  using Blocks = std::array<std::array<Mat3, 6>, 6>;
   void find_rims();
   /// visit(place, its area vector [mm^2])
   template <class Visit>
   static void each_place(const Face& face, const Points& positions, const Visit& visit);
-  [[nodiscard]] static Blocks slopes(const Face& face, const Points& positions);
+  [[nodiscard]] std::size_t faces() const override { return faces_.size(); }
+  [[nodiscard]] const std::vector<Index>& nodes_of_face(std::size_t face) const override { return faces_[face].nodes; }
+  [[nodiscard]] Blocks slopes(std::size_t face, const Points& positions) const override;
 
   const Model& model_;
   std::vector<Face> faces_;

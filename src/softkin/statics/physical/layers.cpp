@@ -108,8 +108,9 @@ void Layers::add_membrane(const Layer& layer) {
     std::vector<Index> vertices = place.vertices;
     std::sort(vertices.begin(), vertices.end());
     const auto [at, fresh] = known.emplace(vertices, faces_.size());
-    if (fresh) faces_.push_back({&layer.law, layer.thickness_mm, std::move(vertices), {}});
+    if (fresh) faces_.push_back({&layer.law, layer.thickness_mm, std::move(vertices), {}, {}});
     faces_[at->second].places.push_back(&place);
+    faces_[at->second].orders.push_back(sorted_order(place.vertices));
   }
 }
 
@@ -214,9 +215,9 @@ void Layers::stiffness(const Iterate& at, const Demand& /*demand*/, bool project
     for (Index n = begin; n < end; ++n) {
       const Face& face = faces_[static_cast<std::size_t>(n)];
       double* const first = room(face.slot, face.vertices.size());
-      for (const LayerPlace* place : face.places)
-        add_sheet_stiffness(*place, *face.law, face.thickness_mm, projected, at.positions,
-                            sorted_order(place->vertices), first);
+      for (std::size_t p = 0; p < face.places.size(); ++p)
+        add_sheet_stiffness(*face.places[p], *face.law, face.thickness_mm, projected, at.positions, face.orders[p],
+                            first);
     }
   });
   const auto put = [&](const auto& bent) {

@@ -30,7 +30,8 @@ class Layers : public Term {
     double thickness_mm;
     std::vector<Index> vertices;
     std::vector<const LayerPlace*> places;
-    std::int64_t slot = 0;  // its first
+    std::vector<std::vector<std::size_t>> orders;  // of each place's vertices, ascending
+    std::int64_t slot = 0;                         // its first
   };
   /// A place that bends: of its vertices the parts of the columns that its energy is of.
   template <int Columns>

@@ -67,7 +67,7 @@ Tractions::Tractions(const Model& model) : model_(model) {
   for (const FollowingTraction& traction : model.tractions) {
     if (!traction.deeper_MPa_mm.isZero(0)) continue;  // see Hydrostatics
     for (const LoadedFace& loaded : traction.faces) {
-      Face face{traction.pressure_MPa, nodes_of(loaded.face), {}, 0};
+      Face face{traction.pressure_MPa, nodes_of(loaded.face), {}};
       for (const Index v : face.nodes) middle_ += vertex_at(model.rest, v);
       count += static_cast<double>(face.nodes.size());
       for (const TrianglePoint& point : triangle_points(face.nodes.size())) {
@@ -112,15 +112,8 @@ void Tractions::evaluate(const Iterate& at, const Demand& demand, Term::Scratch&
   sum.energy += demand.share * energy;
 }
 
-void Tractions::add_cliques(linear::Cliques& cliques) {
-  for (Face& face : faces_) {
-    face.slot = cliques.slots.back();
-    cliques.add(face.nodes);
-  }
-}
-
-/// Derivatives of the gradient of a face's nodes by its nodes, at a share of 1.
-Tractions::Blocks Tractions::slopes(const Face& face, const Points& positions) const {
+Tractions::Blocks Tractions::slopes(std::size_t number, const Points& positions) const {
+  const Face& face = faces_[number];
   Blocks blocks;
   for (auto& row : blocks) row.fill(Mat3::Zero());
   for (const Place& place : face.places) {
@@ -142,34 +135,6 @@ Tractions::Blocks Tractions::slopes(const Face& face, const Points& positions) c
     }
   }
   return blocks;
-}
-
-void Tractions::stiffness(const Iterate& at, const Demand& demand, bool projected, Term::Scratch& /*scratch*/,
-                          LargeVector<double>& slots, Team& team) const {
-  using Block = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
-  team.pieces(static_cast<Index>(faces_.size()), [&](Index begin, Index end) {
-    for (Index f = begin; f < end; ++f) {
-      const Face& face = faces_[static_cast<std::size_t>(f)];
-      const Blocks blocks = slopes(face, at.positions);
-      double* out = slots.data() + 9 * face.slot;
-      const double share = projected ? 0 : demand.share / 2;  // a load has no positive part of its own
-      for (std::size_t i = 0; i < face.nodes.size(); ++i)
-        for (std::size_t j = 0; j <= i; ++j, out += 9)
-          Block(out, 3, 3) = share * (blocks[i][j] + blocks[j][i].transpose());
-    }
-  });
-}
-
-void Tractions::add_response(const Iterate& at, const Points& moves, const Term::Scratch& scratch,
-                             Points& force) const {
-  const double share = static_cast<const Scratch&>(scratch).share / 2;
-  for (const Face& face : faces_) {
-    const Blocks blocks = slopes(face, at.positions);
-    for (std::size_t i = 0; i < face.nodes.size(); ++i)
-      for (std::size_t j = 0; j < face.nodes.size(); ++j)
-        force.row(face.nodes[i]) +=
-            (share * (blocks[i][j] - blocks[j][i].transpose()) * vertex_at(moves, face.nodes[j])).transpose();
-  }
 }
 
 void Tractions::add_change(const Demand& from, const Demand& to, const Points& positions, Term::Scratch& /*scratch*/,

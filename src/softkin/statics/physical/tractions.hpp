@@ -2,7 +2,7 @@
 
 #include <softkin/model/mesh/triangle_points.hpp>
 #include <softkin/model/model.hpp>
-#include <softkin/statics/physical/term.hpp>
+#include <softkin/statics/physical/surface_load.hpp>
 
 namespace softkin::physical {
 
@@ -15,7 +15,7 @@ namespace softkin::physical {
 /// way from rest; the stiffness is the symmetric part of the derivative, the rest is a response.
 ///
 /// source  Bonet, Wood 2008, Nonlinear continuum mechanics, section 8.5
-class Tractions : public Term {
+class Tractions : public SurfaceLoad {
  public:
   /// model must outlive the object.
   explicit Tractions(const Model& model);
@@ -23,23 +23,10 @@ class Tractions : public Term {
   /// Has it such loads?
   [[nodiscard]] static bool act(const Model& model);
 
-  struct Scratch : Term::Scratch {
-    double share = 0;  // of the last evaluation
-  };
-  [[nodiscard]] std::unique_ptr<Term::Scratch> new_scratch() const override { return std::make_unique<Scratch>(); }
-
   void evaluate(const Iterate& at, const Demand& demand, Term::Scratch& scratch, Sum& sum, Team& team) const override;
   [[nodiscard]] bool conservative() const override { return false; }
-
-  void add_cliques(linear::Cliques& cliques) override;
-  void stiffness(const Iterate& at, const Demand& demand, bool projected, Term::Scratch& scratch,
-                 LargeVector<double>& slots, Team& team) const override;
-  [[nodiscard]] bool symmetric() const override { return false; }
-  void add_response(const Iterate& at, const Points& moves, const Term::Scratch& scratch, Points& force) const override;
-
   void add_change(const Demand& from, const Demand& to, const Points& positions, Term::Scratch& scratch, Points& force,
                   Team& team) const override;
-  [[nodiscard]] bool grows() const override { return true; }
 
  private:
   /// A place on a face, of whose area and frame at rest it knows.
@@ -54,14 +41,14 @@ class Tractions : public Term {
     double pressure_MPa;
     std::vector<Index> nodes;
     std::vector<Place> places;
-    std::int64_t slot;  // its first
   };
   class Load;
-  using Blocks = std::array<std::array<Mat3, 6>, 6>;
   /// Calls visit(face, place, its load) for all places.
   template <class Visit>
   void each_place(const Points& positions, const Visit& visit) const;
-  [[nodiscard]] Blocks slopes(const Face& face, const Points& positions) const;
+  [[nodiscard]] std::size_t faces() const override { return faces_.size(); }
+  [[nodiscard]] const std::vector<Index>& nodes_of_face(std::size_t face) const override { return faces_[face].nodes; }
+  [[nodiscard]] Blocks slopes(std::size_t face, const Points& positions) const override;
 
   const Model& model_;
   std::vector<Face> faces_;
