@@ -37,8 +37,9 @@ def copy_examples(case, folder):
     """Copies what a case names below examples and docs, so that paths are those of the checkout."""
     named = {match for words in case.words() for match in re.findall(r"examples/\w+|docs/(?:scenes|images/measure)",
                                                                      words)}
-    if "examples/two_finger_gripper" in named:  # its fingers
-        named.add("examples/pneumatic_finger")
+    for name in sorted(named):  # scenes of one folder with meshes of another
+        texts = [scene.read_text() for scene in (ROOT / name).glob("*.yaml")] if name.startswith("examples/") else []
+        named |= {f"examples/{other}" for text in texts for other in re.findall(r"\.\./(\w+)/", text)}
     if "docs/scenes" in named:
         named |= {"examples/pneumatic_finger", "examples/two_material_bar"}
     for name in sorted(named):
