@@ -3,9 +3,9 @@
 #include <bit>
 #include <cstdint>
 #include <cstdio>
-#include <softkin/model/layer.hpp>
 #include <softkin/model/families.hpp>
 #include <softkin/model/growth.hpp>
+#include <softkin/model/layer.hpp>
 #include <softkin/model/magnetic_field.hpp>
 #include <softkin/model/mesh/quadratic_elements.hpp>
 #include <softkin/model/mesh/surface_tree.hpp>

@@ -6,8 +6,8 @@
 #include <softkin/statics/physical/contacts.hpp>
 #include <softkin/statics/physical/fibre_families.hpp>
 #include <softkin/statics/physical/fibres.hpp>
-#include <softkin/statics/physical/layers.hpp>
 #include <softkin/statics/physical/hydrostatics.hpp>
+#include <softkin/statics/physical/layers.hpp>
 #include <softkin/statics/physical/loads.hpp>
 #include <softkin/statics/physical/magnets.hpp>
 #include <softkin/statics/physical/placement.hpp>
