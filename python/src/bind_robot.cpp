@@ -62,7 +62,8 @@ void bind_actuator(nb::module_& module) {
       .def_prop_ro(
           "range", [](const Actuator& a) { return std::pair(a.low, a.high); }, "Of commands.")
       .def_ro("rest", &Actuator::rest, "The command where none is given.")
-      .def_ro("rest_measure", &Actuator::rest_measure, "Length [mm], area [mm^2] or volume [mm^3] at rest.")
+      .def_ro("rest_measure", &Actuator::rest_measure,
+              "Length [mm], area [mm^2] or volume [mm^3] at rest; 1000 where a chamber is flat.")
       .def_prop_ro(
           "column", [](const Actuator& a) { return command_column(a); }, "Of tables: 'air', 'air_kPa'.")
       .def_prop_ro(

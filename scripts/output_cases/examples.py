@@ -20,6 +20,8 @@ PHYSICAL = {  # those of the physical formulation alone
     "examples/paper_finger/paper_finger.yaml": "air=2kPa",
     "examples/dea_crawler/voltage/crawler.yaml": "skin=14kV",
     "examples/estimate/finger.yaml": "air=20",
+    "examples/mckibben/mckibben.yaml": "air=50 --set load_fx=40",
+    "examples/pouch_motor/pouch_motor.yaml": "air=10 --set load_fx=20",
     "examples/fibre_actuator/fibre_actuator.yaml": "air=20",
     "examples/magnetic_cantilever/magnetic_cantilever.yaml": "field=10",
     "examples/magnetic_crawler/magnetic_crawler.yaml": "field_x=0.5",

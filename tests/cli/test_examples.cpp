@@ -46,7 +46,8 @@ std::vector<fs::path> scenes() {
 /// Commanded by fields or pressures, which target shapes do not know.
 bool is_loaded(const fs::path& scene) {
   return scene.stem().string().starts_with("magnetic") || scene.stem() == "fibre_actuator" ||
-         scene.stem() == "bilayer" || scene.stem() == "paper_finger" || scene.parent_path().filename() == "estimate";
+         scene.stem() == "bilayer" || scene.stem() == "paper_finger" || scene.stem() == "mckibben" ||
+         scene.stem() == "pouch_motor" || scene.parent_path().filename() == "estimate";
 }
 
 /// Scenes and formulations.

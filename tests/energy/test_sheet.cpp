@@ -45,6 +45,32 @@ double least_energy(const SheetLaw& law, const Vec3& strain) {
 
 }  // namespace
 
+TEST(Sheet, SmoothOnesBecomeThoseWithKinks) {
+  std::mt19937 engine(5);
+  std::uniform_real_distribution<double> any(-0.1, 0.1);
+  constexpr double little = 1e-5;
+  for (const SheetLaw& law : {orthotropic(2, 2, 2 / 2.6, 0.3, true), orthotropic(20, 1, 0.3, 0.4, true)})
+    for (int i = 0; i < 40; ++i) {
+      const Vec3 strain(any(engine), any(engine), 2 * any(engine));
+      const double size = (law.stiffness * strain).norm();
+      for (const double barrier : {1e-4, 1e-8}) {
+        const SheetResponse found = smooth_sheet_response(law, strain, barrier);
+        EXPECT_GT(found.stress[0] * found.stress[1], found.stress[2] * found.stress[2]);
+        EXPECT_GT(found.stress[0], 0);
+        for (int k = 0; barrier > 1e-6 && k < 3; ++k) {
+          const Vec3 step = little * Vec3::Unit(k);
+          const SheetResponse high = smooth_sheet_response(law, strain + step, barrier),
+                              low = smooth_sheet_response(law, strain - step, barrier);
+          EXPECT_NEAR(found.stress[k], (high.energy - low.energy) / (2 * little), 1e-6 * size);
+          EXPECT_LT((found.tangent.col(k) - (high.stress - low.stress) / (2 * little)).norm(),
+                    1e-4 * law.stiffness(0, 0));
+        }
+      }
+      const Vec3 sharp = smooth_sheet_response(law, strain, 1e-12).stress;
+      EXPECT_LT((sharp - sheet_response(law, strain).stress).norm(), 1e-4 * size) << strain.transpose();
+    }
+}
+
 TEST(Sheet, WrinklesToTheLeastEnergy) {
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> any(-0.1, 0.1);

@@ -264,7 +264,8 @@ TEST_F(Gmsh, CellsOfNoRegionAreOfGroup0BesideRegions) {
 
 TEST_F(Gmsh, RefusesToWriteWhatItCouldNotRead) {
   const std::vector<std::pair<std::string, std::function<void(Mesh&)>>> changes = {
-      {"no volume elements", [](Mesh& m) { m.tetrahedra.clear(); }},
+      {"no volume elements", [](Mesh& m) { m.tetrahedra.clear(), m.triangles.clear(); }},
+      {"'body' of dimension 3 lists number 0 of 0 tetrahedra", [](Mesh& m) { m.tetrahedra.clear(); }},
       {"not finite", [](Mesh& m) { m.vertices(2, 1) = std::numeric_limits<double>::infinity(); }},
       {"tetrahedron 0 has vertex 4 of 4", [](Mesh& m) { m.tetrahedra[0][2] = 4; }},
       {"triangle 0 has vertex -1 of 4", [](Mesh& m) { m.triangles[0][0] = -1; }},

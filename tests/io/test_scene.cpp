@@ -472,7 +472,7 @@ TEST(Scene, ExamplesOfTheManualAreScenes) {
     const std::string text = manual.substr(begin, manual.find("```", begin) - begin);
     specs.push_back(parse_scene(text, "robots/scene.yaml", files));
   }
-  ASSERT_EQ(specs.size(), 14u);
+  ASSERT_EQ(specs.size(), 15u);
   EXPECT_EQ(specs[0].actuators.size(), 3u);
   EXPECT_EQ(specs[0].markers.size(), 2u);
   EXPECT_EQ(specs[0].formulation, Formulation::target_shape);

@@ -152,8 +152,11 @@ TEST(Compile, BadElementsAndMaterials) {
   expect_refused(
       good,
       {
-          {"no element", [](RobotSpec& s) { s.mesh.tetrahedra.clear(), s.mesh.regions.clear(); },
+          {"no element",
+           [](RobotSpec& s) { s.mesh.tetrahedra.clear(), s.mesh.triangles.clear(), s.mesh.regions.clear(); },
            "block: the mesh has no element"},
+          {"no volume", [](RobotSpec& s) { s.mesh.tetrahedra.clear(), s.mesh.regions.clear(); },
+           "block: the mesh has triangles and no volume element: mesh it in three dimensions"},
           {"all void", [](RobotSpec& s) { s.voids.push_back(named("body")); }, "every element of the mesh is void"},
           {"void face", [](RobotSpec& s) { s.voids.push_back(named("x_low", 8)); },
            "robot.yaml:8: region 'x_low' cannot be void: it holds no element"},

@@ -8,6 +8,7 @@
 #include "statics/difference.hpp"
 #include "statics/magnetic_samples.hpp"
 #include "statics/physical_equations.hpp"
+#include "statics/pillows.hpp"
 
 /// Every term of every kind of robot: gradient, stiffness, and derivatives by commands and shares, by differences.
 
@@ -298,6 +299,7 @@ TEST(Terms, DerivativesAreThoseOfTheEnergies) {
     expect_derivatives(threaded_robot(quadratic), 0.1, Vec3::Zero(), 1e-5, seen);
   for (const bool quadratic : {false, true})
     expect_derivatives(sheeted_robot(quadratic), 0.1, Vec3::Zero(), 1e-6, seen);
+  expect_derivatives(film_robot(pillow(disc(20, 3))), 0.5, Vec3::Zero(), 1e-6, seen);
   expect_derivatives(body_on_floor({10, 10, 10}, 0.3), 1e-3, {0, 0, -0.03}, 2e-8, seen);
   for (const bool quadratic : {false, true})
     expect_derivatives(block_on_rough_floor(0.3, {0.2, 0, -0.03}, 2, quadratic), 1e-3, {0.01, 0, -0.03}, 2e-8, seen);

@@ -1,3 +1,4 @@
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
@@ -97,6 +98,33 @@ SheetResponse sheet_response(const SheetLaw& law, const Vec3& strain) {
   out.stress += pressed_share * (all.stress - out.stress);
   out.tangent += pressed_share * (all.tangent - out.tangent);
   return out;
+}
+
+SheetResponse smooth_sheet_response(const SheetLaw& law, const Vec3& strain, double barrier) {
+  constexpr int most_steps = 100;
+  constexpr double inside = 0.9, near = 1e-13;  // of the way to where a stress is singular; of the decrement
+  if (!law.tension_only) return unrelaxed(law, strain);
+  const double scale = law.stiffness(0, 0), mu = barrier * scale;
+  const auto det = [](const Vec3& s) { return s[0] * s[1] - s[2] * s[2]; };
+  Vec3 stress = sheet_response(law, strain).stress + Vec3(1, 1, 0) * (std::sqrt(barrier) * scale);
+  if (!(det(stress) > 0)) stress = Vec3(1, 1, 0) * stress.norm();  // pressed by what slack sheets keep
+  Mat3 tangent;
+  for (int i = 0; i < most_steps; ++i) {
+    const Vec3 inverse = Vec3(stress[1], stress[0], -2 * stress[2]) / det(stress);  // by S, of log det S
+    Mat3 second;                                                                    // less that of log det S
+    second << inverse[0] * inverse[0], stress[2] * stress[2] / (det(stress) * det(stress)), inverse[0] * inverse[2], 0,
+        inverse[1] * inverse[1], inverse[1] * inverse[2], 0, 0, 2 / det(stress) + inverse[2] * inverse[2];
+    second.triangularView<Eigen::StrictlyLower>() = second.transpose();
+    const Vec3 rise = strain - law.compliance * stress + mu * inverse;
+    tangent = (law.compliance + mu * second).inverse();
+    const Vec3 step = tangent * rise;
+    double length = 1;
+    while (!(det(stress + length / inside * step) > 0 && stress[0] + length / inside * step[0] > 0)) length /= 2;
+    stress += length * step;
+    if (length == 1 && step.dot(rise) < near * mu) break;
+  }
+  return {strain.dot(stress) - stress.dot(law.compliance * stress) / 2 + mu * std::log(det(stress) / (scale * scale)),
+          stress, tangent, SheetState::taut};
 }
 
 }  // namespace softkin::energy

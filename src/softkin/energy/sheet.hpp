@@ -20,4 +20,11 @@ struct SheetResponse {
 ///         wrinkled, S = s t t^T, it is the most over directions t of (t . E t)^2 / (2 t t : M t t)
 [[nodiscard]] SheetResponse sheet_response(const SheetLaw& law, const Vec3& strain);
 
+/// The same of one that takes tension only, without kinks: the most of S . E - S . M S / 2 + barrier log det S, whose
+/// stresses pull in every direction, if by nearly nothing. For ways that begin far from where they end.
+///
+/// barrier  over the stiffness along the first direction, above 0 [-]: strains of its root are smoothed
+/// source   interior point methods: Nocedal, Wright 2006, section 19.1
+[[nodiscard]] SheetResponse smooth_sheet_response(const SheetLaw& law, const Vec3& strain, double barrier);
+
 }  // namespace softkin::energy

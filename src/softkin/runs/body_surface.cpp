@@ -1,7 +1,34 @@
+#include <algorithm>
+#include <set>
+#include <softkin/model/layer.hpp>
 #include <softkin/model/mesh/mesh_order.hpp>
 #include <softkin/runs/body_surface.hpp>
 
 namespace softkin::runs {
+
+namespace {
+
+/// Faces of layers some vertex of which is of no element, each once.
+std::vector<Triangle> sheets_of(const Model& model) {
+  std::vector<bool> of_element(static_cast<std::size_t>(model.rest.rows()));
+  for (const Tetrahedron& t : model.tetrahedra)
+    for (const Index v : t) of_element[static_cast<std::size_t>(v)] = true;
+  for (const Prism& p : model.prisms)
+    for (const Index v : p) of_element[static_cast<std::size_t>(v)] = true;
+  std::vector<Triangle> sheets;
+  std::set<Triangle> known;
+  for (const auto& layer : model.layers)
+    for (const CavityFace& face : layer->faces) {
+      const Triangle& t = face.corners;
+      if (std::all_of(t.begin(), t.end(), [&](Index v) { return of_element[static_cast<std::size_t>(v)]; })) continue;
+      Triangle key = t;
+      std::sort(key.begin(), key.end());
+      if (known.insert(key).second) sheets.push_back(t);
+    }
+  return sheets;
+}
+
+}  // namespace
 
 BodySurface body_surface(const Model& model) {
   std::vector<Tetrahedron> tetrahedra;
@@ -18,6 +45,10 @@ BodySurface body_surface(const Model& model) {
   BodySurface surface;
   surface.triangles = boundary_triangles(tetrahedra, edge_nodes, model.prisms, &surface.elements);
   for (Index& element : surface.elements) element = numbers[static_cast<std::size_t>(element)];
+  for (const Triangle& sheet : sheets_of(model)) {
+    surface.triangles.push_back(sheet);
+    surface.elements.push_back(-1);
+  }
   return surface;
 }
 

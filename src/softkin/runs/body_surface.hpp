@@ -5,10 +5,11 @@
 
 namespace softkin::runs {
 
-/// Boundary of what has substance: the body and dielectric elastomers, not the air in chambers.
+/// Boundary of what has substance: the body and dielectric elastomers, not the air in chambers; and sheets of layers
+/// that no element has.
 struct BodySurface {
   std::vector<Triangle> triangles;  // normals outwards; faces of order 2 as four
-  std::vector<Index> elements;      // whose face each is of: the model's tetrahedra, then its prisms
+  std::vector<Index> elements;      // whose face each is of: the model's tetrahedra, then its prisms; -1: a sheet's
 };
 
 [[nodiscard]] BodySurface body_surface(const Model& model);

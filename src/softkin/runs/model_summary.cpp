@@ -43,8 +43,9 @@ std::string model_summary(const Model& model, const std::string& solver) {
   if (!model.tetrahedra.empty())
     text += ", " + grouped(model.tetrahedra.size()) + " tetrahedra of order " + (model.edge_nodes.empty() ? "1" : "2");
   if (!model.prisms.empty()) text += ", " + grouped(model.prisms.size()) + " prisms";
+  if (model.tetrahedra.empty() && model.prisms.empty()) text += ", layers alone";
   text += std::string("; ") + formulation_name(model.formulation) + " formulation";
-  if (model.formulation == Formulation::physical) text += " (" + laws(model) + ")";
+  if (!model.materials.empty() && model.formulation == Formulation::physical) text += " (" + laws(model) + ")";
   if (model.weights != ElementWeights::printed) text += std::string(" (weights ") + weights_name(model.weights) + ")";
   if (!solver.empty()) text += ", solver " + solver;
   for (const FreeBody& body : model.bodies)
@@ -61,7 +62,9 @@ std::string model_summary(const Model& model, const std::string& solver) {
   for (const Actuator& a : model.actuators)
     if (drives(a))
       text += "\nactuator " + a.name + ": " + kind_name(a) + ", " +
-              (has_measure(a) ? number(a.rest_measure) + " " + unit_of_measure(a) + " at rest, " : "") +
+              (a.flat           ? "flat at rest, "
+               : has_measure(a) ? number(a.rest_measure) + " " + unit_of_measure(a) + " at rest, "
+                                : "") +
               command_range(a) + curve_text(a);
   for (const std::string& warning : model.warnings) text += "\nwarning: " + warning;
   for (const std::string& note : model.notes) text += "\nnote: " + note;

@@ -67,7 +67,7 @@ Json rounded_array(const std::vector<float>& numbers, std::size_t components) {
 /// The unit of what a robot answers with; "" where it answers nothing.
 std::string load_unit(const Model& model, const Actuator& actuator) {
   if (model.formulation != Formulation::physical) return "";
-  return shows_measure(actuator) ? "× rest" : multiplier_unit(actuator);
+  return !shows_measure(actuator) ? multiplier_unit(actuator) : actuator.flat ? "mL" : "× rest";
 }
 
 /// What one mT of its command adds to the flux density everywhere, a unit vector [mT]; none: it makes no uniform field.
@@ -279,7 +279,8 @@ Json page_triangles(const std::vector<Triangle>& triangles, const Numbering& num
 Json page_regions(const Model& model, const BodySurface& surface) {
   std::vector<std::uint16_t> regions;  // 65535: none
   for (const Index element : surface.elements)
-    regions.push_back(static_cast<std::uint16_t>(role_of(model, static_cast<std::size_t>(element)).region));
+    regions.push_back(
+        static_cast<std::uint16_t>(element < 0 ? -1 : role_of(model, static_cast<std::size_t>(element)).region));
   return page_array("u16", regions);
 }
 

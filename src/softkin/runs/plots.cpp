@@ -42,7 +42,7 @@ std::vector<PlotPanel> measure_panels(const Model& model, const StepAxis& along,
     for (std::size_t a = 0; a < model.actuators.size(); ++a) {
       const Actuator& actuator = model.actuators[a];
       if (!answers_with_measure(actuator) || std::string(measure_name(actuator)) != measure) continue;
-      curves.push_back({actuator.name, "-", {}});
+      curves.push_back({actuator.name, actuator.flat ? "mL" : "-", {}});
       for (const StepRecord& record : records) curves.back().values.push_back(record.actuators[a].achieved);
     }
     for (PlotPanel& panel : curve_panels(along, curves, std::string(measure) + " ratio"))

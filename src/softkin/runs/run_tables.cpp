@@ -70,6 +70,7 @@ std::string load_title(const Model& model, const Actuator& actuator) {
 
 /// Of what the command comes to: "achieved [-]" of a ratio, else what the load does: "volume ratio [-]".
 std::string measure_title(const Actuator& actuator) {
+  if (actuator.flat) return "volume [mL]";
   return (answers_with_measure(actuator) ? std::string(measure_name(actuator)) + " ratio" : "achieved") + " [-]";
 }
 

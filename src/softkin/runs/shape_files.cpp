@@ -10,6 +10,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/io/mesh/vtk.hpp>
 #include <softkin/io/picture/picture.hpp>
+#include <softkin/model/layer.hpp>
 #include <softkin/model/names.hpp>
 
 namespace softkin::runs {
@@ -108,6 +109,19 @@ void add_surroundings(const Model& model, VtuContent& content) {
                         field.name == "actuator" ? -1 : 0);
 }
 
+/// Adds the faces of layers, each layer a region: whatever is known of elements is 0 in them.
+void add_layers(const Model& model, VtuContent& content) {
+  for (const auto& layer : model.layers) {
+    if (layer->faces.empty()) continue;
+    const auto region = static_cast<Index>(content.region_names.size());
+    content.region_names.push_back("layer_" + layer->name);
+    for (const CavityFace& face : layer->faces) {
+      content.triangles.push_back(face.corners);
+      content.cell_regions.push_back(region);
+    }
+  }
+}
+
 // What read_state() reads.
 constexpr const char *state_share = "state_share", *state_elapsed = "state_elapsed_s", *state_anchors = "state_anchors",
                      *state_history = "state_history", *state_eyelets = "state_eyelets";
@@ -164,6 +178,7 @@ void write_shape(const fs::path& path, const Model& model, const State& state, c
   content.cell_fields = {{"volume_ratio", 1, deformation.volume_ratio}, greatest, least, actuator, mark};
   content.region_names = model.region_names;
   add_forces(model, deformation, content);
+  add_layers(model, content);
   add_surroundings(model, content);
   add_state(model, state, content);
   write_vtu(path, content);

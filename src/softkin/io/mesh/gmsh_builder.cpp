@@ -54,7 +54,10 @@ void Builder::add_element(CellType type, std::span<const Index> vertices, std::s
       return add_volume(type, vertices, groups);
     case CellType::triangle:
     case CellType::quadratic_triangle:
-      if (!groups.empty()) add_cell(triangles_, vertices, groups, &Region::triangles);
+      if (!groups.empty())
+        add_cell(triangles_, vertices, groups, &Region::triangles);
+      else
+        loose_.push_back(to_array<3>(vertices));
       return;
     case CellType::quad:
       if (!groups.empty()) add_cell(quads_, vertices, groups, &Region::quads);
@@ -125,8 +128,13 @@ void Builder::make_regions() {
 }
 
 Mesh Builder::take() {
-  if (tetrahedra_.size() + prisms_.size() == 0)
-    in_.fail_file("holds no volume elements: mesh in three dimensions, with tetrahedra or prisms");
+  if (tetrahedra_.size() + prisms_.size() == 0) {
+    for (const Triangle& triangle : loose_) (void)triangles_.add(triangle);
+    if (triangles_.size() == 0)
+      in_.fail_file(
+          "holds no volume elements: mesh in three dimensions, with tetrahedra or prisms; or, of a robot of "
+          "`layers` alone, in two, with triangles");
+  }
   make_regions();
   for (Region& region : regions_)
     for (auto* list : {&region.tetrahedra, &region.prisms, &region.triangles, &region.quads, &region.vertices})

@@ -135,6 +135,7 @@ class Builder {
   Index node_count_ = 0;
   NodeNumbers numbers_;
   CellStore<3> triangles_;
+  std::vector<Triangle> loose_;  // in no group: kept where there is no volume
   CellStore<4> quads_, tetrahedra_;
   std::vector<EdgeNodes> edge_nodes_;
   bool has_linear_ = false, has_quadratic_ = false;  // tetrahedra

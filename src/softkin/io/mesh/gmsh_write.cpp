@@ -23,7 +23,8 @@ class Checker {
 
   void check() const {
     if (!mesh_.vertices.allFinite()) fail("a vertex has a coordinate that is not finite");
-    if (mesh_.tetrahedra.empty() && mesh_.prisms.empty()) fail("the mesh has no volume elements");
+    if (mesh_.tetrahedra.empty() && mesh_.prisms.empty() && mesh_.triangles.empty())
+      fail("the mesh has no volume elements");
     check_cells(mesh_.tetrahedra, "tetrahedron");
     check_cells(mesh_.edge_nodes, "tetrahedron");
     const std::string refusal = refusal_of_orders(mesh_);

@@ -49,16 +49,18 @@ void separate_names(std::vector<Region>& regions) {
     if (region.dimension < highest[region.name]) region.name += "_" + std::to_string(region.dimension) + "d";
 }
 
-/// A cell that several volume regions name keeps the first of them.
+/// A cell that several regions of its dimension name keeps the first of them. Of a mesh without volume the triangles.
 VtuContent vtu_content(const Mesh& mesh) {
+  const bool surface = mesh.tetrahedra.empty() && mesh.prisms.empty();
   VtuContent content;
   content.points = mesh.vertices;
   content.tetrahedra = mesh.tetrahedra;
   content.edge_nodes = mesh.edge_nodes;
   content.prisms = mesh.prisms;
-  content.cell_regions.assign(mesh.tetrahedra.size() + mesh.prisms.size(), -1);
+  if (surface) content.triangles = mesh.triangles;
+  content.cell_regions.assign(mesh.tetrahedra.size() + mesh.prisms.size() + content.triangles.size(), -1);
   for (const Region& region : mesh.regions) {
-    if (region.dimension != 3) continue;
+    if (region.dimension != (surface ? 2 : 3)) continue;
     const auto number = static_cast<Index>(content.region_names.size());
     content.region_names.push_back(region.name);
     const auto mark = [&](std::size_t cell) {
@@ -66,6 +68,8 @@ VtuContent vtu_content(const Mesh& mesh) {
     };
     for (const Index i : region.tetrahedra) mark(static_cast<std::size_t>(i));
     for (const Index i : region.prisms) mark(mesh.tetrahedra.size() + static_cast<std::size_t>(i));
+    if (surface)
+      for (const Index i : region.triangles) mark(static_cast<std::size_t>(i));
   }
   if (content.region_names.empty()) content.cell_regions.clear();
   return content;
@@ -82,7 +86,8 @@ void write_boundary(const fs::path& path, const Mesh& mesh) {
     }
   for (Prism& p : prisms)
     if (signed_volume(mesh.vertices, p) < 0) p = {p[3], p[4], p[5], p[0], p[1], p[2]};
-  write_stl(path, mesh.vertices, boundary_triangles(tetrahedra, edge_nodes, prisms));
+  write_stl(path, mesh.vertices,
+            tetrahedra.empty() && prisms.empty() ? mesh.triangles : boundary_triangles(tetrahedra, edge_nodes, prisms));
 }
 
 }  // namespace

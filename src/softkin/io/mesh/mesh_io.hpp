@@ -39,7 +39,8 @@ void write_mesh(const std::filesystem::path& path, const Mesh& mesh);
 /// Vertices and elements keep the order of the file. Elements with the same vertices (MSH 2.2 repeats an element for
 /// every group it is in) are stored once, in the orientation of the first. Triangles and quads in no group are dropped.
 /// Refused are elements other than points, lines, triangles and tetrahedra of order 1 or 2, quads and prisms of order
-/// 1, tetrahedra of two orders, or of order 2 beside prisms, partitioned 4.1 meshes, and files without volume elements.
+/// 1, tetrahedra of two orders, or of order 2 beside prisms, partitioned 4.1 meshes, and files without volume elements
+/// or triangles. Where there is no volume element all triangles are kept.
 [[nodiscard]] Mesh read_gmsh(const std::filesystem::path& path);
 /// The same of a file that is in memory; file is for messages.
 [[nodiscard]] Mesh read_gmsh(const std::string& file, std::string_view content);
@@ -49,7 +50,7 @@ void write_mesh(const std::filesystem::path& path, const Mesh& mesh);
 /// A region of dimension 1 is written as the points that it holds and comes back with dimension 0; triangles and quads
 /// in no region are written, but read_gmsh drops them. Beside regions, cells in none are of physical group 0, Gmsh's
 /// number for none. Of order 2 triangles have their edge nodes too, where each of them is a side of tetrahedra.
-/// throws  InvalidInput for a mesh that read_gmsh would refuse (no volume element, NaN, indices out of range) and for
+/// throws  InvalidInput for a mesh that read_gmsh would refuse (no element, NaN, indices out of range) and for
 ///         region names that are empty, repeated, longer than 127 bytes, or hold '"' or control characters
 void write_gmsh(const std::filesystem::path& path, const Mesh& mesh, bool binary = true);
 

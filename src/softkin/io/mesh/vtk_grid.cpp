@@ -99,10 +99,12 @@ class MeshBuilder {
 
   Mesh build(const Origin& origin) {
     select_labels();
+    surface_ = true;
+    for (std::size_t cell = 0; cell < grid_.types.size(); ++cell) surface_ = surface_ && dimension_of(cell) < 3;
     mesh_.vertices = grid_.points;
     for (std::size_t cell = 0; cell < grid_.types.size(); ++cell) place(cell);
-    if (mesh_.tetrahedra.empty() && mesh_.prisms.empty())
-      throw InvalidInput(origin, "holds no tetrahedron and no wedge, so no volume");
+    if (mesh_.tetrahedra.empty() && mesh_.prisms.empty() && mesh_.triangles.empty())
+      throw InvalidInput(origin, "holds no tetrahedron and no wedge, so no volume, and no triangle either");
     const std::string refusal = refusal_of_orders(mesh_);
     if (!refusal.empty()) throw InvalidInput(origin, refusal);
     for (const CellLabels* labels : labels_) add_regions(*labels);
@@ -142,7 +144,7 @@ class MeshBuilder {
   void place(std::size_t cell) {
     const Index* vertices = grid_.connectivity.data() + grid_.starts[cell];
     if (grid_.types[cell] == kQuadraticTetrahedron.type) append(mesh_.edge_nodes, vertices + 4);  // in softkin's order
-    if (dimension_of(cell) == 3 || is_named(cell))
+    if (dimension_of(cell) == 3 || is_named(cell) || (surface_ && dimension_of(cell) == 2))
       visit_array(grid_.types[cell], [&](auto& cells, auto) { place_[cell] = append(cells, vertices); });
   }
 
@@ -187,6 +189,7 @@ class MeshBuilder {
   std::vector<const CellLabels*> labels_;  // those that become regions
   std::vector<Index> place_;               // of a cell in the mesh's array of its kind
   std::set<std::string> names_;
+  bool surface_ = false;  // is there no volume: cells of no region count, too
   Mesh mesh_;
 };
 

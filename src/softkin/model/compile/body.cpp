@@ -1,3 +1,7 @@
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <iterator>
 #include <softkin/model/compile/parts.hpp>
 
 namespace softkin {
@@ -38,7 +42,53 @@ const Body& body_of(Compilation& c, const std::string& robot) {
     if (is_of(prism)) prisms.push_back(prism);
   Embedder embedder(model.rest, tetrahedra, prisms, edge_nodes);
   Body body{std::move(tetrahedra), std::move(prisms), std::move(embedder), diagonal_of(c, robot)};
+  std::copy_if(c.sheets.begin(), c.sheets.end(), std::back_inserter(body.sheets), is_of);
   return c.robot_bodies.emplace(robot, std::move(body)).first->second;
+}
+
+namespace {
+
+/// The face of a sheet that is nearest to a point, and its point there.
+struct NearestFace {
+  Triangle face{};
+  Vec3 at{0, 0, 0};
+};
+
+/// None where an element is as near.
+std::optional<NearestFace> nearest_face(const Body& body, const Points& rest, const Vec3& point) {
+  if (body.sheets.empty() || !point.allFinite()) return std::nullopt;
+  Index nearest = 0;
+  const Vec3 at = SurfaceTree(rest, body.sheets).nearest(point, &nearest);
+  if (!body.embedder.empty() && body.embedder.embed(point).distance_mm <= (point - at).norm()) return std::nullopt;
+  return NearestFace{body.sheets[static_cast<std::size_t>(nearest)], at};
+}
+
+}  // namespace
+
+EmbeddedPoint carried(const Body& body, const Points& rest, const Vec3& point) {
+  constexpr double least_weight = 1e-12;
+  const std::optional<NearestFace> nearest = nearest_face(body, rest, point);
+  if (!nearest) return body.embedder.embed(point);
+  const auto& [face, at] = *nearest;
+  const Vec3 a = vertex_at(rest, face[0]), b = vertex_at(rest, face[1]), c = vertex_at(rest, face[2]);
+  const Vec3 normal = (b - a).cross(c - a);
+  const std::array<double, 3> weights{(b - at).cross(c - at).dot(normal), (c - at).cross(a - at).dot(normal),
+                                      (a - at).cross(b - at).dot(normal)};
+  EmbeddedPoint embedded;
+  embedded.distance_mm = (point - at).norm();
+  for (std::size_t i = 0; i < 3; ++i) {
+    const double weight = weights[i] / normal.squaredNorm();
+    if (std::abs(weight) < least_weight) continue;
+    embedded.vertices.push_back(face[i]);
+    embedded.weights.push_back(weight);
+  }
+  return embedded;
+}
+
+double most_outside(const Body& body, const Points& rest, const Vec3& point) {
+  const std::optional<NearestFace> nearest = nearest_face(body, rest, point);
+  const double edge = nearest ? longest_edge(rest, nearest->face) : body.embedder.edge_near(point);
+  return std::min(0.5 * edge, 0.1 * body.diagonal_mm);
 }
 
 }  // namespace softkin

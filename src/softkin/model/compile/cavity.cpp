@@ -81,8 +81,9 @@ std::array<Index, 3> sorted(Triangle corners) {
   return corners;
 }
 
-/// The faces of a cavity that are none of the body's elements.
-std::vector<CavityFace> open_faces(const Model& model, const std::vector<CavityFace>& cavity) {
+/// The faces of a cavity that are none of the body's elements, nor of sheets.
+std::vector<CavityFace> open_faces(const Model& model, const std::vector<Triangle>& sheets,
+                                   const std::vector<CavityFace>& cavity) {
   std::vector<bool> marked(model.used.size());
   for (const CavityFace& face : cavity)
     for (const Index v : face.corners) marked[v] = true;
@@ -99,6 +100,7 @@ std::vector<CavityFace> open_faces(const Model& model, const std::vector<CavityF
     for (const auto& q : prism_quads)  // either diagonal may have split it
       for (int i = 0; i < 4; ++i) add(p[q[i]], p[q[(i + 1) % 4]], p[q[(i + 2) % 4]]);
   }
+  for (const Triangle& t : sheets) shared.push_back(sorted(t));
   sort_unique(shared);
   std::vector<CavityFace> open;
   for (const CavityFace& face : cavity)
@@ -129,8 +131,9 @@ bool is_plate(const Model& model, const CavityFace& face, bool loose) {
   return false;
 }
 
-void check_openings(const Model& model, const ActuatorSpec& spec, const Actuator& actuator) {
-  const std::vector<CavityFace> open = open_faces(model, actuator.cavity);
+void check_openings(const Compilation& c, const ActuatorSpec& spec, const Actuator& actuator) {
+  const Model& model = c.model;
+  const std::vector<CavityFace> open = open_faces(model, c.sheets, actuator.cavity);
   const bool loose = std::any_of(open.begin(), open.end(), [&](const CavityFace& face) {
     return std::any_of(face.corners.begin(), face.corners.end(), [&](Index v) { return !model.used[v]; });
   });
@@ -150,6 +153,20 @@ void check_openings(const Model& model, const ActuatorSpec& spec, const Actuator
                    " not the body's. Close it with elements of the body, or hold the body's vertices there without "
                    "displacement (`fixed`): along x, y and z as a plate would, or, in a plane of symmetry, along its "
                    "normal");
+}
+
+/// An empty bag has no volume that others could be compared with.
+void take_as_flat(const Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
+  constexpr double flat = 1e-9, mm3_of_a_mL = 1000;
+  double area = 0;
+  for (const CavityFace& face : actuator.cavity) area += triangle_area(c.model.rest, face.corners);
+  if (std::abs(actuator.rest_measure) > flat * std::pow(area, 1.5)) return;
+  if (spec.control == Control::ratio)
+    refuse(spec,
+           "is flat at rest, so that no volume is a ratio of the one there: command its pressure (control: "
+           "pressure) or what is in it (control: gas or liquid)");
+  actuator.flat = true;
+  actuator.rest_measure = mm3_of_a_mL;
 }
 
 }  // namespace
@@ -188,13 +205,14 @@ void compile_cavity(Compilation& c, const ActuatorSpec& spec, const std::vector<
   }
   check_contact(c, spec, actuator);
   actuator.rest_measure = enclosed_volume(c.model.rest, actuator.cavity);
+  take_as_flat(c, spec, actuator);
 }
 
 void check_openings(const Compilation& c) {
   for (std::size_t i = 0; i < c.spec.actuators.size(); ++i) {
     const ActuatorSpec& spec = c.spec.actuators[i];
     if (!c.model.actuators[i].cavity.empty() && (spec.region || spec.wall || !spec.connected.empty()))
-      check_openings(c.model, spec, c.model.actuators[i]);
+      check_openings(c, spec, c.model.actuators[i]);
   }
 }
 

@@ -177,7 +177,8 @@ TriangleSurface checked_wall(const Compilation& c, const ActuatorSpec& spec) {
     wall.triangles.insert(wall.triangles.end(), {{q[0], q[1], q[2]}, {q[0], q[2], q[3]}});
   }
   try {
-    wall.triangles = turned_outwards(wall.vertices, std::move(wall.triangles));
+    wall.triangles = c.sheets.empty() ? turned_outwards(wall.vertices, std::move(wall.triangles))
+                                      : turned_outwards_or_flat(wall.vertices, std::move(wall.triangles));
   } catch (const InvalidInput& error) {
     refuse(spec, "has a wall, region '" + *spec.wall + "', that bounds no chamber: " + error.what() +
                      "; the region must hold every face around the chamber and no other");
@@ -246,7 +247,7 @@ void embed_surface(Compilation& c, const ActuatorSpec& spec, Actuator& actuator)
     if (!(distance > 1e-6 * c.model.diagonal_mm)) continue;
     farthest = std::max(farthest, distance);
     ++outside;
-    if (const double most = most_outside(body, vertex); distance > most)
+    if (const double most = most_outside(body, c.model.rest, vertex); distance > most)
       refuse(spec, "has a surface whose point " + point_text(vertex) + " mm is " + number(distance) +
                        " mm from the body, " + too_far_text(most) +
                        ": let the surface run along the body, or check its unit");

@@ -25,16 +25,16 @@ EmbeddedPoint embed_inside(Compilation& c, const Vec3& point, const PointRef& re
   const Origin& origin = reference.origin;
   const Body& body = body_of(c, reference.robot);
   if (!point.allFinite()) throw InvalidInput(origin, what + " is not finite");
-  if (body.embedder.empty())
+  if (carries_nothing(body))
     throw InvalidInput(origin, what + " needs a body to lie in, but every element belongs to a chamber");
   EmbeddedPoint embedded;
   try {
-    embedded = body.embedder.embed(point);
+    embedded = carried(body, c.model.rest, point);
   } catch (const InvalidInput& error) {
     throw InvalidInput(origin, what + ": " + error.what());
   }
   const std::string distance = number(embedded.distance_mm);
-  if (const double most = most_outside(body, point); embedded.distance_mm > most)
+  if (const double most = most_outside(body, c.model.rest, point); embedded.distance_mm > most)
     throw InvalidInput(origin, what + " is " + distance + " mm from the mesh, " + too_far_text(most) +
                                    ": move it to the body, mesh what holds it, or check the unit");
   if (embedded.distance_mm > 1e-6 * c.model.diagonal_mm)
@@ -43,10 +43,6 @@ EmbeddedPoint embed_inside(Compilation& c, const Vec3& point, const PointRef& re
 }
 
 }  // namespace
-
-double most_outside(const Body& body, const Vec3& point) {
-  return std::min(0.5 * body.embedder.edge_near(point), 0.1 * body.diagonal_mm);
-}
 
 std::string too_far_text(double most_mm) {
   return "farther than the " + number(most_mm) + " mm to which its nearest element can carry it";

@@ -240,6 +240,10 @@ void check_contact(const Compilation& c) {
 
 void compile_contact(Compilation& c) {
   if (!c.spec.contact) return;
+  if (!c.sheets.empty())
+    throw InvalidInput(c.origin,
+                       "`contact` is of the surfaces of elements, and layers beside the body have none: "
+                       "leave it out, or the layers");
   const ContactSpec& spec = *c.spec.contact;
   ContactModel& contact = c.model.contact;
   contact.distance_mm = distance_of(spec, c.model.diagonal_mm);

@@ -160,6 +160,7 @@ void find_used_vertices(Compilation& c) {
     for (const Index v : nodes) model.used[v] = true;
   for (const Prism& p : model.prisms)
     for (const Index v : p) model.used[v] = true;
+  use_sheets(c);
   Bounds bounds;
   model.fixed.assign(model.used.size(), {false, false, false});
   std::vector<bool> of_chamber(model.used.size());
@@ -198,6 +199,17 @@ void name_regions(Compilation& c) {
   }
 }
 
+/// Without volume a robot is of layers, on faces of its mesh.
+void refuse_empty(const Compilation& c) {
+  const Mesh& mesh = c.mesh;
+  if (!mesh.tetrahedra.empty() || !mesh.prisms.empty()) return;
+  if (mesh.triangles.empty()) throw InvalidInput(c.origin, "the mesh has no element");
+  if (c.spec.formulation == Formulation::physical && !c.spec.layers.empty()) return;
+  throw InvalidInput(c.origin, "the mesh has triangles and no volume element: mesh it in three dimensions; or, where " +
+                                   std::string("the robot is of fabric or film alone, say of what in `layers`") +
+                                   (c.spec.formulation == Formulation::physical ? "" : ", which are `physical`"));
+}
+
 }  // namespace
 
 Index robot_of(const RobotSpec& spec, Index RobotPart::*first, Index number) {
@@ -215,7 +227,7 @@ std::string robot_text(const RobotSpec& spec, Index RobotPart::*first, Index num
 void compile_elements(Compilation& c) {
   Model& model = c.model;
   const Mesh& mesh = c.mesh;
-  if (mesh.tetrahedra.empty() && mesh.prisms.empty()) throw InvalidInput(c.origin, "the mesh has no element");
+  refuse_empty(c);
   std::vector<bool> not_body = void_elements(c, &Region::tetrahedra, mesh.tetrahedra.size());
   const std::vector<bool> of_chamber = chamber_elements(c);
   std::vector<bool> not_chamber = not_body;
@@ -241,7 +253,7 @@ void compile_elements(Compilation& c) {
       orient(c, void_prisms,
              Kind<Prism>{"prism", "prisms", mesh.prisms, model.prisms, model.prism_volumes, c.prism_at, c.prism_of},
              least_volume);
-  if (model.tetrahedra.empty() && model.prisms.empty())
+  if (model.tetrahedra.empty() && model.prisms.empty() && !(mesh.tetrahedra.empty() && mesh.prisms.empty()))
     throw InvalidInput(c.origin, std::string("every element of the mesh is void") +
                                      (c.chamber_tetrahedra.empty() ? "" : " or belongs to a chamber"));
   if (reversed > 0)

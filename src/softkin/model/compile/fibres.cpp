@@ -189,7 +189,7 @@ Fibre fibre_of(Compilation& c, const FibreSpec& spec, std::vector<std::pair<doub
     refuse_fibre(spec, std::string("runs where ") + error.what());
   }
   const auto& [point, distance] = outside;
-  if (const double most = most_outside(carrier.whole(), point); distance > most)
+  if (const double most = most_outside(carrier.whole(), c.model.rest, point); distance > most)
     refuse_fibre(spec, "runs " + number(distance) + " mm from the elements that carry it, " + too_far_text(most) +
                            ", at (" + number(point[0]) + ", " + number(point[1]) + ", " + number(point[2]) +
                            ") mm: move it into the body or onto it, or check the unit");

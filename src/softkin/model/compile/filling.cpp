@@ -53,7 +53,7 @@ void check_connected(const ActuatorSpec& spec, Formulation formulation) {
 
 void compile_filling(Compilation& c, const FillingSpec& spec, Actuator& actuator) {
   constexpr double mm3_per_mL = 1000, MPa_per_kPa = 1e-3;
-  const double syringe = spec.syringe_mL.value_or(0);
+  const double syringe = spec.syringe_mL.value_or(0), chamber = actuator.flat ? 0 : actuator.rest_measure;
   actuator.filling = Filling{.liquid = spec.liquid,
                              .pushed = spec.syringe_mL.has_value(),
                              .exponent = spec.exponent,
@@ -61,16 +61,15 @@ void compile_filling(Compilation& c, const FillingSpec& spec, Actuator& actuator
                              .atmosphere_MPa = MPa_per_kPa * spec.atmosphere_kPa,
                              .dead_mm3 = mm3_per_mL * spec.dead_mL,
                              .syringe_mm3 = mm3_per_mL * syringe,
-                             .chamber_mm3 = actuator.rest_measure};
+                             .chamber_mm3 = chamber};
   actuator.rest = actuator.filling->rest();
   const auto part = [](double mL, const char* where) { return mL > 0 ? ", " + number(mL) + " mL " + where : ""; };
-  c.model.notes.push_back(
-      "Actuator '" + actuator.name + "' is sealed at rest with " +
-      number((actuator.rest_measure + actuator.filling->dead_mm3 + actuator.filling->syringe_mm3) / mm3_per_mL) +
-      " mL of " + (spec.liquid ? "liquid" : "gas") + " under " + number(spec.atmosphere_kPa) +
-      " kPa: " + number(actuator.rest_measure / mm3_per_mL) + " mL in " +
-      (actuator.connected.empty() ? "its chamber" : "its chambers") + part(spec.dead_mL, "of dead volume") +
-      part(syringe, "in its syringe") + ".");
+  c.model.notes.push_back("Actuator '" + actuator.name + "' is sealed at rest with " +
+                          number((chamber + actuator.filling->dead_mm3 + actuator.filling->syringe_mm3) / mm3_per_mL) +
+                          " mL of " + (spec.liquid ? "liquid" : "gas") + " under " + number(spec.atmosphere_kPa) +
+                          " kPa: " + number(chamber / mm3_per_mL) + " mL in " +
+                          (actuator.connected.empty() ? "its chamber" : "its chambers") +
+                          part(spec.dead_mL, "of dead volume") + part(syringe, "in its syringe") + ".");
   note_rest(c, actuator);
 }
 

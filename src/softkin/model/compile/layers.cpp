@@ -81,7 +81,8 @@ std::vector<CavityFace> faces_of(const Compilation& c, const LayerSpec& spec, co
     for (const Index v : nodes_of(face))
       if (v < 0 || !c.model.used[v])
         refuse_layer(spec, "has a face at " + point_text(vertex_at(c.model.rest, t[0])) +
-                               " mm, of which a vertex belongs to no element of the robot");
+                               " mm, of which a vertex belongs to no element of the robot: a layer beside the body "
+                               "takes a mesh of order 1");
     faces.push_back(face);
   }
   return faces;
@@ -106,7 +107,7 @@ std::vector<LayerPlace> carried_places(Compilation& c, const LayerSpec& spec, Tr
   for (Index i = 0; i < embedded.rows(); ++i) {
     const Vec3 vertex = vertex_at(surface.vertices, i);
     const double distance = points[static_cast<std::size_t>(i)].distance_mm;
-    if (const double most = most_outside(body, vertex); distance > most)
+    if (const double most = most_outside(body, c.model.rest, vertex); distance > most)
       refuse_layer(spec, "has a point, " + point_text(vertex) + " mm, that is " + number(distance) +
                              " mm from the body, " + too_far_text(most) + ": check its unit");
     embedded.row(i) = points[static_cast<std::size_t>(i)].at(c.model.rest).transpose();
@@ -191,6 +192,23 @@ LayerFrame::LayerFrame(const LayerSpec& spec, const TrianglePoint& point, const 
   Eigen::Matrix2d jacobian;
   jacobian << axes.transpose() * edges.u, axes.transpose() * edges.v;
   back = jacobian.inverse().transpose();
+}
+
+void use_sheets(Compilation& c) {
+  if (c.spec.formulation != Formulation::physical || !c.regions.edges().empty()) return;
+  for (const auto& spec : c.spec.layers) {
+    const auto* where = std::get_if<RegionRef>(&spec->where);
+    if (where == nullptr) continue;
+    const Region region = c.regions.resolve(*where);
+    if (region.dimension != 2) continue;
+    for (const Index i : region.triangles) {
+      const Triangle& t = c.mesh.triangles[static_cast<std::size_t>(i)];
+      if (std::all_of(t.begin(), t.end(), [&](Index v) { return static_cast<bool>(c.model.used[v]); })) continue;
+      c.sheets.push_back(t);
+    }
+  }
+  for (const Triangle& t : c.sheets)
+    for (const Index v : t) c.model.used[v] = true;
 }
 
 void compile_layers(Compilation& c) {

@@ -14,7 +14,8 @@ struct Body {
   std::vector<Tetrahedron> tetrahedra;
   std::vector<Prism> prisms;
   Embedder embedder;
-  double diagonal_mm = 0;  // of all of its elements
+  double diagonal_mm = 0;          // of all of its elements
+  std::vector<Triangle> sheets{};  // of layers without elements
 };
 
 /// What compile() knows while it works. Its parts below fill in the model, in this order, and throw InvalidInput.
@@ -42,6 +43,7 @@ struct Compilation {
   std::optional<std::vector<EmptySpace>> empty_spaces;
   std::vector<Index> space_actuators;        // -1: no actuator's
   std::vector<Actuator> force_commands;      // of forces that are commanded
+  std::vector<Triangle> sheets;              // physical: faces of layers some vertex of which is of no element
   std::map<std::string, Body> robot_bodies;  // by robot, made when they are first asked for; "": of all
 };
 
@@ -56,6 +58,9 @@ struct Compilation {
 /// Drops void elements, orients the others, measures them and names their regions. Physical: sets the elements of
 /// chambers apart.
 void compile_elements(Compilation& c);
+
+/// The part of compile_elements() that is about layers without elements: their vertices are used.
+void use_sheets(Compilation& c);
 
 /// Refuses elements that are doubled or overlap, as mesh check does, or notes them where the scene accepts them.
 void refuse_mesh_errors(Compilation& c);
@@ -239,9 +244,18 @@ void doubt_straight_edges(Compilation& c);
 /// Warns of a size, moduli, gravity and densities that no soft robot has: of numbers in another unit than was meant.
 void doubt_units(Compilation& c);
 
+/// A point as what carries it along moves: the nearest element, or a face of a sheet where it is nearer.
+///
+/// throws  InvalidInput as Embedder::embed
+[[nodiscard]] EmbeddedPoint carried(const Body& body, const Points& rest, const Vec3& point);
+/// Is there nothing to carry a point?
+[[nodiscard]] inline bool carries_nothing(const Body& body) {
+  return body.embedder.empty() && body.sheets.empty();
+}
+
 /// How far outside the body a point may be to be carried along by its nearest element [mm]: half that element's longest
 /// edge, and a tenth of the body's diagonal.
-[[nodiscard]] double most_outside(const Body& body, const Vec3& point);
+[[nodiscard]] double most_outside(const Body& body, const Points& rest, const Vec3& point);
 /// "farther than 5.2 mm, to which its nearest element can carry it", of a point that is farther.
 [[nodiscard]] std::string too_far_text(double most_mm);
 

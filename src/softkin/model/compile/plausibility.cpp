@@ -94,6 +94,7 @@ void doubt_pressures(const Compilation& c, std::vector<std::string>& warnings) {
   double stiffest_kPa = 0;
   for (const Material& material : c.model.materials)
     stiffest_kPa = std::max(stiffest_kPa, 1000 * stiffness_at_rest(material.elastic).youngs_modulus_MPa);
+  if (c.model.materials.empty()) return;  // of layers alone, whose stiffness is for their thickness
   const double most = std::min(highest_kPa, in_stiffest_moduli * stiffest_kPa);
   for (const Actuator& actuator : c.model.actuators) {
     const double kPa = std::max(std::abs(actuator.low), std::abs(actuator.high));

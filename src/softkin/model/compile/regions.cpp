@@ -129,6 +129,12 @@ Region every_element(const Mesh& mesh) {
   std::iota(all.tetrahedra.begin(), all.tetrahedra.end(), 0);
   std::iota(all.prisms.begin(), all.prisms.end(), 0);
   add_element_vertices(mesh, all);
+  if (mesh.tetrahedra.empty() && mesh.prisms.empty()) {
+    all.dimension = 2;
+    all.triangles.resize(mesh.triangles.size());
+    std::iota(all.triangles.begin(), all.triangles.end(), 0);
+    add_vertices(mesh.triangles, all.triangles, all.vertices);
+  }
   sort_unique(all.vertices);
   return all;
 }

@@ -5,7 +5,8 @@
 
 namespace softkin {
 
-/// The regions of a description by name: the groups of its mesh, then its own, and "all" (every element).
+/// The regions of a description by name: the groups of its mesh, then its own, and "all" (every element; of a mesh
+/// without volume every triangle).
 ///
 /// Groups of dimension 3 and 2 hold the vertices of their cells, edge nodes too. A shape holds the vertices inside it
 /// or on its boundary (within 1e-9 of the mesh's diagonal) and the elements whose centroids are; a list of vertices

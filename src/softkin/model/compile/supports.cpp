@@ -7,6 +7,7 @@
 #include <set>
 #include <softkin/core/dense.hpp>
 #include <softkin/model/compile/parts.hpp>
+#include <softkin/model/layer.hpp>
 #include <softkin/model/mesh/surface_tree.hpp>
 
 namespace softkin {
@@ -128,6 +129,8 @@ Parts connected_parts(const Model& model) {
     parts.join(std::array{model.tetrahedra[e][0], model.edge_nodes[e][0]});
   }
   for (const Prism& p : model.prisms) parts.join(p);
+  for (const auto& layer : model.layers)
+    for (const CavityFace& face : layer->faces) parts.join(nodes_of(face));
   for (const RigidRegion& rigid : model.rigid) parts.join(rigid.vertices);
   for (const Actuator& actuator : model.actuators)
     for (const CableGap& gap : actuator.gaps) {

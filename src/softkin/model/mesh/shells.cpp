@@ -148,7 +148,9 @@ std::vector<Shell> shells_of(const Points& vertices, const std::vector<Triangle>
   return shells;
 }
 
-std::vector<Triangle> turned_outwards(const Points& vertices, std::vector<Triangle> triangles) {
+namespace {
+
+std::vector<Triangle> turned(const Points& vertices, std::vector<Triangle> triangles, bool flat_too) {
   if (triangles.empty()) throw InvalidInput("the surface has no triangle");
   for (const Triangle& t : triangles)
     for (const Index v : t)
@@ -159,11 +161,21 @@ std::vector<Triangle> turned_outwards(const Points& vertices, std::vector<Triang
   for (std::size_t t = 0; t < triangles.size(); ++t)
     if (turn[t]) std::swap(triangles[t][1], triangles[t][2]);
   for (const Shell& shell : shells_of(vertices, triangles)) {
-    if (is_flat(shell)) throw InvalidInput("the surface encloses no volume, " + place(shell.center));
-    if (shell.volume > 0) continue;
+    if (is_flat(shell) && !flat_too) throw InvalidInput("the surface encloses no volume, " + place(shell.center));
+    if (is_flat(shell) || shell.volume > 0) continue;
     for (const Index t : shell.triangles) std::swap(triangles[t][1], triangles[t][2]);
   }
   return triangles;
+}
+
+}  // namespace
+
+std::vector<Triangle> turned_outwards(const Points& vertices, std::vector<Triangle> triangles) {
+  return turned(vertices, std::move(triangles), false);
+}
+
+std::vector<Triangle> turned_outwards_or_flat(const Points& vertices, std::vector<Triangle> triangles) {
+  return turned(vertices, std::move(triangles), true);
 }
 
 std::vector<EmptySpace> empty_spaces_in(const Points& vertices, const std::vector<Tetrahedron>& tetrahedra,

@@ -22,6 +22,9 @@ struct Shell {
 /// throws  InvalidInput where the surface has no triangle or names a vertex that is not there; naming the place [mm],
 ///         where it has a rim or an edge of more than two triangles, one side only, or encloses no volume
 [[nodiscard]] std::vector<Triangle> turned_outwards(const Points& vertices, std::vector<Triangle> triangles);
+/// The same where pieces may be flat, as an empty bag is: of these neighbours agree, and which side is outside is what
+/// the first triangle says.
+[[nodiscard]] std::vector<Triangle> turned_outwards_or_flat(const Points& vertices, std::vector<Triangle> triangles);
 
 /// An empty space that elements enclose, bounded by a piece of their boundary.
 struct EmptySpace {

@@ -40,6 +40,9 @@ constexpr double most_correction = 0.5, least_snap = 0.01;
 constexpr double least_jump = 0.9, finest = 0.02;
 /// A longer step that inverts an element is made shorter: laws that have an energy for it have a mirrored equilibrium.
 constexpr double most_inverting = 0.01;
+/// How smoothly sheets that were flat wrinkle at last, and from one solve to the next; and how pressures fall from one to
+/// the next.
+constexpr double narrowest_barrier = 1e-11, narrower = 0.1, fall = 0.2;
 /// Share of normal forces whose friction gives way, from which on it is told where the way ends.
 constexpr double worth_telling = 0.5;
 
@@ -51,8 +54,9 @@ Continuation::Continuation(const System& system, Workspace& work, Team& team, co
       work_(work),
       team_(team),
       newton_(system, work, team,
-              {options.tolerance_mm, options.force_share, system.contact() ? 100 : 30, options.keep_history}, progress,
-              report),
+              {options.tolerance_mm, options.force_share, system.contact() || system.limp() ? 100 : 30,
+               options.keep_history},
+              progress, report),
       tolerance_mm_(options.tolerance_mm),
       max_iterations_(options.max_iterations),
       stable_(options.stable),
@@ -60,9 +64,47 @@ Continuation::Continuation(const System& system, Workspace& work, Team& team, co
       report_(report),
       tracer_(options.trace, report) {}
 
+/// A demand whose pressures are so many times as large.
+Demand Continuation::pressed(Demand demand, double times, Iterate& at) const {
+  for (Index a = 0; a < system_.actuators(); ++a) {
+    if (active_[static_cast<std::size_t>(a)] || !system_.measures().given_load(a) || system_.measures().sign(a) > 0)
+      continue;
+    demand.actuation[a] *= times;
+    at.multipliers[a] = system_.measures().given(a, demand.actuation[a]);
+  }
+  return demand;
+}
+
+/// Of sheets that were flat: first what wrinkles does so without kinks, then with ever sharper ones, at last with its
+/// own; under pressures that stretch it, which fall to those that are asked for.
+Newton::Outcome Continuation::settle_swollen(const Demand& there, Swelling how, Iterate& trial) {
+  Demand pressing = pressed(there, how.boost, trial);
+  for (double barrier = how.barrier; barrier > narrowest_barrier; barrier *= narrower) {
+    work_.layers->barrier = barrier;
+    const auto outcome = settle(pressing, Newton::Policy::descend, trial);
+    work_.layers->barrier = 0;
+    if (outcome == Newton::Outcome::interrupted) return outcome;
+  }
+  auto outcome = settle(pressing, Newton::Policy::descend, trial);
+  while (how.boost > 1 && outcome != Newton::Outcome::stuck && outcome != Newton::Outcome::interrupted) {
+    how.boost = std::max(1.0, fall * how.boost);
+    pressing = pressed(there, how.boost, trial);
+    outcome = settle(pressing, Newton::Policy::descend, trial);
+  }
+  return outcome;
+}
+
 /// One step; trial begins at `at` and ends at the equilibrium.
 Newton::Outcome Continuation::step(const Demand& here, const Demand& there, double length, const Iterate& at,
                                    Iterate& trial) {
+  swollen_ = false;
+  if (system_.limp() && system_.layers()->flat(at.positions)) {
+    const std::optional<Swelling> swelling = swell(system_, there, active_, trial, work_, team_);
+    swollen_ = swelling.has_value();
+    predicted_ = begun_ = trial.positions;
+    move_mm_ = system_.largest_move(at.positions, predicted_);
+    return swelling ? settle_swollen(there, *swelling, trial) : settle(there, Newton::Policy::descend, trial);
+  }
   const bool whole = way_.done == 0 && length == 1;  // steps of a way are short where it is difficult
   bool led = false;
   const auto prediction = [&] {
@@ -105,6 +147,7 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
 /// Does a step leave the way? Where a way bends, the tangent at its end, followed back, misses its begin on the side on
 /// which the one at its begin misses its end, and by about as much; where it jumps, on the other side.
 bool Continuation::jumped(const Demand& here, const Demand& there, const Iterate& at, const Iterate& trial) {
+  if (swollen_) return false;
   const double correction = system_.largest_move(predicted_, trial.positions);
   const auto jumps = [&] {
     Iterate back = trial;

@@ -5,6 +5,7 @@
 #include <softkin/statics/physical/equilibria.hpp>
 #include <softkin/statics/physical/stability.hpp>
 #include <softkin/statics/physical/step_tracer.hpp>
+#include <softkin/statics/physical/swelling.hpp>
 
 namespace softkin::physical {
 
@@ -135,6 +136,8 @@ class Continuation {
   void pass(const Demand& demand, double done);
   std::optional<Status> out_of_patience(const Iterate& at);
   bool release(const Demand& there, Iterate& at, bool contradicting);
+  Newton::Outcome settle_swollen(const Demand& there, Swelling how, Iterate& trial);
+  [[nodiscard]] Demand pressed(Demand demand, double times, Iterate& at) const;
   Newton::Outcome step(const Demand& here, const Demand& there, double length, const Iterate& at, Iterate& trial);
   bool leads_beyond(const Iterate& at);
   void take_beyond(Iterate& at);
@@ -170,6 +173,7 @@ class Continuation {
   Points from_;                       // the last good shape
   Points predicted_, begun_;          // by the last step, and what of it is in nobody's way
   double move_mm_ = 0, jump_mm_ = 0;  // of it: to what it predicted, and beside the way
+  bool swollen_ = false;              // did it begin with sheets that were flat
   Judgement last_;                    // of the last good shape
   int rounds_ = 1;                    // of normal forces, for the last equilibrium
   std::optional<Together> together_;

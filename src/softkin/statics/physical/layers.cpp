@@ -38,6 +38,11 @@ Mat3 strain_slope(const Sheet& f, const Eigen::Vector2d& slope) {
   return b;
 }
 
+energy::SheetResponse respond(const SheetLaw& law, const Vec3& strain, double barrier) {
+  return barrier > 0 && law.tension_only ? energy::smooth_sheet_response(law, strain, barrier)
+                                         : energy::sheet_response(law, strain);
+}
+
 /// The nearest symmetric matrix that presses nowhere.
 Eigen::Matrix2d pulling(const Eigen::Matrix2d& stress) {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;
@@ -100,6 +105,46 @@ Layers::Layers(const Model& model) : model_(model) {
     add_membrane(*layer);
     add_bending(*layer);
   }
+  std::vector<bool> of_element(static_cast<std::size_t>(model.rest.rows()));
+  for (const Tetrahedron& t : model.tetrahedra)
+    for (const Index v : t) of_element[static_cast<std::size_t>(v)] = true;
+  for (const EdgeNodes& nodes : model.edge_nodes)
+    for (const Index v : nodes) of_element[static_cast<std::size_t>(v)] = true;
+  for (const Prism& p : model.prisms)
+    for (const Index v : p) of_element[static_cast<std::size_t>(v)] = true;
+  for (const Face& face : faces_)
+    std::copy_if(face.vertices.begin(), face.vertices.end(), std::back_inserter(alone_),
+                 [&](Index v) { return !of_element[static_cast<std::size_t>(v)]; });
+  sort_unique(alone_);
+}
+
+bool Layers::flat(const Points& positions) const {
+  return std::all_of(alone_.begin(), alone_.end(), [&](Index v) { return positions.row(v) == model_.rest.row(v); });
+}
+
+void Layers::add_tension(const Points& moves, Points& forces) const {
+  for (const Face& face : faces_)
+    for (const LayerPlace* place : face.places) {
+      const Sheet pull = place->area_mm2 * sheet_gradient(*place, moves);
+      for (std::size_t i = 0; i < place->vertices.size(); ++i)
+        forces.row(place->vertices[i]) += (pull * place->slopes[i]).transpose();
+    }
+}
+
+double Layers::stiffness_N_mm() const {
+  double most = 0;
+  for (const Face& face : faces_) most = std::max(most, face.law->stiffness(0, 0) * face.thickness_mm);
+  return most;
+}
+
+double Layers::mean_slope(const Points& moves) const {
+  double sum = 0, area = 0;
+  for (const Face& face : faces_)
+    for (const LayerPlace* place : face.places) {
+      sum += place->area_mm2 * sheet_gradient(*place, moves).norm();
+      area += place->area_mm2;
+    }
+  return sum / area;
 }
 
 void Layers::add_membrane(const Layer& layer) {
@@ -148,17 +193,23 @@ energy::BendingResponse<18> Layers::bend(const Joint& joint, const Points& posit
   return energy::bend(*joint.of, columns.leftCols<3>(), columns.rightCols<3>(), second);
 }
 
-void Layers::evaluate(const Iterate& at, const Demand& /*demand*/, Term::Scratch& /*scratch*/, Sum& sum,
+void Layers::evaluate(const Iterate& at, const Demand& /*demand*/, Term::Scratch& scratch, Sum& sum,
                       Team& /*team*/) const {
+  const double barrier = static_cast<Scratch&>(scratch).barrier;
+  Eigen::VectorXd& pulls = static_cast<Scratch&>(scratch).pulls;
+  pulls.setZero(at.positions.rows());
   for (const Face& face : faces_)
     for (const LayerPlace* place : face.places) {
       const Sheet f = sheet_gradient(*place, at.positions);
-      const energy::SheetResponse response = energy::sheet_response(*face.law, green_strain(f));
+      const energy::SheetResponse response = respond(*face.law, green_strain(f), barrier);
       const double volume = place->area_mm2 * face.thickness_mm;
       sum.energy += volume * response.energy;
       const Sheet pull = volume * f * as_matrix(response.stress);
-      for (std::size_t i = 0; i < place->vertices.size(); ++i)
-        sum.gradient.row(place->vertices[i]) += (pull * place->slopes[i]).transpose();
+      for (std::size_t i = 0; i < place->vertices.size(); ++i) {
+        const Vec3 force = pull * place->slopes[i];
+        sum.gradient.row(place->vertices[i]) += force.transpose();
+        pulls[place->vertices[i]] += force.norm();
+      }
     }
   for (const Place& place : places_) add_pull(place, bend(place, at.positions, false), sum);
   for (const Joint& joint : joints_) add_pull(joint, bend(joint, at.positions, false), sum);
@@ -183,10 +234,8 @@ void Layers::add_cliques(linear::Cliques& cliques) {
 namespace {
 
 /// Of a place, added to blocks of its vertices: those in order have these places among the place's own.
-void add_sheet_stiffness(const LayerPlace& place, const SheetLaw& law, double thickness_mm, bool projected,
-                         const Points& positions, const std::vector<std::size_t>& order, double* out) {
-  const Sheet f = sheet_gradient(place, positions);
-  const energy::SheetResponse response = energy::sheet_response(law, green_strain(f));
+void add_sheet_stiffness(const LayerPlace& place, const energy::SheetResponse& response, const Sheet& f,
+                         double thickness_mm, bool projected, const std::vector<std::size_t>& order, double* out) {
   const double volume = place.area_mm2 * thickness_mm;
   Eigen::Matrix2d stress = as_matrix(response.stress);
   if (projected) stress = pulling(stress);
@@ -204,8 +253,9 @@ void add_sheet_stiffness(const LayerPlace& place, const SheetLaw& law, double th
 
 }  // namespace
 
-void Layers::stiffness(const Iterate& at, const Demand& /*demand*/, bool projected, Term::Scratch& /*scratch*/,
+void Layers::stiffness(const Iterate& at, const Demand& /*demand*/, bool projected, Term::Scratch& scratch,
                        LargeVector<double>& slots, Team& team) const {
+  const double barrier = static_cast<const Scratch&>(scratch).barrier;
   const auto room = [&](std::int64_t slot, std::size_t count) {
     double* const first = slots.data() + 9 * slot;
     std::fill_n(first, 9 * count * (count + 1) / 2, 0.0);
@@ -215,9 +265,11 @@ void Layers::stiffness(const Iterate& at, const Demand& /*demand*/, bool project
     for (Index n = begin; n < end; ++n) {
       const Face& face = faces_[static_cast<std::size_t>(n)];
       double* const first = room(face.slot, face.vertices.size());
-      for (std::size_t p = 0; p < face.places.size(); ++p)
-        add_sheet_stiffness(*face.places[p], *face.law, face.thickness_mm, projected, at.positions, face.orders[p],
-                            first);
+      for (std::size_t p = 0; p < face.places.size(); ++p) {
+        const Sheet f = sheet_gradient(*face.places[p], at.positions);
+        add_sheet_stiffness(*face.places[p], respond(*face.law, green_strain(f), barrier), f, face.thickness_mm,
+                            projected, face.orders[p], first);
+      }
     }
   });
   const auto put = [&](const auto& bent) {

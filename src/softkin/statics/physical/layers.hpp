@@ -14,6 +14,26 @@ class Layers : public Term {
   /// model must outlive the object.
   explicit Layers(const Model& model);
 
+  struct Scratch : Term::Scratch {
+    Eigen::VectorXd pulls;  // of each vertex, sum of magnitudes [N]
+    double barrier = 0;     // of what takes tension only; 0: it has kinks. See energy::smooth_sheet_response()
+  };
+  [[nodiscard]] std::unique_ptr<Term::Scratch> new_scratch() const override { return std::make_unique<Scratch>(); }
+
+  /// Is there a vertex that layers alone hold? A flat sheet has no stiffness across itself.
+  [[nodiscard]] bool limp() const { return !alone_.empty(); }
+  /// Are these where they were cut?
+  [[nodiscard]] bool flat(const Points& positions) const;
+  /// The vertices that no element has.
+  [[nodiscard]] const std::vector<Index>& alone() const { return alone_; }
+  /// Adds to the forces what moves of the vertices call up under a tension of 1 N/mm in every direction, which is all
+  /// that the sheets are taken to resist with [N].
+  void add_tension(const Points& moves, Points& forces) const;
+  /// The largest of a layer along its direction, times its thickness [N/mm].
+  [[nodiscard]] double stiffness_N_mm() const;
+  /// Mean magnitude of the slopes of moves, over the area.
+  [[nodiscard]] double mean_slope(const Points& moves) const;
+
   void evaluate(const Iterate& at, const Demand& demand, Term::Scratch& scratch, Sum& sum, Team& team) const override;
   void add_cliques(linear::Cliques& cliques) override;
   /// projected: stresses that press are left out; what bends is projected place by place.
@@ -52,6 +72,7 @@ class Layers : public Term {
   [[nodiscard]] static energy::BendingResponse<18> bend(const Joint& joint, const Points& positions, bool second);
 
   const Model& model_;
+  std::vector<Index> alone_;
   std::vector<Face> faces_;
   std::vector<Place> places_;
   std::vector<Joint> joints_;

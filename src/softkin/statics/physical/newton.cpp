@@ -84,7 +84,8 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
   for (double shift = std::max(slight_shift, last_shift_); slow_ && end == Advance::none && shift < clear_shift;
        shift *= 8) {
     ++report_.shifts;
-    end = attempted(Stiffness::exact, shift, closer);
+    // pressed sheets buckle in many ways, of which none leads to where they wrinkle
+    end = attempted(system_.limp() ? Stiffness::projected : Stiffness::exact, shift, closer);
     last_shift_ = shift / 3;
   }
   if (end != Advance::none) return end;
@@ -232,7 +233,7 @@ void Newton::note_pace(double damping) {
   constexpr double slow = 0.5;
   constexpr int few = 2;
   if (negative_ == 0)
-    slow_ = false;
+    slow_ = system_.limp();
   else if (system_.contact() && negative_ <= few && damping == 1)
     slow_ |= next_.size.mean > slow * step_.size.mean;
 }
@@ -254,7 +255,7 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
                          !(work_.contacts && work_.contacts->friction_follows);
   double slope = potential ? weigh_constraints(at) : 0;
   steepest_ = std::min(steepest_, slope);
-  if (!system_.contact() && slope > worthwhile_slope * steepest_) slope = 0;
+  if (!system_.contact() && !system_.limp() && slope > worthwhile_slope * steepest_) slope = 0;
   const double before = slope < 0 ? merit(balance_) : 0;
   for (;;) {
     double factor = 0.5;
@@ -270,7 +271,7 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
       downhill_ = nearer ? 0 : downhill_ + lower;
       // up to rounding: what is nearer by its steps and yet costs more goes round in circles where things touch
       if (lower || (nearer && !(system_.contact() && rise > most_rise * std::abs(before)))) break;
-      if (!system_.contact() &&
+      if (!system_.contact() && !system_.limp() &&
           std::isfinite(next_.size.mean)) {  // the length at which a quadratic model is just good enough
         const double residue = (next_.move - (1 - damping) * step_.move).norm() / step_.move.norm();
         factor = std::min(0.5, damping / (2 * residue));
@@ -423,6 +424,15 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
   return descend(policy, false, at);
 }
 
+/// Does nothing do anything to limp sheets? There they have no stiffness, and so no step.
+bool Newton::rests() {
+  imbalance_ = system_.imbalance(balance_, work_, team_);
+  if (!(imbalance_.residual <= imbalance_.rounding) || !balance_.constraint.isZero(0)) return false;
+  missed_ = 0;
+  negative_ = 0;
+  return true;
+}
+
 Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
   system_.evaluate(at, *demand_, *active_, work_, balance_, team_);
   why_ = "the law has no energy at its begin";
@@ -433,7 +443,9 @@ Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
   secants_.clear();
   poor_ = same_ = downhill_ = 0;
   steepest_ = 0;
-  slow_ = refines_ = rounding_looked_at_ = false;
+  refines_ = rounding_looked_at_ = false;
+  slow_ = system_.limp();
+  if (system_.limp() && system_.layers()->flat(at.positions) && rests()) return Outcome::converged;
   imbalance_.residual = missed_ = std::numeric_limits<double>::infinity();
   for (int iteration = 0; advance == Advance::made && iteration < settings_.max_iterations; ++iteration) {
     if (factorised && iteration == 0) {

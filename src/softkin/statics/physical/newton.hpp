@@ -67,6 +67,7 @@ class Newton {
 
   Outcome descend(Policy policy, bool factorised, Iterate& at);
   [[nodiscard]] bool goes_on() const;
+  bool rests();
   Advance factorise(const Iterate& at, Policy policy);
   void find(const Balance& balance, const Iterate& at, Step& step);
   double refine(const Balance& balance, const Iterate& at, Step& step);

@@ -142,7 +142,8 @@ void System::require_last(const Balance& balance, const Workspace& work) {
 Imbalance System::imbalance(const Balance& balance, const Workspace& work, Team& team) const {
   require_last(balance, work);
   constexpr double roundings = 16;  // of a vertex's elements
-  return {freedoms_->largest(balance.force), body_.largest_pull(work.elastic, team),
+  const double pull = body_.largest_pull(work.elastic, team);
+  return {freedoms_->largest(balance.force), work.layers ? std::max(pull, work.layers->pulls.maxCoeff()) : pull,
           roundings * std::numeric_limits<double>::epsilon() * work.saddle.spectrum().stiffest * model_.diagonal_mm};
 }
 

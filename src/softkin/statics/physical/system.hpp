@@ -146,6 +146,10 @@ class System {
     actuator_loads_.pull(actuator, at, force);
     return force;
   }
+  /// Null: there are none.
+  [[nodiscard]] const Layers* layers() const { return layers_.get(); }
+  /// Are there sheets beside elements, which have no stiffness where they are flat and slack?
+  [[nodiscard]] bool limp() const { return layers_ && layers_->limp(); }
   [[nodiscard]] const Tendons& tendons() const { return actuator_loads_.tendons(); }
   [[nodiscard]] Index actuators() const { return static_cast<Index>(model_.actuators.size()); }
   /// Of a shape whose multipliers are known.

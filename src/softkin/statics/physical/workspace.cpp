@@ -10,6 +10,12 @@ std::vector<std::unique_ptr<Term::Scratch>> scratches(const std::vector<const Te
   return all;
 }
 
+Layers::Scratch* scratch_of_layers(const System& system, const std::vector<std::unique_ptr<Term::Scratch>>& all) {
+  for (std::size_t t = 0; t < all.size(); ++t)
+    if (system.terms()[t] == system.layers()) return &static_cast<Layers::Scratch&>(*all[t]);
+  return nullptr;
+}
+
 /// Single precision is tried where the stiffness is positive, which it is not with pressures.
 Saddle::Precision usual_precision(const System& system) {
   if (system.pressures()) return Saddle::Precision::twice;
@@ -23,6 +29,7 @@ Workspace::Workspace(const System& system)
       elastic(static_cast<Body::Scratch&>(*terms[0])),
       fading(static_cast<FadingLoads::Scratch&>(*terms[2])),
       contacts(system.contacts() ? &static_cast<Contacts::Scratch&>(*terms.back()) : nullptr),
+      layers(scratch_of_layers(system, terms)),
       layout(system.layout()),
       slots(9 * static_cast<std::size_t>(layout->slots)),
       slopes(system.model().actuators.size()),

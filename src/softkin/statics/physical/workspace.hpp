@@ -3,6 +3,7 @@
 #include <optional>
 #include <softkin/statics/physical/body.hpp>
 #include <softkin/statics/physical/contacts.hpp>
+#include <softkin/statics/physical/layers.hpp>
 #include <softkin/statics/physical/loads.hpp>
 #include <softkin/statics/physical/placement.hpp>
 #include <softkin/statics/physical/saddle.hpp>
@@ -20,6 +21,7 @@ struct Workspace {
   Body::Scratch& elastic;
   FadingLoads::Scratch& fading;
   Contacts::Scratch* contacts;  // where there is contact
+  Layers::Scratch* layers;      // where there are some
 
   bool left_field = false;               // was a shape where a field is not known, as outside a grid
   std::uint64_t evaluated = 0;           // times

@@ -139,7 +139,7 @@ ActuatorMeasures::ActuatorMeasures(const Model& model)
     }
   }
   for (Index a = 0; a < static_cast<Index>(terms_.size()); ++a)
-    rest_.push_back(measures(a) ? value(a, model.rest) : model.actuators[a].rest_measure);
+    rest_.push_back(measures(a) && !model.actuators[a].flat ? value(a, model.rest) : model.actuators[a].rest_measure);
   for (Index a = 0; a < static_cast<Index>(terms_.size()); ++a) {
     const Actuator& actuator = model.actuators[a];
     const bool cable = actuator.kind == ActuatorKind::cable;

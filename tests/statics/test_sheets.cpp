@@ -1,0 +1,157 @@
+#include <softkin/statics/deformation.hpp>
+
+#include "statics/physical_equations.hpp"
+#include "statics/physical_samples.hpp"
+#include "statics/pillows.hpp"
+
+/// Robots of layers alone: bags that are inflated from flat.
+
+namespace softkin {
+
+namespace {
+
+using namespace testing;
+
+/// Of two discs of radius 1 that do not stretch: what Paulsen's surface of revolution has, along whose meridians alone
+/// the film is pulled. Its profile has dy/dx = - x^2 / sqrt(r^4 - x^4).
+struct Mylar {
+  double height = 0, volume = 0;
+
+  Mylar() {
+    constexpr int steps = 20000;
+    double meridian = 0;  // of r = 1, with x^2 = sin(u^2): no integrand has a pole
+    for (int i = 0; i < steps; ++i) {
+      const double width = std::sqrt(std::numbers::pi / 2) / steps, u = (i + 0.5) * width;
+      const double x = std::sqrt(std::sin(u * u)), angle = 2 * u * width;
+      meridian += angle / (2 * x);
+      height += angle * x;                             // of both sides
+      volume += angle * std::numbers::pi * x * x * x;  // shells: 2 pi x times the height there, by parts
+    }
+    height /= meridian;
+    volume /= std::pow(meridian, 3);
+  }
+};
+
+double across(const Pillow& made, const Points& positions) {
+  return (positions.row(made.top) - positions.row(made.bottom)).norm();
+}
+
+}  // namespace
+
+TEST(Sheets, DiscsBecomeMylarBalloons) {
+  constexpr double radius = 100;
+  const Mylar known;
+  EXPECT_NEAR(known.height, 0.9139, 1e-4);
+  const Pillow made = pillow(disc(radius, 10));
+  const Model model = compile(film_robot(made));
+  ASSERT_TRUE(model.actuators[0].flat);
+  const Statics statics(model);
+  const Equilibrium found = settled(statics, Actuation::Constant(1, 1.0));
+  EXPECT_EQ(found.report.unstable_modes, 0);
+  EXPECT_NEAR(across(made, found.state.positions), known.height * radius, 0.02 * known.height * radius);
+  const double volume = enclosed_volume(found.state.positions, model.actuators[0].cavity);
+  EXPECT_NEAR(volume, known.volume * std::pow(radius, 3), 0.02 * volume);
+  EXPECT_NEAR(achieved_ratio(model, model.actuators[0], found.state.positions), volume / 1000, 1e-9 * volume);  // mL
+  // the pressure does work: more of it is nearly the same shape, found from there
+  const Equilibrium more = statics.solve(Actuation::Constant(1, 2.0), found.state, {}, {});
+  EXPECT_EQ(more.report.status, Status::converged);
+  EXPECT_LT(more.report.iterations, 30);
+  EXPECT_GT(enclosed_volume(more.state.positions, model.actuators[0].cavity), volume);
+}
+
+TEST(Sheets, WithoutLoadsTheyLieAsTheyWereCut) {
+  const Pillow made = pillow(disc(50, 4));
+  const Model model = compile(film_robot(made));
+  const Equilibrium found = settled(Statics(model), Actuation::Constant(1, 0.0));
+  EXPECT_EQ(found.state.positions, model.rest);
+}
+
+TEST(Sheets, GasOfABagFollowsBoyle) {
+  const Pillow made = pillow(disc(100, 6));
+  const Model model = compile(film_robot(made, Control::filling, 2000));
+  constexpr double amount_mL = 1300, atmosphere_kPa = 101.325;
+  const Equilibrium found = settled(Statics(model), Actuation::Constant(1, amount_mL));
+  const double volume_mL = enclosed_volume(found.state.positions, model.actuators[0].cavity) / 1000;
+  EXPECT_GT(found.state.multipliers[0], 1);
+  EXPECT_NEAR((found.state.multipliers[0] + atmosphere_kPa) * volume_mL, atmosphere_kPa * amount_mL,
+              1e-6 * atmosphere_kPa * amount_mL);
+}
+
+TEST(Sheets, HangOnABodyAndPullIt) {
+  // a flap of film beside a block, pulled in its plane: it stretches as a strip of its width does
+  constexpr double force = 0.5, thickness = 0.1, modulus = 50;
+  RobotSpec spec = physical_robot(block_mesh({2, 2, 2}, {10, 10, 10}));
+  spec.fixed = {{{Selector(Box{{-1, -1, -1}, {11, 11, 11}}), {}}, {true, true, true}}};
+  Mesh& mesh = spec.mesh;
+  const Index before = static_cast<Index>(mesh.vertices.rows());
+  const auto corner = [&](double y) {
+    for (Index v = 0; v < before; ++v)
+      if ((vertex_at(mesh.vertices, v) - Vec3(10, y, 10)).norm() < 1e-9) return v;
+    return Index{-1};
+  };
+  mesh.vertices.conservativeResize(before + 3, 3);
+  for (Index i = 0; i < 3; ++i) mesh.vertices.row(before + i) = Vec3(30, 5 * i, 10).transpose();
+  Region flap{"flap", 2, {}, {}, {}, {}, {}};
+  for (Index i = 0; i < 2; ++i)
+    for (const Triangle& t : {Triangle{corner(5.0 * i), before + i, before + i + 1},
+                              Triangle{corner(5.0 * i), before + i + 1, corner(5.0 * i + 5)}}) {
+      flap.triangles.push_back(static_cast<Index>(mesh.triangles.size()));
+      mesh.triangles.push_back(t);
+    }
+  mesh.regions.push_back(flap);
+  LayerSpec film;
+  film.name = "flap";
+  film.where = RegionRef{std::string("flap"), {}};
+  film.thickness_mm = thickness;
+  film.e1 = film.e2 = modulus;
+  film.g12 = modulus / 2;
+  spec.layers.push_back(std::make_shared<const LayerSpec>(film));
+  const RegionRef end{Selector(VertexList{{before, before + 1, before + 2}}), {}};
+  spec.fixed.push_back({end, {false, true, true}});
+  for (Index i = 0; i < 3; ++i) {  // as a pull that is even over the width
+    const std::string name = "end" + std::to_string(i);
+    spec.regions.push_back({name, VertexList{{before + i}}, {}});
+    spec.forces.push_back({name, {name, {}}, {force * (i == 1 ? 0.5 : 0.25), 0, 0}});
+  }
+  spec.markers = {{"end", {Vec3(30, 5, 10), {}}}};
+  const Model model = compile(spec);
+  const Equilibrium found = settled(Statics(model), model.rest_actuation());
+  const double moved = model.markers[0].at(found.state.positions).x() - 30;
+  // S = E (s^2 - 1) / 2 along it, force = width thickness s S
+  const double s = 1 + moved / 20;
+  EXPECT_NEAR(10 * thickness * s * modulus * (s * s - 1) / 2, force, 1e-6 * force);
+}
+
+TEST(Sheets, AreRefusedWithAReason) {
+  const auto refusal = [](const std::function<void(RobotSpec&)>& change) {
+    RobotSpec spec = film_robot(pillow(disc(50, 3)));
+    change(spec);
+    try {
+      (void)compile(spec);
+    } catch (const InvalidInput& error) {
+      return std::string(error.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_EQ(refusal([](RobotSpec&) {}), "accepted");
+  const auto expect_says = [](const std::string& text, const std::string& part) {
+    EXPECT_NE(text.find(part), std::string::npos) << text;
+  };
+  expect_says(refusal([](RobotSpec& spec) { spec.layers.clear(); }), "triangles and no volume element");
+  expect_says(refusal([](RobotSpec& spec) {
+                spec.actuators[0].control = Control::ratio;
+                spec.actuators[0].low = spec.actuators[0].high = spec.actuators[0].rest = 1;
+              }),
+              "is flat at rest");
+  expect_says(refusal([](RobotSpec& spec) { spec.fixed.pop_back(); }), "can turn about");
+  expect_says(refusal([](RobotSpec& spec) { spec.contact.emplace(); }), "layers beside the body");
+  expect_says(refusal([](RobotSpec& spec) {
+                auto film = *spec.layers[0];
+                film.bending = true;
+                spec.layers[0] = std::make_shared<const LayerSpec>(film);
+              }),
+              "order 2");
+  expect_says(refusal([](RobotSpec& spec) { spec.markers = {{"far", {Vec3(0, 0, 40), {}}}}; }), "from the mesh");
+}
+
+}  // namespace softkin
