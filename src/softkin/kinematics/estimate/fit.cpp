@@ -11,9 +11,11 @@ namespace {
 constexpr double first_damping = 1e-3, most_damping = 1e9;
 /// Slopes of another shape are used while each step by them is so much shorter than the one before.
 constexpr double contraction = 0.15;
-/// Longest move of a vertex that a step foretells, over the diagonal: equilibria farther away take long to find, and the
+/// Longest move of a vertex that a step foretells, over the diagonal: equilibria farther away take long to find, and
 /// slopes do not tell of them.
 constexpr double longest_move = 0.08, least_reach = 1e-3;
+/// Steps to where no equilibrium is found, as where readings contradict each other: each takes as long as many others.
+constexpr int most_failures = 6;
 /// Longest step of a place, over the deviation of one that may be anywhere on its patch.
 constexpr double longest_slide = 1;
 /// Steps to the least cost as it is foretold, and the length at which they end.
@@ -26,7 +28,8 @@ struct Pace {
   double last = std::numeric_limits<double>::infinity();  // length of the last step by these slopes
   double rate = 1, of_length = 1;  // lengths of two steps, the next over the last, as last seen; that of the last
   double reach = 1;                // of longest_move: less where no equilibrium was found that far away
-  bool fresh = false;              // are slopes of this guess?
+  int failures = 0;
+  bool fresh = false;  // are slopes of this guess?
 
   void renewed() {
     fresh = true;
@@ -49,7 +52,7 @@ struct Pace {
   }
   /// False where that leads nowhere.
   bool shorten(bool lost) {
-    if (lost) return (reach /= 4) > least_reach;
+    if (lost) return ++failures < most_failures && (reach /= 4) > least_reach;
     damping = damping == 0 ? first_damping : 8 * damping;
     return damping <= most_damping;
   }
