@@ -93,8 +93,9 @@ TEST(EstimateCommand, PlansWhatToReadFurther) {
       EXPECT_EQ(plan[i]["at_rest_mm"].size(), 3u);
       EXPECT_TRUE(plan[i].contains("vertex"));
     }
-    if (i > 0)
+    if (i > 0) {
       EXPECT_LT(plan[i]["deviations"]["push_fz_N"].get<double>(), plan[i - 1]["deviations"]["push_fz_N"].get<double>());
+    }
   }
   const ProgramResult none = folder.estimate({"--unknown", "push", "--deviation", "0.001", "--plan", "0"});
   EXPECT_EQ(none.exit_code, 2);

@@ -15,7 +15,7 @@ constexpr double contraction = 0.15;
 /// slopes do not tell of them.
 constexpr double longest_move = 0.08, least_reach = 1e-3;
 /// Steps to where no equilibrium is found, as where readings contradict each other: each takes as long as many others.
-constexpr int most_failures = 6;
+constexpr int most_failures = 3;
 /// Longest step of a place, over the deviation of one that may be anywhere on its patch.
 constexpr double longest_slide = 1;
 /// Steps to the least cost as it is foretold, and the length at which they end.

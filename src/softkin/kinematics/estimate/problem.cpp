@@ -7,7 +7,7 @@ namespace softkin::estimate {
 namespace {
 
 /// Of a solve that begins at an equilibrium nearby: where it takes more, a shorter step is the shorter way.
-constexpr int most_iterations = 25;
+constexpr int most_iterations = 12;
 
 StaticsOptions quiet(StaticsOptions options) {
   options.keep_history = false;
