@@ -99,7 +99,7 @@ void add_options(CLI::App& command, EstimateAsked& asked) {
   add_value(command, "--plan", asked.plan, "N",
             "Say which N further markers on the surface, or markers, sensors,\nlengths and volumes of the scene whose "
             "deviation is given, would\ntell most, one after the other, over all rows",
-            CLI::Range(1, 100).description("a whole number from 1 to 100"));
+            CLI::Range(1, 100).description(""));
   add_value(command, "--report", asked.report, "F.json", "All that is told, as JSON");
   add_value(command, "--table", asked.table, "F.csv", "A line for each row");
   add_solver(command, asked);

@@ -16,6 +16,8 @@ constexpr double contraction = 0.15;
 constexpr double longest_move = 0.08, least_reach = 1e-3;
 /// Steps to where no equilibrium is found, as where readings contradict each other: each takes as long as many others.
 constexpr int most_failures = 3;
+/// After so many of all fits of an update the first ends one.
+constexpr int many_failures = 12;
 /// Longest step of a place, over the deviation of one that may be anywhere on its patch.
 constexpr double longest_slide = 1;
 /// Steps to the least cost as it is foretold, and the length at which they end.
@@ -51,8 +53,8 @@ struct Pace {
     fresh = false;
   }
   /// False where that leads nowhere.
-  bool shorten(bool lost) {
-    if (lost) return ++failures < most_failures && (reach /= 4) > least_reach;
+  bool shorten(bool lost, int most) {
+    if (lost) return ++failures < most && (reach /= 4) > least_reach;
     damping = damping == 0 ? first_damping : 8 * damping;
     return damping <= most_damping;
   }
@@ -191,7 +193,8 @@ Fit Fitter::refine_by(Guess from, const Readings& readings, const Start& start) 
       fit.nearby = nearby_of(fit.at);
       pace.renewed();
     }
-    if (!pace.shorten(!next.solved())) break;
+    const bool many = problem_.lost() - lost_before_ > many_failures;
+    if (!pace.shorten(!next.solved(), many ? 1 : most_failures)) break;
   }
   fit.told = {fit.at.values, fit.at.places, {}, fit.at.computed};
   set_normal(fit, readings);

@@ -27,7 +27,7 @@ class Fitter {
  public:
   /// All must outlive the object.
   Fitter(const Problem& problem, const EstimatorOptions& options, const ProgressCallback& progress)
-      : problem_(problem), options_(options), progress_(progress) {}
+      : problem_(problem), options_(options), progress_(progress), lost_before_(problem.lost()) {}
 
   /// How it begins.
   struct Start {
@@ -55,6 +55,7 @@ class Fitter {
   const Problem& problem_;
   const EstimatorOptions& options_;
   const ProgressCallback& progress_;
+  int lost_before_;  // equilibria
 };
 
 }  // namespace softkin::estimate

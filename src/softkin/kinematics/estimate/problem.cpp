@@ -46,7 +46,10 @@ Guess Problem::solve(const Actuation& commands, const Eigen::VectorXd& values, c
   if (near && near->solved()) options.max_iterations = std::min(options.max_iterations, most_iterations);
   guess.equilibrium = statics_.solve(variables_.actuation(commands, values, places), start, options, progress);
   ++solves_;
-  if (guess.equilibrium.report.status != Status::converged) return guess;
+  if (guess.equilibrium.report.status != Status::converged) {
+    ++lost_;
+    return guess;
+  }
   const State& state = guess.equilibrium.state;
   Points reactions;
   if (reads_supports()) reactions = statics_.measured(state).reactions;

@@ -90,6 +90,8 @@ class Problem {
 
   /// Equilibria that were solved.
   [[nodiscard]] int solves() const { return solves_; }
+  /// Those that were not found.
+  [[nodiscard]] int lost() const { return lost_; }
 
  private:
   [[nodiscard]] bool reads_supports() const;
@@ -99,7 +101,7 @@ class Problem {
   StaticsOptions options_;
   double slope_accuracy_;
   Statics statics_;
-  mutable int solves_ = 0;
+  mutable int solves_ = 0, lost_ = 0;
 };
 
 }  // namespace softkin::estimate
