@@ -1,6 +1,7 @@
 // What is told of a force of unknown place on a made-up finger, against what was drawn; how wrong readings are found;
 // how many updates a second there are.
 
+#include <unistd.h>
 #include <algorithm>
 #include <chrono>
 #include <cmath>
@@ -13,15 +14,13 @@
 
 #include "command_line.hpp"
 #include "machine.hpp"
-#include "model/block_mesh.hpp"
+#include "touched_finger.hpp"
 
 namespace {
 
 using namespace softkin;
-using softkin::testing::add_volume_region;
-using softkin::testing::block_mesh;
+using softkin::bench::finger_length;
 
-constexpr double finger_length = 100;  // [mm]
 /// 90 % of a chi-square of 2 and 3 freedoms.
 constexpr double ninety_of_2 = 4.6052, ninety_of_3 = 6.2514;
 
@@ -30,47 +29,10 @@ struct Options {
   double noise_mm = 0.2, most_force_N = 2;
   unsigned seed = 1;
   double fade_s = 0;
+  int places = 80, starts = 3;
   bool quadratic = false, volume_only = false;
   int threads = 1;
 };
-
-/// A finger of about 6,000 linear tetrahedra, or 1,300 quadratic ones, with a chamber inside, held at x = 0; four
-/// markers, none of which is on its back.
-RobotSpec finger(bool quadratic) {
-  RobotSpec spec;
-  spec.name = "finger";
-  const std::array<int, 3> cells = quadratic ? std::array<int, 3>{12, 5, 5} : std::array<int, 3>{24, 7, 7};
-  spec.mesh = block_mesh(cells, {finger_length, 15, 20});
-  add_volume_region(spec.mesh, "chamber", [](const Vec3& p) {
-    return p.x() > 16 && p.x() < 84 && std::abs(p.y() - 7.5) < 3.3 && std::abs(p.z() - 10) < 4.4;
-  });
-  spec.formulation = Formulation::physical;
-  spec.quadratic = quadratic;
-  MaterialSpec material;
-  material.region = "body";
-  material.shape_ratio.reset();
-  ElasticSpec elastic;
-  elastic.youngs_modulus = 1;
-  elastic.poisson_ratio = 0.45;
-  material.elastic = elastic;
-  spec.materials = {material};
-  spec.fixed.push_back({{std::string("x_low"), {}}, {true, true, true}});
-  ActuatorSpec air;
-  air.name = "air";
-  air.region = "chamber";
-  air.control = Control::load;
-  air.low = -20;
-  air.high = 60;
-  air.rest = 0;
-  spec.actuators = {air};
-  spec.forces = {
-      {"touch", {std::string("z_high"), {}}, {0, 0, 0}, std::array<Vec3, 2>{Vec3::Constant(-3), Vec3::Constant(3)}}};
-  spec.markers = {{"m1", {Vec3(30, 0.5, 3), {}}},
-                  {"m2", {Vec3(55, 14.5, 3), {}}},
-                  {"m3", {Vec3(80, 0.5, 3), {}}},
-                  {"m4", {Vec3(99, 14.5, 17), {}}}};
-  return spec;
-}
 
 std::vector<PoseColumn> columns_of(const Model& model, bool volume_only) {
   if (volume_only) return {{"air_volume_mm3", -1, -1, 0, Reading::volume}};
@@ -207,6 +169,7 @@ struct Errors {
     vertices_held += held / (3.0 * count);
   }
 
+  /// Coverage counts draws that converged.
   void print(const char* what) const {
     const double n = std::max(1, converged);
     std::printf("%s: %d draws, %d converged, %d whose readings do not fit, %d with a reading left out\n", what, draws,
@@ -227,6 +190,7 @@ struct Errors {
         quantile(shape_mm, 0.5), 100 * quantile(shape_mm, 0.5) / finger_length, quantile(shape_mm, 0.9),
         quantile(shape_deviation_mm, 0.5), 100 * vertices_held / n);
     std::printf("  seconds: median %.3f, 90 %% below %.3f\n", quantile(seconds, 0.5), quantile(seconds, 0.9));
+    std::fflush(stdout);
   }
 };
 
@@ -234,6 +198,8 @@ EstimatorOptions estimator_options(const Options& options) {
   EstimatorOptions own;
   own.statics = Draws::statics(options);
   own.fade_s = options.fade_s;
+  own.candidates = static_cast<std::size_t>(options.places);
+  own.starts = options.starts;
   return own;
 }
 
@@ -249,6 +215,7 @@ void run_draws(const Model& model, const Options& options) {
     const Truth truth = draws.draw();
     estimator.forget();
     errors.add(truth, estimator.update(truth.commands, draws.noisy(truth, deviation)));
+    if ((d + 1) % 50 == 0 && d + 1 < options.draws) errors.print("so far");
   }
   errors.print(options.volume_only ? "volume at a pressure, no marker" : "four markers");
   std::printf("  forces that were drawn again, as the finger has no equilibrium under them: %d\n",
@@ -291,8 +258,19 @@ void run_swaps(const Model& model, const Options& options) {
     std::printf("%s: %d of %d named, %d no other beside; force off by %.3f N in the median; %.2f s each\n",
                 swap ? "two markers exchanged" : "one marker 30 mm off", named, options.swaps, exact,
                 quantile(force_N, 0.5), quantile(seconds, 0.5));
+    std::printf("  the longest took %.2f s\n", quantile(seconds, 1));
     std::fflush(stdout);
   }
+}
+
+/// Resident memory of this process [MiB].
+double memory_MiB() {
+  long total = 0, resident = 0;
+  if (std::FILE* file = std::fopen("/proc/self/statm", "r")) {
+    if (std::fscanf(file, "%ld %ld", &total, &resident) != 2) resident = 0;
+    std::fclose(file);
+  }
+  return static_cast<double>(resident) * static_cast<double>(sysconf(_SC_PAGESIZE)) / (1 << 20);
 }
 
 /// A force that wanders over the back while the pressure goes up and down.
@@ -306,7 +284,12 @@ void run_updates(const Model& model, const Options& options) {
   std::vector<double> seconds, processor, equilibria, force_N, place_mm;
   estimate::Guess guess;
   int failed = 0;
+  Errors errors;
   for (int u = 0; u < options.updates; ++u) {
+    if (u % 1000 == 100) {
+      std::printf("update %d: %.2f MiB\n", u, memory_MiB());
+      std::fflush(stdout);
+    }
     const double t = 0.01 * u;  // [s], at 100 a second
     Truth truth;
     truth.commands = model.rest_actuation();
@@ -316,13 +299,16 @@ void run_updates(const Model& model, const Options& options) {
     const estimate::Place place = patch.nearest({65 + 20 * std::sin(0.7 * t), 7.5 + 4 * std::cos(t), 20});
     truth.place = patch.at(place, model.rest);
     guess = problem.solve(truth.commands, truth.force, {place}, u > 0 ? &guess : nullptr, {});
+    if (!guess.solved()) guess = problem.solve(truth.commands, truth.force, {place}, nullptr, {});
     truth.readings = guess.computed;
     const Eigen::VectorXd values = draws.noisy(truth, options.noise_mm);
     const double begin = processor_seconds();
     const Estimate& told = estimator.update(truth.commands, values, 0.01);
     if (u > 0) processor.push_back(processor_seconds() - begin);
     failed += told.status != Status::converged;
+    truth.positions = guess.equilibrium.state.positions;
     if (u == 0) continue;
+    errors.add(truth, told);
     seconds.push_back(told.seconds);
     equilibria.push_back(told.equilibria);
     force_N.push_back((Vec3(told.numbers[0].value, told.numbers[1].value, told.numbers[2].value) - truth.force).norm());
@@ -338,6 +324,7 @@ void run_updates(const Model& model, const Options& options) {
       "%.2f mm in the median\n",
       n / total, 1 / quantile(seconds, 0.5), 1 / quantile(processor, 0.5), solves / n, failed, quantile(force_N, 0.5),
       quantile(place_mm, 0.5));
+  errors.print("in time");
 }
 
 }  // namespace
@@ -353,10 +340,12 @@ int main(int argc, char** argv) {
   app.add_option("--force", options.most_force_N, "Largest force [N]");
   app.add_option("--seed", options.seed, "Of what is drawn");
   app.add_option("--threads", options.threads, "Of the solver");
+  app.add_option("--places", options.places, "Where a search begins to look");
+  app.add_option("--starts", options.starts, "Of these that it follows");
   app.add_flag("--quadratic", options.quadratic, "Elements of order 2");
   app.add_flag("--volume-only", options.volume_only, "Read the chamber's volume at a pressure instead of markers");
   CLI11_PARSE(app, argc, argv);
-  const Model model = compile(finger(options.quadratic));
+  const Model model = compile(softkin::bench::touched_finger(options.quadratic));
   std::printf("%zu tetrahedra of order %d, %lld vertices\n", model.tetrahedra.size(), options.quadratic ? 2 : 1,
               static_cast<long long>(model.rest.rows()));
   if (options.draws > 0) run_draws(model, options);

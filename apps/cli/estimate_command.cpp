@@ -1,7 +1,7 @@
 #include <cstdio>
 #include <softkin/core/error.hpp>
 #include <softkin/io/table/measured_poses.hpp>
-#include <softkin/runs/estimate_report.hpp>
+#include <softkin/runs/estimate_plan.hpp>
 
 #include "command.hpp"
 #include "run_text.hpp"
@@ -26,6 +26,7 @@ struct EstimateAsked : SolveOptions {
   std::vector<std::string> unknowns;
   std::array<std::optional<double>, readings> deviations{};
   EstimatorOptions how;
+  std::optional<int> plan;
   bool keep_all = false, json = false, may_replace = false;
 };
 
@@ -53,19 +54,26 @@ int run_estimate(const EstimateAsked& asked) {
   catch_interrupt();
   ProgressLine line;
   std::size_t done_rows = 0;
-  const auto row = [&](std::size_t number, const Estimate&) { done_rows = number + 1; };
-  const runs::EstimateReport report =
+  runs::EstimatePlanner planner(model, poses, deviations, asked.plan.value_or(1));
+  const auto row = [&](std::size_t number, const Estimate& told) {
+    done_rows = number + 1;
+    if (asked.plan) planner.add(told);
+  };
+  runs::EstimateReport report =
       runs::estimate_poses(model, poses, unknowns, deviations, names, how, row, [&](const Progress&) {
         line.show(static_cast<double>(done_rows) / static_cast<double>(poses.commands.size()),
                   "row " + std::to_string(done_rows + 1) + " of " + std::to_string(poses.commands.size()));
         return !interrupted();
       });
   line.clear();
+  report.planned = asked.plan.has_value();
+  if (report.planned) report.plan = planner.plan();
   if (!asked.report.empty()) write_file(asked.report, runs::estimate_json(report));
   if (!asked.table.empty()) write_file(asked.table, runs::estimate_table(report).csv());
   for (std::size_t r = 0; r < report.told.size() && !asked.json; ++r) print(runs::estimate_row_text(report, r));
   print(asked.json ? runs::estimate_json(report)
-                   : runs::estimate_text(report) + written_text({{"report", asked.report}, {"table", asked.table}}));
+                   : runs::estimate_text(report) + runs::plan_text(report) +
+                         written_text({{"report", asked.report}, {"table", asked.table}}));
   return report.good() ? done : not_converged;
 }
 
@@ -88,6 +96,10 @@ void add_options(CLI::App& command, EstimateAsked& asked) {
             "Time in which what pushes may become anything else: rows go on\nfrom each other (default: each by itself)",
             positive_time());
   command.add_flag("--keep-all", asked.keep_all, "Leave no reading out that contradicts the others");
+  add_value(command, "--plan", asked.plan, "N",
+            "Say which N further markers on the surface, or markers, sensors,\nlengths and volumes of the scene whose "
+            "deviation is given, would\ntell most, one after the other, over all rows",
+            CLI::Range(1, 100).description(""));
   add_value(command, "--report", asked.report, "F.json", "All that is told, as JSON");
   add_value(command, "--table", asked.table, "F.csv", "A line for each row");
   add_solver(command, asked);

@@ -9,7 +9,7 @@ from ._core import ActuatorInfo
 from ._core import version as __version__
 from ._solving import Sensitivity
 from .errors import InvalidInput, NotConverged, SoftkinWarning
-from .estimate import Estimate, Estimator, ToldNumber, ToldPlace
+from .estimate import Estimate, Estimator, PlannedReading, ToldNumber, ToldPlace
 from .examples import example
 from .grasp import Grasp, Pull
 from .inverse import Answer
@@ -49,6 +49,7 @@ __all__ = [
     "NotConverged",
     "PageView",
     "PathRun",
+    "PlannedReading",
     "Progress",
     "Pull",
     "Reaction",

@@ -20,7 +20,10 @@ from .solver import USUAL, Solver, options_of
 if TYPE_CHECKING:
     from .robot import Robot
 
-__all__ = ["Estimate", "Estimator", "ToldNumber", "ToldPlace"]
+__all__ = ["Estimate", "Estimator", "PlannedReading", "ToldNumber", "ToldPlace"]
+
+_KINDS = ("marker_mm", "pressure_kPa", "tension_N", "length_mm", "volume_mm3", "force_N", "angle_deg")
+_PLANNED = ("marker_mm", "length_mm", "volume_mm3", "angle_deg")
 
 
 @dataclass(frozen=True)
@@ -50,6 +53,23 @@ class ToldPlace:
     """(3,) now [mm]"""
     covariance: Floats
     """(3, 3) of at_rest, in the surface [mm^2]"""
+
+
+@dataclass(frozen=True)
+class PlannedReading:
+    """A reading that is not there yet and would tell most, after those before it."""
+
+    name: str
+    vertex: int | None
+    """where a further marker is to be; None: a marker, a sensor or a measure of the scene"""
+    at_rest: Floats | None
+    """(3,) of a marker [mm]"""
+    bits: float
+    """information about all unknowns"""
+    numbers: dict[str, float]
+    """standard deviations that would be left, by the names of commands, in their units"""
+    places: dict[str, float]
+    """the same of places, by the names of forces, root of the trace of the covariance [mm]"""
 
 
 class Estimate:
@@ -200,6 +220,37 @@ class Estimator:
         values = np.array([math.nan if value is None else float(value) for value in read], dtype=np.float64)
         elapsed = self._elapsed(time_s) if self._fades else 0.0
         return Estimate(self._robot, self._core.update(asked, values, elapsed))
+
+    def plan(
+        self, estimates: Estimate | Sequence[Estimate], deviations: Mapping[str, float], count: int = 3
+    ) -> list[PlannedReading]:
+        """Which further readings would tell most, one after the other: D-optimal, to first order at the estimates.
+
+        estimates   of this estimator, over which information is averaged
+        deviations  of what may be read: marker_mm (of further markers on the surface, too), length_mm, volume_mm3,
+                    angle_deg; a kind that is left out is not looked at
+        count       1 or more; fewer are told where no more would tell anything
+        """
+        unknown = set(deviations) - set(_PLANNED)
+        if unknown:
+            raise ValueError(f"a plan is of {list(_PLANNED)}, not of {sorted(unknown)}")
+        if any(not (value > 0 and math.isfinite(value)) for value in deviations.values()):
+            raise ValueError("deviations must be above 0")
+        told = [estimates] if isinstance(estimates, Estimate) else list(estimates)
+        values = np.array([float(deviations.get(kind, 0)) for kind in _KINDS], dtype=np.float64)
+        numbers = [name for each in told[:1] for name in each.numbers]
+        places = [name for each in told[:1] for name in each.places]
+        return [
+            PlannedReading(
+                p.name,
+                p.vertex if p.vertex >= 0 else None,
+                p.at_rest if p.vertex >= 0 or p.name.startswith("marker") else None,
+                p.bits,
+                dict(zip(numbers, map(float, p.numbers))),
+                dict(zip(places, map(float, p.places))),
+            )
+            for p in self._core.plan([each._core for each in told], values, int(count))
+        ]
 
     def _elapsed(self, time_s: float | None) -> float:
         now = time.monotonic() if time_s is None else float(time_s)

@@ -6,6 +6,7 @@
 #include <softkin/io/table/measured_poses.hpp>
 #include <softkin/kinematics/estimator.hpp>
 #include <softkin/model/names.hpp>
+#include <softkin/runs/estimate_plan.hpp>
 
 #include "bindings.hpp"
 #include "convert.hpp"
@@ -32,7 +33,8 @@ class RobotEstimator {
       : robot_(std::move(robot)), options_(options) {
     std::vector<EstimatedUnknown> all;
     for (const std::string& text : unknowns) all.push_back(parse_unknown("unknown", text));
-    estimator_.emplace(robot_->model(), all, reading_columns(robot_->model(), columns), vector_of(deviations), options);
+    columns_ = reading_columns(robot_->model(), columns);
+    estimator_.emplace(robot_->model(), all, columns_, vector_of(deviations), options);
   }
 
   Told update(const VectorIn& commands, const VectorIn& values, double elapsed_s) {
@@ -50,6 +52,16 @@ class RobotEstimator {
     });
   }
 
+  /// deviations: of each kind of reading, in its unit; 0: none of the kind
+  std::vector<PlannedReading> plan(const std::vector<const Told*>& told, const VectorIn& deviations, int count) const {
+    PlanOptions options{runs::marker_vertices(robot_->model()), {}, columns_, count};
+    const Eigen::VectorXd given = vector_of(deviations);
+    for (std::size_t k = 0; k < readings; ++k) options.deviations[k] = given[static_cast<Index>(k)];
+    std::vector<PlanBasis> estimates;
+    for (const Told* each : told) estimates.emplace_back(each->estimate);
+    return plan_readings(robot_->model(), estimates, options);
+  }
+
   void forget() { estimator_->forget(); }
   [[nodiscard]] std::vector<std::string> told_commands() const {
     std::vector<std::string> names;
@@ -61,6 +73,7 @@ class RobotEstimator {
  private:
   RobotPtr robot_;
   EstimatorOptions options_;
+  std::vector<PoseColumn> columns_;
   std::optional<Estimator> estimator_;
 };
 
@@ -113,6 +126,16 @@ void bind_estimate(nb::module_& module) {
       .def_ro("left_out", &Told::left_out)
       .def_ro("shape", &Told::shape)
       .def("vertex_deviations", &vertex_deviations, nb::arg("vertices"));
+  nb::class_<PlannedReading>(module, "PlannedReading", "A reading that would tell more.")
+      .def_ro("name", &PlannedReading::name)
+      .def_ro("vertex", &PlannedReading::vertex)
+      .def_prop_ro(
+          "at_rest", [](const PlannedReading& p) { return vector_out(p.at_rest); }, nb::rv_policy::automatic)
+      .def_ro("bits", &PlannedReading::bits)
+      .def_prop_ro(
+          "numbers", [](const PlannedReading& p) { return vector_out(p.numbers); }, nb::rv_policy::automatic)
+      .def_prop_ro(
+          "places", [](const PlannedReading& p) { return vector_out(p.places); }, nb::rv_policy::automatic);
   nb::class_<RobotEstimator>(module, "Estimator", "Tells what pushes a robot from its readings.")
       .def(
           "__init__",
@@ -128,6 +151,7 @@ void bind_estimate(nb::module_& module) {
           nb::arg("robot"), nb::arg("unknowns"), nb::arg("columns"), nb::arg("deviations"), nb::arg("fade_s"),
           nb::arg("leave_out"), nb::arg("solver"))
       .def("update", &RobotEstimator::update, nb::arg("commands"), nb::arg("values"), nb::arg("elapsed_s"))
+      .def("plan", &RobotEstimator::plan, nb::arg("told"), nb::arg("deviations"), nb::arg("count"))
       .def("forget", &RobotEstimator::forget)
       .def_prop_ro("told_commands", &RobotEstimator::told_commands);
 }

@@ -9,7 +9,7 @@ import pytest
 from beams import block
 
 import softkin
-from softkin import Estimate, Estimator, InvalidInput, Robot, ToldNumber, ToldPlace
+from softkin import Estimate, Estimator, InvalidInput, PlannedReading, Robot, ToldNumber, ToldPlace
 
 
 @pytest.fixture(scope="module")
@@ -103,3 +103,29 @@ def test_refusals(beam: Robot) -> None:
         beam.estimator("push", DEVIATIONS).update({"air": 1})
     with pytest.raises(ValueError, match="fade_s"):
         beam.estimator("push", DEVIATIONS, fade_s=-1)
+
+
+def test_a_plan_says_what_to_read_further(beam: Robot) -> None:
+    few = {name: value for name, value in DEVIATIONS.items() if name.startswith("middle")}
+    estimator = beam.estimator("push:place", few)
+    shape = beam.solve(push_fz=-0.02)
+    told = estimator.update({name: value for name, value in readings_of(shape).items() if name in few})
+    assert told.converged, told.remark
+    plan = estimator.plan(told, {"marker_mm": 0.02, "length_mm": 0.02}, 2)
+    assert len(plan) == 2
+    best = plan[0]
+    assert isinstance(best, PlannedReading)
+    assert best.bits > plan[1].bits > 0
+    assert best.vertex is None or best.at_rest is not None
+    assert best.numbers["push_fz"] < told.numbers["push_fz"].deviation
+    assert plan[1].places["push"] < best.places["push"]
+    strain = estimator.plan([told], {"length_mm": 0.02})
+    assert [reading.name for reading in strain] == ["strain (length)"]
+    assert strain[0].vertex is None
+    assert strain[0].at_rest is None
+    with pytest.raises(ValueError, match="a plan is of"):
+        estimator.plan(told, {"tension_N": 1})
+    with pytest.raises(ValueError, match="above 0"):
+        estimator.plan(told, {"marker_mm": 0})
+    with pytest.raises(InvalidInput, match="needs the deviation"):
+        estimator.plan(told, {})

@@ -77,6 +77,31 @@ TEST(EstimateCommand, ReadingsThatDoNotFitAreSaidByTheExitCode) {
   expect_words(told.output, {"the readings do not fit the model", "0 of 1 row fit the model"});
 }
 
+/// Beside its two markers the block has a strain sensor that was not read, and its surface.
+TEST(EstimateCommand, PlansWhatToReadFurther) {
+  const PushedBlock folder;
+  const std::string report = folder / "planned.json";
+  const ProgramResult told = folder.estimate(
+      {"--unknown", "push", "--deviation", "0.001", "--deviation-length", "0.0001", "--plan", "3", "--report", report});
+  ASSERT_EQ(told.exit_code, 0) << told.errors << told.output;
+  expect_words(told.output, {"what would tell most, one after the other", " bits; push_fy +- ", " N; push_fz +- "});
+  const json plan = json::parse(read_text(report))["plan"];
+  ASSERT_EQ(plan.size(), 3u);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_GT(plan[i]["bits"].get<double>(), 0);
+    if (plan[i]["name"] == "marker") {
+      EXPECT_EQ(plan[i]["at_rest_mm"].size(), 3u);
+      EXPECT_TRUE(plan[i].contains("vertex"));
+    }
+    if (i > 0) {
+      EXPECT_LT(plan[i]["deviations"]["push_fz_N"].get<double>(), plan[i - 1]["deviations"]["push_fz_N"].get<double>());
+    }
+  }
+  const ProgramResult none = folder.estimate({"--unknown", "push", "--deviation", "0.001", "--plan", "0"});
+  EXPECT_EQ(none.exit_code, 2);
+  expect_words(none.errors, {"--plan: Value 0 not in range 1 to 100"});
+}
+
 TEST(EstimateCommand, Refusals) {
   const PushedBlock folder;
   const auto refused = [&](const std::vector<std::string>& more, const std::string& why) {

@@ -6,6 +6,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/kinematics/estimate/problem.hpp>
 #include <softkin/kinematics/estimator.hpp>
+#include <softkin/kinematics/reading_plan.hpp>
 #include <softkin/model/sensor.hpp>
 #include <softkin/statics/deformation.hpp>
 
@@ -95,7 +96,7 @@ TEST(Estimator, SlopesAreThoseOfDifferences) {
     const std::vector<Place> places = {{7, 0.3, 0.25}};
     const Guess at = problem.solve(commands, values, places, nullptr, {});
     ASSERT_TRUE(at.solved());
-    const Eigen::MatrixXd slopes = problem.slopes(at).of_readings;
+    const Eigen::MatrixXd slopes = problem.slopes(problem.nearby(at), at);
     ASSERT_EQ(slopes.cols(), 6);
     const estimate::Patch& patch = *problem.variables().forces()[0].patch;
     const Eigen::MatrixXd tangents = patch.shares(places[0]).tangents;
@@ -121,6 +122,51 @@ TEST(Estimator, SlopesAreThoseOfDifferences) {
         EXPECT_NEAR(slopes(r, c), difference[r], 1e-6 * size) << "reading " << r << ", column " << c;
       }
     }
+  }
+}
+
+/// What forces on nodes do to readings, from one solution for each reading, is what one for each force says.
+TEST(Estimator, ForcesAnywhereDoWhatEachDoes) {
+  const Model model = compile(touched_finger());
+  std::vector<PoseColumn> columns = all_columns(model);
+  columns.resize(14);  // markers and sensors
+  const Problem problem(model, {{"touch", true}}, columns, exactly(), 1e-9);
+  Eigen::VectorXd values(3);
+  values << 0.1, -0.2, 0.25;
+  const std::vector<Place> places = {{7, 0.3, 0.25}};
+  const Guess at = problem.solve(commands_of(model, 15), values, places, nullptr, {});
+  ASSERT_TRUE(at.solved());
+  const Eigen::MatrixXd by = problem.by_node_forces(at, 0);
+  const estimate::FreeForce& force = problem.variables().forces()[0];
+  ASSERT_EQ(by.cols(), 3 * static_cast<Index>(force.patch->nodes().size()));
+  for (const Index node : {0, 4, 11})
+    for (Index axis = 0; axis < 3; ++axis) {
+      const auto all = static_cast<Index>(problem.variables().model().actuators.size());
+      const Eigen::VectorXd one =
+          problem.slopes(at, {Actuation::Unit(all, force.first_command + 3 * node + axis)}).of_readings;
+      EXPECT_LE((by.col(3 * node + axis) - one).norm(), 1e-6 * one.norm()) << node << ", " << axis;
+    }
+  columns.push_back({"air_volume_mm3", -1, -1, 0, Reading::volume});
+  EXPECT_EQ(Problem(model, {{"touch", true}}, columns, exactly()).by_node_forces(at, 0).cols(), 0);
+}
+
+/// A solve that begins where its caller foretells comes to the same equilibrium, and where it is told nonsense, too.
+TEST(Estimator, WhatIsForetoldChangesNoEquilibrium) {
+  const Model model = compile(touched_finger());
+  const Statics statics(model);
+  const StaticsOptions options = exactly();
+  const Equilibrium first = statics.solve(commands_of(model, 10), statics.rest(), options);
+  Actuation there = commands_of(model, 14);
+  there[3] = -0.1;
+  const Equilibrium plain = Statics(model).solve(there, first.state, options);
+  for (const double off : {0.0, 0.01, 3.0}) {
+    const State at = statics.solve(commands_of(model, 10), first.state, options).state;
+    State foretold = plain.state;
+    foretold.positions.col(1).array() += off * foretold.positions.col(0).array() / 60;
+    EXPECT_TRUE(statics.foretell(at, foretold, options));
+    const Equilibrium found = statics.solve(there, at, options);
+    ASSERT_EQ(found.report.status, Status::converged);
+    EXPECT_LT((found.state.positions - plain.state.positions).cwiseAbs().maxCoeff(), 1e-6);
   }
 }
 
@@ -212,6 +258,63 @@ TEST(Estimator, DeviationsAreHonest) {
   EXPECT_NEAR(chi_square / freedoms, 1, 0.35);
 }
 
+/// A weak force is told badly, its place with it, and in a curved way: more where it is stronger, less where it has the
+/// longer arm. The deviations say so; those to first order alone would hold the truth two times of three.
+TEST(Estimator, DeviationsOfWeakForcesAreHonest) {
+  const Model model = compile(touched_finger());
+  Estimator estimator = of_touch(model, 0.1);
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> uniform(0, 1);
+  std::normal_distribution<double> normal;
+  constexpr int draws = 40;
+  int held = 0, places_held = 0;
+  for (int d = 0; d < draws; ++d) {
+    const Vec3 direction = Vec3(normal(random), normal(random), normal(random)).normalized();
+    const Touch touch = touched(0.1 * uniform(random) * direction,
+                                {10 + 45 * uniform(random), 2 + 8 * uniform(random), 16}, 20 * uniform(random));
+    estimator.forget();
+    const Estimate& told = estimator.update(touch.commands, noisy(touch.readings, 0.1, random));
+    ASSERT_EQ(told.status, Status::converged) << told.remark;
+    EXPECT_TRUE(told.left_out.empty());
+    const Vec3 off = force_of(told) - touch.force;
+    const Mat3 covariance = told.covariance.topLeftCorner<3, 3>();
+    held += off.dot(covariance.inverse() * off) < 6.2514;
+    const Eigen::Vector2d slid = (told.places[0].at_rest - touch.place).head<2>();
+    const Eigen::Matrix2d spread = told.places[0].covariance.topLeftCorner<2, 2>();
+    places_held += slid.dot(spread.inverse() * slid) < 4.6052;
+  }
+  EXPECT_GE(held, 32);
+  EXPECT_GE(places_held, 32);
+}
+
+/// In time an update takes about one equilibrium, and ends within its accuracy of what many would tell.
+TEST(Estimator, UpdatesInTimeTakeAboutOneEquilibrium) {
+  const Model model = compile(touched_finger());
+  EstimatorOptions options, exact;
+  options.fade_s = exact.fade_s = 0.5;
+  exact.accuracy = 1e-4;
+  const Eigen::VectorXd deviations = Eigen::VectorXd::Constant(12, 0.1);
+  std::mt19937 random(4);
+  const Touch touch = touched({0.1, -0.1, -0.5}, {45, 6, 16}, 10);
+  Estimator estimator(model, {{"touch", true}}, marker_columns(model), deviations, options),
+      other(model, {{"touch", true}}, marker_columns(model), deviations, exact);
+  int equilibria = 0, close = 0;
+  constexpr int updates = 40;
+  for (int u = 0; u <= updates; ++u) {
+    const Eigen::VectorXd read = noisy(touch.readings, 0.1, random);
+    const Estimate& told = estimator.update(touch.commands, read, 0.01);
+    const Estimate& best = other.update(touch.commands, read, 0.01);
+    ASSERT_EQ(told.status, Status::converged);
+    ASSERT_EQ(best.status, Status::converged);
+    if (u == 0) continue;
+    equilibria += told.equilibria;
+    const Vec3 off = force_of(told) - force_of(best);
+    close += off.dot(best.covariance.topLeftCorner<3, 3>().inverse() * off) < 0.04;  // a fifth of a deviation
+  }
+  EXPECT_LE(equilibria, 3 * updates / 2);
+  EXPECT_GE(close, 9 * updates / 10);
+}
+
 TEST(Estimator, NamesAndLeavesOutWrongReadings) {
   const Model model = compile(touched_finger());
   std::mt19937 random(3);
@@ -287,7 +390,9 @@ TEST(Estimator, TellsCommandsThatWereNotMeasured) {
     values[r] = model.markers[static_cast<std::size_t>(r / 3)].at(found.state.positions)[r % 3];
   for (Index s = 0; s < 2; ++s) values[12 + s] = model.sensors[static_cast<std::size_t>(s)]->at(found.state.positions);
   values[4] = std::numeric_limits<double>::quiet_NaN();  // not read
-  Estimator estimator(model, {{model.actuators[0].name}, {"touch"}}, columns, deviations);
+  EstimatorOptions options;
+  options.accuracy = 1e-3;
+  Estimator estimator(model, {{model.actuators[0].name}, {"touch"}}, columns, deviations, options);
   EXPECT_EQ(estimator.told_actuators(), (std::vector<Index>{0, 1, 2, 3}));
   const Estimate& told = estimator.update(model.rest_actuation(), values);
   ASSERT_EQ(told.status, Status::converged);
@@ -319,6 +424,60 @@ TEST(Estimator, GoesOnFromTheLastEstimateAsFarAsItHolds) {
   const Estimate much_later = estimator.update(touch.commands, nothing, 100);
   EXPECT_NEAR(much_later.numbers[2].deviation, 1, 1e-6);  // as before any reading
   EXPECT_NEAR(much_later.numbers[2].value, 0, 1e-2);
+}
+
+/// What a plan foretells of a marker is what an estimator with it tells; and of all vertices it is the best that is
+/// named, as trying each shows.
+TEST(Estimator, PlansWhatToReadFurther) {
+  const Model model = compile(touched_finger());
+  const Touch touch = touched({0.1, -0.1, -0.4}, {42, 6, 16}, 10);
+  std::vector<PoseColumn> columns = marker_columns(model);
+  columns.resize(9);
+  EstimatorOptions exact;
+  exact.accuracy = 1e-5;
+  const auto told_by = [&](const std::vector<PoseColumn>& read) {
+    const auto count = static_cast<Index>(read.size());
+    Estimator estimator(model, {{"touch", true}}, read, Eigen::VectorXd::Constant(count, 0.1), exact);
+    // what the model itself has at the estimate by all markers, so that both are told the same
+    Eigen::VectorXd values = touch.readings.head(count);
+    return Estimate(estimator.update(touch.commands, values));
+  };
+  const Estimate few = told_by(columns);
+  ASSERT_EQ(few.status, Status::converged);
+  PlanOptions options;
+  options.read = columns;
+  options.deviations[static_cast<std::size_t>(Reading::coordinate)] = 0.1;
+  const PlanBasis basis(few);
+  const std::vector<PlannedReading> marker = plan_readings(model, {basis, basis}, options);
+  ASSERT_EQ(marker.size(), 1u);  // "d" is all that is left
+  EXPECT_EQ(marker[0].name, "marker d");
+  EXPECT_NEAR((marker[0].at_rest - Vec3(59, 11, 2)).norm(), 0, 1e-9);
+  const Eigen::MatrixXd more = told_by(marker_columns(model)).near_covariance;
+  for (Index i = 0; i < 3; ++i) EXPECT_NEAR(marker[0].numbers[i], std::sqrt(more(i, i)), 0.1 * std::sqrt(more(i, i)));
+  EXPECT_NEAR(marker[0].places[0], std::sqrt(more.diagonal().tail<2>().sum()), 0.1 * marker[0].places[0]);
+  EXPECT_NEAR(marker[0].bits, 0.5 * std::log2(few.near_covariance.determinant() / more.determinant()), 0.15);
+
+  for (Index v = 0; v < static_cast<Index>(model.rest.rows()); v += 3) options.vertices.push_back(v);
+  options.count = 2;
+  const std::vector<PlannedReading> plan = plan_readings(model, {basis}, options);
+  ASSERT_EQ(plan.size(), 2u);
+  double most = 0;
+  for (const Index v : options.vertices) {
+    Eigen::MatrixXd slopes(3, 5);
+    for (Index c = 0; c < 5; ++c) slopes.col(c) = vertex_at(few.moves[static_cast<std::size_t>(c)], v) / 0.1;
+    const Eigen::MatrixXd posterior = (few.near_covariance.inverse() + slopes.transpose() * slopes).inverse();
+    most = std::max(most, 0.5 * std::log2(few.near_covariance.determinant() / posterior.determinant()));
+  }
+  EXPECT_NEAR(std::max(most, marker[0].bits), plan[0].bits, 1e-6 * most);
+  EXPECT_GT(plan[0].bits, plan[1].bits);
+  EXPECT_GT(plan[1].bits, 0);
+
+  EXPECT_THROW((void)plan_readings(model, {}, options), InvalidInput);
+  options.vertices = {static_cast<Index>(model.rest.rows())};
+  EXPECT_THROW((void)plan_readings(model, {basis}, options), InvalidInput);
+  options.vertices.clear();
+  options.deviations = {};
+  EXPECT_THROW((void)plan_readings(model, {basis}, options), InvalidInput);
 }
 
 TEST(Estimator, Refusals) {

@@ -7,6 +7,7 @@
 #include <softkin/core/text.hpp>
 #include <softkin/kinematics/estimate/fit.hpp>
 #include <softkin/kinematics/estimate/outliers.hpp>
+#include <softkin/kinematics/estimate/search.hpp>
 #include <softkin/kinematics/estimator.hpp>
 #include <softkin/model/names.hpp>
 
@@ -21,13 +22,13 @@ double Estimate::misfit() const {
 Vec3 Estimate::vertex_deviation(Index vertex) const {
   Eigen::MatrixXd by(3, static_cast<Index>(moves.size()));
   for (std::size_t c = 0; c < moves.size(); ++c) by.col(static_cast<Index>(c)) = vertex_at(moves[c], vertex);
-  return (by * covariance * by.transpose()).diagonal().cwiseMax(0).cwiseSqrt();
+  return (by * near_covariance * by.transpose()).diagonal().cwiseMax(0).cwiseSqrt();
 }
 
 namespace {
 
 /// Of the deviation of markers: what shapes need not be more exact than.
-constexpr double exact = 2e-3;
+constexpr double exact = 1e-2;
 
 StaticsOptions exact_enough(StaticsOptions options, const std::vector<PoseColumn>& columns,
                             const Eigen::VectorXd& deviations) {
@@ -51,6 +52,7 @@ struct Estimator::Parts {
   Problem problem;
   std::vector<ReadingGroup> groups;
   std::optional<Fit> last{};
+  std::optional<Survey> survey{};  // of searches
   Actuation last_commands{};
   Estimate estimate{};
 
@@ -66,7 +68,8 @@ struct Estimator::Parts {
   void make_groups();
   void check(const Actuation& commands, const Eigen::VectorXd& values, double elapsed_s) const;
   [[nodiscard]] Knowledge known(double elapsed_s) const;
-  [[nodiscard]] Fit fit(const Fitter& fitter, const Readings& read, bool anew) const;
+  [[nodiscard]] Fit fit(const Actuation& commands, const Eigen::VectorXd& values, const Knowledge& known,
+                        Eigen::VectorXd& weights, const ProgressCallback& progress);
   void tell(const Fit& found, const Readings& read, const Actuation& commands);
   void tell_numbers(const Fit& found);
   void tell_places(const Fit& found);
@@ -103,14 +106,38 @@ void Estimator::Parts::check(const Actuation& commands, const Eigen::VectorXd& v
 Knowledge Estimator::Parts::known(double elapsed_s) const {
   const Variables& variables = problem.variables();
   if (!last || !(options.fade_s > 0)) return Knowledge(variables);
-  const Eigen::MatrixXd directions = directions_at(variables, last->at.places);
-  return {variables, coordinates_of(variables, last->at.values, last->at.places),
+  const Eigen::MatrixXd directions = directions_at(variables, last->told.places);
+  return {variables, coordinates_of(variables, last->told.values, last->told.places),
           directions * estimate.covariance * directions.transpose(), std::exp(-elapsed_s / options.fade_s)};
 }
 
-Fit Estimator::Parts::fit(const Fitter& fitter, const Readings& read, bool anew) const {
-  if (anew || !last) return fitter.search(read);
-  return fitter.refine(last->at, read, &last->slopes, last_commands == read.commands ? nullptr : &last_commands);
+/// weights  those of readings that are left out become 0
+Fit Estimator::Parts::fit(const Actuation& commands, const Eigen::VectorXd& values, const Knowledge& known,
+                          Eigen::VectorXd& weights, const ProgressCallback& progress) {
+  const Knowledge nothing(problem.variables());
+  const Fitter fitter(problem, options, progress);
+  const Searcher searcher(problem, options, progress, survey);
+  const auto read = [&](const Eigen::VectorXd& some, bool anew) {
+    return Readings{commands, values, some, anew ? nothing : known};
+  };
+  Fits fits;
+  fits.anew = [&](const Eigen::VectorXd& some) { return searcher.search(read(some, true)); };
+  fits.forecast = [&](const Eigen::VectorXd& some) { return searcher.forecast(read(some, true)); };
+  fits.near = [&](const Eigen::VectorXd& some, const Fit& near, bool anew) {
+    return fitter.refine(near.at, read(some, anew), near.nearby);
+  };
+  if (last) {
+    fits.tracked = [&](const Eigen::VectorXd& some) {
+      const Readings now = read(some, false);
+      Fit fit = fitter.refine(last->at, now, last->nearby, last_commands == commands ? nullptr : &last_commands);
+      return options.fade_s > 0 ? fit : searcher.relocated(std::move(fit), now);
+    };
+    fits.foretold = [&](const Eigen::VectorXd& some) {
+      return fitter.foretell(last->at, read(some, false), last->nearby, last_commands);
+    };
+  }
+  if (options.leave_out) return agreeing_fit(groups, values, weights, fits, estimate.left_out);
+  return last ? fits.tracked(weights) : fits.anew(weights);
 }
 
 void Estimator::Parts::tell_numbers(const Fit& found) {
@@ -120,7 +147,7 @@ void Estimator::Parts::tell_numbers(const Fit& found) {
     const Variable& v = variables[i];
     const Actuator& actuator = model.actuators[static_cast<std::size_t>(v.actuator)];
     const auto at = static_cast<Index>(i);
-    const double value = found.at.values[at];
+    const double value = found.told.values[at];
     estimate.numbers.push_back({actuator.name, command_unit(actuator), value,
                                 std::sqrt(std::max(0.0, estimate.covariance(at, at))), v.mean, v.deviation,
                                 value <= v.low    ? -1
@@ -136,37 +163,41 @@ void Estimator::Parts::tell_places(const Fit& found) {
   const std::vector<FreeForce>& forces = problem.variables().forces();
   for (std::size_t f = 0; f < forces.size(); ++f) {
     const Patch& patch = *forces[f].patch;
-    const Place& place = found.at.places[f];
+    const Place& place = found.told.places[f];
     const auto tangents = patch.tangents(place);
     const Index first = problem.variables().numbers() + 2 * static_cast<Index>(f);
-    estimate.places.push_back(
-        {forces[f].name, patch.at(place, model.rest), patch.at(place, found.at.equilibrium.state.positions),
-         tangents * estimate.covariance.block(first, first, 2, 2) * tangents.transpose(), patch.covariance()});
+    estimate.places.push_back({forces[f].name, patch.at(place, model.rest), patch.at(place, estimate.state.positions),
+                               tangents * estimate.covariance.block(first, first, 2, 2) * tangents.transpose(),
+                               patch.covariance()});
   }
 }
 
 void Estimator::Parts::tell(const Fit& found, const Readings& read, const Actuation& commands) {
-  const Eigen::MatrixXd& slopes = found.slopes.of_readings;
+  const Eigen::MatrixXd& slopes = found.slopes;
   const CholeskyFactor factor(found.normal.matrix);
-  estimate.covariance = factor.solve(Eigen::MatrixXd(Eigen::MatrixXd::Identity(slopes.cols(), slopes.cols())));
+  estimate.near_covariance = factor.solve(Eigen::MatrixXd(Eigen::MatrixXd::Identity(slopes.cols(), slopes.cols())));
+  const ProgressCallback none;
+  estimate.covariance = Searcher(problem, options, none, survey).spread(found, read);
+  if (estimate.covariance.size() == 0) estimate.covariance = estimate.near_covariance;
+  estimate.state = found.at.equilibrium.state;
   estimate.computed = found.at.computed;
-  const Eigen::VectorXd leverage = (slopes * estimate.covariance).cwiseProduct(slopes).rowwise().sum().cwiseMax(0);
+  problem.follow(*found.nearby, found.at, found.told, {}, estimate.computed, &estimate.state);
+  const Eigen::VectorXd leverage = (slopes * estimate.near_covariance).cwiseProduct(slopes).rowwise().sum().cwiseMax(0);
   estimate.deviations = leverage.cwiseSqrt();
   estimate.chi_square = estimate.freedoms = 0;
   for (Index r = 0; r < read.values.size(); ++r) {
     if (read.weights[r] == 0) continue;
-    const double off = found.at.computed[r] - read.values[r];
+    const double off = estimate.computed[r] - read.values[r];
     estimate.chi_square += read.weights[r] * off * off;
     estimate.freedoms += std::max(0.0, 1 - read.weights[r] * leverage[r]);
   }
   estimate.actuation = commands;
   tell_numbers(found);
   tell_places(found);
-  estimate.state = found.at.equilibrium.state;
   const auto own = static_cast<Index>(model.actuators.size());
-  estimate.state.actuation = estimate.state.actuation.head(own).eval();
+  estimate.state.actuation = problem.variables().actuation(commands, found.told.values, found.told.places).head(own);
   estimate.state.multipliers = estimate.state.multipliers.head(own).eval();
-  estimate.moves = found.slopes.moves;
+  estimate.moves = problem.moves(*found.nearby, found.told);
 }
 
 Estimator::Estimator(const Model& model, const std::vector<EstimatedUnknown>& unknowns, std::vector<PoseColumn> columns,
@@ -192,18 +223,9 @@ const Estimate& Estimator::update(const Actuation& commands, const Eigen::Vector
   Eigen::VectorXd weights = parts.deviations.cwiseAbs2().cwiseInverse();
   for (Index r = 0; r < values.size(); ++r)
     if (std::isnan(values[r])) weights[r] = 0;
-  const Knowledge known = parts.known(elapsed_s), nothing(parts.problem.variables());
-  const Fitter fitter(parts.problem, parts.options, progress);
-  const auto fit = [&](const Eigen::VectorXd& some, bool anew) {
-    return parts.fit(fitter, {commands, values, some, anew ? nothing : known}, anew);
-  };
-  const auto forecast = [&](const Eigen::VectorXd& some) { return fitter.forecast({commands, values, some, nothing}); };
-  Fit found = fit(weights, false);
-  std::vector<std::size_t> out;
-  if (found.at.solved() && !found.interrupted && parts.options.leave_out)
-    found =
-        without_outliers(parts.groups, values, weights, std::move(found), parts.last.has_value(), fit, forecast, out);
-  estimate.left_out = std::move(out);
+  estimate.left_out.clear();
+  const Knowledge known = parts.known(elapsed_s);
+  Fit found = parts.fit(commands, values, known, weights, progress);
   estimate.iterations = found.iterations;
   estimate.status = found.interrupted ? Status::interrupted
                     : found.converged ? Status::converged

@@ -26,12 +26,12 @@ struct EstimatedUnknown {
 struct EstimatorOptions {
   StaticsOptions statics{};
   int max_iterations = 40;      // >= 1
-  double accuracy = 0.05;       // step at which it ends, over the deviation of what is told, > 0
+  double accuracy = 0.1;        // what it may leave to the least cost, over the deviation of what is told, > 0
   bool leave_out = true;        // readings that contradict the others
   double fade_s = 0;            // time in which what pushes may become anything else, so that readings go on from the
                                 // last estimate as far as it still holds; 0: each time they tell by themselves
   std::size_t candidates = 80;  // places of a force that a search begins with, >= 1
-  int starts = 3;               // of these that are followed, >= 1
+  int starts = 2;               // of these that are followed, >= 1
 };
 
 /// A number that was told.
@@ -64,6 +64,7 @@ struct Estimate {
   std::vector<ToldNumber> numbers{};  // in the order of the unknowns
   std::vector<ToldPlace> places{};
   Eigen::MatrixXd covariance{};         // of the numbers, then two tangents of each place
+  Eigen::MatrixXd near_covariance{};    // the same to first order near what is told, of shapes and readings
   Eigen::VectorXd computed{};           // readings
   Eigen::VectorXd deviations{};         // of the computed ones, as the estimate leaves them
   double chi_square = 0;                // of the readings that were used

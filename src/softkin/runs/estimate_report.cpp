@@ -66,6 +66,23 @@ void refuse_commanded(const Model& model, const MeasuredPoses& poses, const std:
                                            "', which is to be told: leave out one of them");
 }
 
+Json plan_json(const EstimateReport& report) {
+  Json plan = Json::array();
+  for (const PlannedReading& reading : report.plan) {
+    Json json{{"name", reading.name}, {"bits", reading.bits}};
+    if (reading.vertex >= 0) json["vertex"] = reading.vertex;
+    if (reading.vertex >= 0 || reading.name.starts_with("marker")) json["at_rest_mm"] = vector_json(reading.at_rest);
+    const Estimate& told = report.told.front();
+    for (std::size_t n = 0; n < told.numbers.size(); ++n)
+      json["deviations"][told.numbers[n].name + unit_key(told.numbers[n].unit)] =
+          reading.numbers[static_cast<Index>(n)];
+    for (std::size_t p = 0; p < told.places.size(); ++p)
+      json["place_deviations_mm"][told.places[p].force] = reading.places[static_cast<Index>(p)];
+    plan.push_back(std::move(json));
+  }
+  return plan;
+}
+
 Json row_json(const EstimateReport& report, std::size_t row) {
   const Estimate& told = report.told[row];
   Json numbers = Json::array(), places = Json::array(), left_out = Json::array();
@@ -190,13 +207,10 @@ std::string estimate_json(const EstimateReport& report) {
   for (std::size_t k = 0; k < readings; ++k)
     if (report.deviations[k] > 0)
       deviations[std::string(reading_names[k]) + unit_key(reading_units[k])] = report.deviations[k];
-  return json_text(Json{{"softkin_estimate", 1},
-                        {"complete", !report.interrupted},
-                        {"unknowns", unknowns},
-                        {"deviations", deviations},
-                        {"fade_s", report.fade_s},
-                        {"rows", rows}}) +
-         "\n";
+  Json json{{"softkin_estimate", 1},    {"complete", !report.interrupted}, {"unknowns", unknowns},
+            {"deviations", deviations}, {"fade_s", report.fade_s},         {"rows", rows}};
+  if (report.planned) json["plan"] = plan_json(report);
+  return json_text(json) + "\n";
 }
 
 Table estimate_table(const EstimateReport& report) {

@@ -2,7 +2,7 @@
 
 #include <functional>
 #include <softkin/io/table/table.hpp>
-#include <softkin/kinematics/estimator.hpp>
+#include <softkin/kinematics/reading_plan.hpp>
 #include <string>
 
 namespace softkin::runs {
@@ -18,6 +18,8 @@ struct EstimateReport {
   std::vector<Estimate> told{};                   // without shapes and how they move
   std::vector<std::vector<std::string>> words{};  // of each
   bool interrupted = false;                       // some rows are missing
+  bool planned = false;                           // was a plan asked for
+  std::vector<PlannedReading> plan{};
 
   /// Has every reading told, and was none contradicted by the model?
   [[nodiscard]] bool good() const;

@@ -331,12 +331,29 @@ ParameterSensitivity Statics::sensitivity_along(const State& at, const std::vect
   return parts_->physical->sensitivity(at, changes, options.reuse_factor, accuracy, reactions, *team);
 }
 
+std::vector<Points> Statics::reciprocal_moves(const State& at, const std::vector<Points>& forces,
+                                              const StaticsOptions& options, double accuracy) const {
+  parts_->check_known(at, options, "how a shape gives way");
+  for (const Points& force : forces)
+    if (force.rows() != at.positions.rows() || !force.allFinite())
+      throw InvalidInput("forces must be of three finite values for each of the robot's vertices");
+  if (!parts_->physical || !parts_->physical->system().symmetric()) return {};
+  return parts_->physical->moves_under(at, forces, options.reuse_factor, accuracy, *parts_->team(options));
+}
+
 bool Statics::foresee(const Actuation& actuation, const State& at, const StaticsOptions& options,
                       Points& positions) const {
   check_actuation(parts_->model, actuation);
   parts_->check_known(at, options, "what is foreseen from a shape");
   if (!foresees() || !options.reuse_factor) return false;
   return parts_->physical->foresee(actuation, at, positions, *parts_->team(options));
+}
+
+bool Statics::foretell(const State& at, State there, const StaticsOptions& options) const {
+  check_actuation(parts_->model, there.actuation);
+  parts_->check_known(there, options, "what is foretold");
+  if (!foresees() || !options.reuse_factor) return false;
+  return parts_->physical->foretell(at, std::move(there));
 }
 
 bool Statics::foresees() const {

@@ -122,6 +122,18 @@ class Statics {
                                                        const StaticsOptions& options = {}, double accuracy = 1e-8,
                                                        bool reactions = false) const;
 
+  /// How vertices move under dead forces on them. Where the stiffness is symmetric that is, too, how the number whose
+  /// derivative by the vertices' places is such a force changes with a force anywhere: one solution for all places.
+  ///
+  /// at       as sensitivity() has it
+  /// forces   k, each #V by 3 [N]
+  /// returns  k, each #V by 3 [mm]; none of target shapes, where something rubs or pushes so that the stiffness is not
+  ///          symmetric, and at a limit of existence
+  /// source   Maxwell 1864, Betti 1872: reciprocity
+  /// throws   InvalidInput as sensitivity() does, and on forces of another size or that are not finite
+  [[nodiscard]] std::vector<Points> reciprocal_moves(const State& at, const std::vector<Points>& forces,
+                                                     const StaticsOptions& options = {}, double accuracy = 1e-8) const;
+
   /// The shape under another actuation by second order, at the price of a small part of a solve. One that follows, from
   /// the same equilibrium to that actuation or near it, begins there.
   ///
@@ -130,6 +142,15 @@ class Statics {
   /// returns    false where that is not known any more, where something may touch, and of target shapes
   /// throws     InvalidInput as solve() and sensitivity() do
   bool foresee(const Actuation& actuation, const State& at, const StaticsOptions& options, Points& positions) const;
+
+  /// A solve that follows, from an equilibrium to that actuation, begins at a shape that the caller foretells, instead
+  /// of along the tangent; the factor at hand serves where that is near.
+  ///
+  /// at     an equilibrium that solve() returned
+  /// there  positions n x 3 [mm], actuation, multipliers [N or kPa]
+  /// returns  false where foresees() is, of mixed elements, and where what the last solve left is not known any more
+  /// throws   InvalidInput as solve() does
+  bool foretell(const State& at, State there, const StaticsOptions& options) const;
 
   /// Does foresee() do for this robot: in the physical formulation, where nothing may touch?
   [[nodiscard]] bool foresees() const;

@@ -11,26 +11,54 @@ namespace {
 constexpr double first_damping = 1e-3, most_damping = 1e9;
 /// Slopes of another shape are used while each step by them is so much shorter than the one before.
 constexpr double contraction = 0.15;
-/// Iterations by which places that rank well are followed, before the best of them is chosen.
-constexpr int followed = 6;
+/// Longest move of a vertex that a step foretells, over the diagonal: equilibria farther away take long to find, and
+/// slopes do not tell of them.
+constexpr double longest_move = 0.08, least_reach = 1e-3;
+/// Steps to where no equilibrium is found, as where readings contradict each other: each takes as long as many others.
+constexpr int most_failures = 3;
+/// After so many of all fits of an update the first ends one.
+constexpr int many_failures = 12;
 /// Longest step of a place, over the deviation of one that may be anywhere on its patch.
 constexpr double longest_slide = 1;
-/// Bounds of the share of its way that a place goes as its force changes.
-constexpr double least_slide = 0.25;
-/// Shares of the force that a linear fit wants: the first that has an equilibrium is where a search begins.
-constexpr double begun_shares[] = {1, 0.5, 0.25, 0.1};
+/// Steps to the least cost as it is foretold, and the length at which they end.
+constexpr int most_inner = 30;
+constexpr double inner_length = 0.01;
 
-/// What a force does far from it is nearly linear in the force and in its moment: a place goes such a share of its way
-/// that the moment changes as the step wants.
-double slide_share(const FreeForce& force, const Eigen::VectorXd& before, const Eigen::VectorXd& after) {
-  double product = 0, square = 0;
-  for (const Index variable : force.variables) {
-    if (variable < 0) continue;
-    product += before[variable] * after[variable];
-    square += after[variable] * after[variable];
+/// Steps so far, and what one more would leave.
+struct Pace {
+  double damping = 0;
+  double last = std::numeric_limits<double>::infinity();  // length of the last step by these slopes
+  double rate = 1, of_length = 1;  // lengths of two steps, the next over the last, as last seen; that of the last
+  double reach = 1;                // of longest_move: less where no equilibrium was found that far away
+  int failures = 0;
+  bool fresh = false;  // are slopes of this guess?
+
+  void renewed() {
+    fresh = true;
+    last = std::numeric_limits<double>::infinity();
   }
-  return square > 0 ? std::clamp(product / square, least_slide, 1 / least_slide) : 1;
-}
+  void see(double length) {
+    if (!std::isfinite(last)) return;
+    rate = std::min(1.0, length / last);
+    of_length = last;
+  }
+  /// Of old slopes in proportion to the step, of fresh ones to its square.
+  [[nodiscard]] double left_of(double length) const {
+    return rate * length * (fresh ? std::min(1.0, length / of_length) : 1);
+  }
+  void advanced(double length) {
+    last = fresh && damping > 0 ? std::numeric_limits<double>::infinity() : length;
+    damping = damping > first_damping ? damping / 16 : 0;
+    reach = std::min(1.0, 2 * reach);
+    fresh = false;
+  }
+  /// False where that leads nowhere.
+  bool shorten(bool lost, int most) {
+    if (lost) return ++failures < most && (reach /= 4) > least_reach;
+    damping = damping == 0 ? first_damping : 8 * damping;
+    return damping <= most_damping;
+  }
+};
 
 double length_of(const Eigen::VectorXd& step, const Normal& normal) {
   return std::sqrt(std::max(0.0, step.dot(normal.matrix * step)));
@@ -56,168 +84,134 @@ Eigen::VectorXd Fitter::step_of(const Guess& at, const Normal& normal, double da
   Eigen::VectorXd step = solve_symmetric(matrix, right);
   for (std::size_t f = 0; f < variables.forces().size(); ++f) {
     auto slide = step.segment<2>(variables.numbers() + 2 * static_cast<Index>(f));
-    slide *=
-        slide_share(variables.forces()[f], at.values, variables.clamped(at.values + step.head(variables.numbers())));
     const double most = longest_slide * std::sqrt(variables.forces()[f].patch->covariance().trace());
     if (slide.norm() > most) slide *= most / slide.norm();
   }
   return step;
 }
 
-Fit Fitter::refine(Guess from, const Readings& readings, const Slopes* known, const Actuation* before) const {
-  return refine_by(std::move(from), readings, known, before, options_.max_iterations);
+Fit Fitter::refine(Guess from, const Readings& readings, std::shared_ptr<const Nearby> known,
+                   const Actuation* before) const {
+  return refine_by(std::move(from), readings, {std::move(known), before, options_.max_iterations});
 }
 
-Fit Fitter::refine_by(Guess from, const Readings& readings, const Slopes* known, const Actuation* before,
-                      int most_iterations) const {
-  Fit fit{std::move(from)};
-  bool fresh = known == nullptr, foretold = before != nullptr;
-  fit.slopes = fresh ? problem_.slopes(fit.at) : *known;
-  if (foretold) fit.at.computed += fit.slopes.by_commands * (readings.commands - *before);
-  double damping = 0, last = std::numeric_limits<double>::infinity();
-  const auto renew = [&] {
-    if (foretold) fit.at = problem_.solve(readings.commands, fit.at.values, fit.at.places, &fit.at, progress_);
-    foretold = false;
-    if (fit.at.solved()) fit.slopes = problem_.slopes(fit.at);
-    fresh = true;
-    last = std::numeric_limits<double>::infinity();
-    return fit.at.solved();
+void Fitter::set_normal(Fit& fit, const Readings& readings) const {
+  fit.slopes = problem_.slopes(*fit.nearby, fit.told);
+  fit.normal = problem_.normal(fit.told, fit.slopes, readings);
+}
+
+/// Of the readings as fit.nearby has them from fit.at on; damping holds it there.
+Guess Fitter::least(const Fit& fit, const Readings& readings, double damping) const {
+  Guess at{fit.at.values, fit.at.places, {}, fit.at.computed};
+  const auto normal_at = [&](const Guess& guess) {
+    return problem_.normal(guess, problem_.slopes(*fit.nearby, guess), readings);
   };
-  while (fit.iterations < most_iterations) {
-    fit.normal = problem_.normal(fit.at, fit.slopes.of_readings, readings);
-    const Eigen::VectorXd step = step_of(fit.at, fit.normal, damping);
-    const double length = length_of(step, fit.normal);
+  Normal normal = normal_at(at);
+  const Eigen::VectorXd hold = damping * normal.matrix.diagonal();
+  double inner = 0;
+  for (int i = 0; i < most_inner; ++i) {
+    const Eigen::VectorXd step = step_of(at, normal, inner);
+    if (!(length_of(step, normal) > inner_length)) break;
+    Guess next{{}, {}, {}, fit.at.computed};
+    problem_.move(at, step, next.values, next.places);
+    problem_.follow(*fit.nearby, fit.at, next, {}, next.computed, nullptr);
+    Normal there = normal_at(next);
+    const Eigen::VectorXd way = problem_.way(fit.at, next);
+    there.matrix.diagonal() += hold;
+    there.gradient += hold.cwiseProduct(way);
+    there.cost += way.dot(hold.cwiseProduct(way));
+    if (there.cost < normal.cost) {
+      at = std::move(next);
+      normal = std::move(there);
+      inner = inner > first_damping ? inner / 16 : 0;
+    } else {
+      inner = inner == 0 ? first_damping : 8 * inner;
+      if (inner > most_damping) break;
+    }
+  }
+  return at;
+}
+
+Fit Fitter::foretell(Guess from, const Readings& readings, std::shared_ptr<const Nearby> nearby,
+                     const Actuation& before) const {
+  Fit fit{std::move(from), std::move(nearby)};
+  const Guess same = fit.at;
+  problem_.follow(*fit.nearby, same, same, readings.commands - before, fit.at.computed, nullptr);
+  fit.told = least(fit, readings, 0);
+  set_normal(fit, readings);
+  fit.converged = true;
+  return fit;
+}
+
+/// A step is gone to first order alone where what that leaves, as the last steps shrank, is below the accuracy.
+Fit Fitter::refine_by(Guess from, const Readings& readings, const Start& start) const {
+  Fit fit{std::move(from)};
+  const auto nearby_of = [&](const Guess& at) { return std::make_shared<const Nearby>(problem_.nearby(at)); };
+  Pace pace;
+  pace.fresh = start.nearby == nullptr;
+  fit.nearby = pace.fresh ? nearby_of(fit.at) : start.nearby;
+  Actuation elsewhere;  // by how much the commands differ from those of the equilibrium
+  if (start.before != nullptr) {
+    elsewhere = readings.commands - *start.before;
+    problem_.follow(*fit.nearby, fit.at, fit.at, elsewhere, fit.at.computed, nullptr);
+  }
+  while (true) {
+    fit.told = least(fit, readings, pace.damping);
+    set_normal(fit, readings);
+    const double length = length_of(problem_.way(fit.at, fit.told), fit.normal);
     if (!std::isfinite(length)) break;
-    fit.converged = length <= options_.accuracy && !foretold;
-    if (fit.converged) break;
-    if (!fresh && !foretold && length > contraction * last) {
-      if (!renew()) break;
+    pace.see(length);
+    fit.converged = elsewhere.size() == 0 && pace.damping == 0 && pace.left_of(length) <= options_.accuracy;
+    if (fit.converged) return fit;
+    if (fit.iterations >= start.most_iterations) break;
+    if (!pace.fresh && elsewhere.size() == 0 && length > contraction * pace.last) {
+      fit.nearby = nearby_of(fit.at);
+      pace.renewed();
       continue;
     }
     ++fit.iterations;
-    Eigen::VectorXd values;
-    std::vector<Place> places;
-    problem_.move(fit.at, step, values, places);
-    Guess next = problem_.solve(readings.commands, values, places, &fit.at, progress_);
+    Guess next = stepped(fit, readings, elsewhere, pace.reach);
     if (next.equilibrium.report.stopped) {
       fit.interrupted = true;
       return fit;
     }
-    const bool small = foretold && length <= options_.accuracy;  // the step is no more than what was foretold is off
-    if (next.solved() && (small || problem_.cost(next, readings) < fit.normal.cost)) {
+    // what was foretold of other commands may be off by more than a short step gains
+    const bool short_step = elsewhere.size() > 0 && length <= 1;
+    if (next.solved() && (short_step || problem_.cost(next, readings) < problem_.cost(fit.at, readings))) {
       fit.at = std::move(next);
-      last = fresh && damping > 0 ? std::numeric_limits<double>::infinity() : std::max(length, options_.accuracy);
-      damping = damping > first_damping ? damping / 16 : 0;
-      fresh = foretold = false;
+      elsewhere.resize(0);
+      pace.advanced(length);
       continue;
     }
-    if (!fresh && !renew()) break;
-    damping = damping == 0 ? first_damping : 8 * damping;
-    if (damping > most_damping) break;
+    if (elsewhere.size() > 0) {  // begin under these commands
+      fit.at = problem_.solve(readings.commands, fit.at.values, fit.at.places, &fit.at, progress_);
+      elsewhere.resize(0);
+      if (!fit.at.solved()) return fit;
+      pace.fresh = false;
+    }
+    if (!pace.fresh) {
+      fit.nearby = nearby_of(fit.at);
+      pace.renewed();
+    }
+    const bool many = problem_.lost() - lost_before_ > many_failures;
+    if (!pace.shorten(!next.solved(), many ? 1 : most_failures)) break;
   }
+  fit.told = {fit.at.values, fit.at.places, {}, fit.at.computed};
+  set_normal(fit, readings);
   return fit;
 }
 
-Fitter::Survey Fitter::survey(std::size_t force, const Guess& at) const {
-  const Variables& variables = problem_.variables();
-  Survey survey{at, problem_.slopes(at), {}, variables.forces()[force].patch->spread(options_.candidates)};
-  std::vector<Actuation> changes;
-  for (const Place& place : survey.places)
-    for (Actuation& change : variables.changes_at(force, place)) changes.push_back(std::move(change));
-  survey.theirs = problem_.slopes(at, changes);
-  survey.theirs.moves.clear();
-  return survey;
-}
-
-/// For each candidate the least cost by slopes at one shape, with the force where it is as an unknown.
-std::vector<Fitter::Ranked> Fitter::rank(std::size_t force, const Survey& survey, const Readings& readings) const {
-  const Variables& variables = problem_.variables();
-  const auto axes = static_cast<Index>(survey.theirs.of_readings.cols()) / static_cast<Index>(survey.places.size());
-  std::vector<Ranked> ranked;
-  for (std::size_t p = 0; p < survey.places.size(); ++p) {
-    Guess there = survey.at;
-    there.places[force] = survey.places[p];
-    Eigen::MatrixXd slopes = survey.own.of_readings;
-    Index next = static_cast<Index>(p) * axes;
-    for (const Index variable : variables.forces()[force].variables)
-      if (variable >= 0) slopes.col(variable) = survey.theirs.of_readings.col(next++);
-    slopes.rightCols(variables.columns() - variables.numbers()).setZero();
-    const Normal normal = problem_.normal(there, slopes, readings);
-    const Index count = variables.numbers();
-    const Eigen::VectorXd step =
-        -solve_symmetric(normal.matrix.topLeftCorner(count, count), normal.gradient.head(count));
-    const double cost = normal.cost + normal.gradient.head(count).dot(step);
-    ranked.push_back({cost, variables.clamped(survey.at.values + step), survey.places[p]});
-  }
-  std::sort(ranked.begin(), ranked.end(), [](const Ranked& a, const Ranked& b) { return a.cost < b.cost; });
-  return ranked;
-}
-
-Guess Fitter::begun(const Guess& at, const Ranked& ranked, std::size_t force, const Readings& readings) const {
-  std::vector<Place> places = at.places;
-  places[force] = ranked.place;
-  for (const double share : begun_shares) {
-    const Eigen::VectorXd values = at.values + share * (ranked.values - at.values);
-    Guess guess = problem_.solve(readings.commands, values, places, &at, progress_);
-    if (guess.solved() || guess.equilibrium.report.stopped) return guess;
-  }
-  return {};
-}
-
-/// The places that rank best are followed a little, the best of them to the end.
-std::optional<Fit> Fitter::best_of(std::size_t force, const Survey& survey, const Readings& readings) const {
-  const std::vector<Ranked> ranked = rank(force, survey, readings);
-  std::optional<Fit> found;
-  for (std::size_t i = 0; i < std::min(ranked.size(), static_cast<std::size_t>(options_.starts)); ++i) {
-    Guess guess = begun(survey.at, ranked[i], force, readings);
-    if (!guess.solved()) continue;
-    Fit fit = refine_by(std::move(guess), readings, nullptr, nullptr, followed);
-    if (fit.interrupted) return fit;
-    if (!found || fit.normal.cost < found->normal.cost) found = std::move(fit);
-  }
-  if (!found || found->converged) return found;
-  Fit fit = refine(std::move(found->at), readings, &found->slopes);
-  fit.iterations += found->iterations;
-  return fit;
-}
-
-const Fitter::Survey& Fitter::first(const Readings& readings) const {
-  if (first_) return *first_;
-  const Variables& variables = problem_.variables();
-  std::vector<Place> places;
-  for (const FreeForce& force : variables.forces()) places.push_back(force.patch->nearest(force.patch->middle()));
-  const Guess at = problem_.solve(readings.commands, variables.means(), places, nullptr, progress_);
-  if (!at.solved())
-    first_ = Survey{at, {}, {}, {}};
-  else if (variables.forces().empty())
-    first_ = Survey{at, problem_.slopes(at), {}, {}};
-  else
-    first_ = survey(0, at);
-  return *first_;
-}
-
-double Fitter::forecast(const Readings& readings) const {
-  const Survey& from = first(readings);
-  if (!from.at.solved()) return std::numeric_limits<double>::infinity();
-  if (!from.places.empty()) return rank(0, from, readings).front().cost;
-  const Normal normal = problem_.normal(from.at, from.own.of_readings, readings);
-  return normal.cost - normal.gradient.dot(solve_symmetric(normal.matrix, normal.gradient));
-}
-
-Fit Fitter::search(const Readings& readings) const {
-  const Variables& variables = problem_.variables();
-  (void)first(readings);
-  Fit best{first_->at};
-  best.interrupted = best.at.equilibrium.report.stopped;
-  if (!best.at.solved()) return best;
-  if (variables.forces().empty()) return refine(best.at, readings, &first_->own);
-  for (std::size_t f = 0; f < variables.forces().size(); ++f) {
-    std::optional<Fit> found = best_of(f, f == 0 ? *first_ : survey(f, best.at), readings);
-    if (!found) return best;
-    best = std::move(*found);
-    if (best.interrupted) return best;
-  }
-  return best;
+/// The equilibrium at fit.told, or on the way there as far as may be foretold, from where it is foretold.
+Guess Fitter::stepped(const Fit& fit, const Readings& readings, const Actuation& elsewhere, double reach) const {
+  const double most = reach * longest_move * problem_.variables().model().diagonal_mm;
+  const double share = most / problem_.largest_move(*fit.nearby, fit.at, fit.told);
+  Guess to = fit.told;
+  if (share < 1) problem_.move(fit.at, share * problem_.way(fit.at, fit.told), to.values, to.places);
+  Eigen::VectorXd computed = fit.at.computed;
+  State foretold = fit.at.equilibrium.state;
+  problem_.follow(*fit.nearby, fit.at, to, elsewhere, computed, &foretold);
+  foretold.actuation = problem_.variables().actuation(readings.commands, to.values, to.places);
+  return problem_.solve(readings.commands, to.values, to.places, &fit.at, progress_, &foretold);
 }
 
 }  // namespace softkin::estimate

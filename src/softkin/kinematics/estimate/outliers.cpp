@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <softkin/core/dense.hpp>
 #include <softkin/kinematics/estimate/outliers.hpp>
 
@@ -14,8 +15,12 @@ constexpr double least_freedoms = 0.9;
 /// Of a reading's variance, that a residual keeps however well the fit follows it.
 constexpr double least_variance = 0.01;
 
-/// Searches anew for readings that contradict the others, of one group and of two.
-constexpr std::size_t most_searches = 3;
+/// Sets of readings that are tried by a search.
+constexpr std::size_t most_searches = 8;
+/// By so many times a linear fit must become better for each group that is left out, to be tried before fits to more.
+constexpr double worthwhile_gain = 4;
+
+using Set = std::vector<std::size_t>;
 
 /// How far off readings are, all together and each group.
 struct Judgement {
@@ -38,7 +43,7 @@ std::vector<Index> read_of(const ReadingGroup& group, const Eigen::VectorXd& wei
 
 Judgement judge(const Fit& fit, const std::vector<ReadingGroup>& groups, const Eigen::VectorXd& values,
                 const Eigen::VectorXd& weights) {
-  const Eigen::MatrixXd& slopes = fit.slopes.of_readings;
+  const Eigen::MatrixXd& slopes = fit.slopes;
   const CholeskyFactor factor(fit.normal.matrix);
   Judgement judgement;
   double chi_square = 0;
@@ -50,7 +55,7 @@ Judgement judge(const Fit& fit, const std::vector<ReadingGroup>& groups, const E
     for (Index i = 0; i < count; ++i) {
       const Index r = read[static_cast<std::size_t>(i)];
       own.row(i) = std::sqrt(weights[r]) * slopes.row(r);
-      off[i] = std::sqrt(weights[r]) * (fit.at.computed[r] - values[r]);
+      off[i] = std::sqrt(weights[r]) * (fit.told.computed[r] - values[r]);
     }
     const Eigen::MatrixXd told = own * factor.solve(Eigen::MatrixXd(own.transpose()));
     const Eigen::MatrixXd left = (1 + least_variance) * Eigen::MatrixXd::Identity(count, count) - told;
@@ -63,67 +68,124 @@ Judgement judge(const Fit& fit, const std::vector<ReadingGroup>& groups, const E
   return judgement;
 }
 
-/// Readings with some groups left out, of which the others agree best.
-class Search {
+/// Does a fit agree with a group that it was not made of?
+bool agrees_with(const Fit& fit, const ReadingGroup& group, const Eigen::VectorXd& values,
+                 const Eigen::VectorXd& weights) {
+  const std::vector<Index> read = read_of(group, weights);
+  const auto count = static_cast<Index>(read.size());
+  Eigen::MatrixXd own(count, fit.slopes.cols());
+  Eigen::VectorXd off(count);
+  for (Index i = 0; i < count; ++i) {
+    const Index r = read[static_cast<std::size_t>(i)];
+    own.row(i) = std::sqrt(weights[r]) * fit.slopes.row(r);
+    off[i] = std::sqrt(weights[r]) * (fit.told.computed[r] - values[r]);
+  }
+  const CholeskyFactor factor(fit.normal.matrix);
+  const Eigen::MatrixXd spread =
+      Eigen::MatrixXd::Identity(count, count) + own * factor.solve(Eigen::MatrixXd(own.transpose()));
+  return count == 0 || excess(off.dot(solve_symmetric(spread, off)), static_cast<double>(count)) < agrees_below;
+}
+
+/// Tries readings with some groups left out.
+class Trials {
  public:
-  Search(const std::vector<ReadingGroup>& groups, const Eigen::VectorXd& values, const Eigen::VectorXd& weights,
-         const Refit& refit, const Forecast& forecast)
-      : groups_(groups), values_(values), weights_(weights), refit_(refit), forecast_(forecast) {}
+  Trials(const std::vector<ReadingGroup>& groups, const Eigen::VectorXd& values, const Eigen::VectorXd& weights,
+         const Fits& fits)
+      : groups_(groups), values_(values), weights_(weights), fits_(fits) {}
 
-  /// False: it was interrupted.
-  bool try_without(const std::vector<std::size_t>& out, bool anew) {
-    const Eigen::VectorXd weights = without(out);
-    Fit fit = refit_(weights, anew);
-    if (fit.interrupted) return false;
-    if (!fit.converged) return true;
-    const Judgement judgement = judge(fit, groups_, values_, weights);
-    if (!judgement.agrees() || (!out.empty() && judgement.freedoms < least_freedoms)) return true;
-    if (found_ && found_->normal.cost <= fit.normal.cost) return true;
-    found_ = std::move(fit);
-    out_ = out;
-    kept_ = weights;
-    return true;
+  /// From the last estimate on: what its slopes foretell says which group, if any, to leave out.
+  void track() {
+    const Fit foretold = fits_.foretold(weights_);
+    std::optional<Set> best;
+    double least = 0;
+    if (!agrees(foretold, {}))
+      for (const Set& out : sets(1)) {
+        const Fit fit = fits_.foretold(without(out));
+        if (!agrees(fit, out) || (best && fit.normal.cost >= least)) continue;
+        best = out;
+        least = fit.normal.cost;
+      }
+    if (best && take(fits_.tracked(without(*best)), *best, false)) return;
+    if (!interrupted_) (void)take(fits_.tracked(weights_), {}, false);
   }
 
-  bool try_each(bool anew) {
-    std::vector<std::vector<std::size_t>> sets;
-    for (std::size_t g = 0; g < groups_.size(); ++g) sets.push_back({g});
-    return try_sets(std::move(sets), anew);
+  /// Without a start: first where a linear fit promises most.
+  void search() {
+    std::vector<std::pair<double, Set>> promise{{forecast({}), {}}};
+    for (std::size_t size = 1; size <= 2; ++size)
+      for (const Set& out : sets(size)) promise.emplace_back(std::pow(worthwhile_gain, size) * forecast(out), out);
+    std::sort(promise.begin(), promise.end());
+    promise.resize(std::min(promise.size(), most_searches));
+    for (const auto& [cost, out] : promise) {
+      if (take(fits_.anew(without(out)), out, true) || interrupted_) return;
+    }
   }
 
-  bool try_pairs() {
-    std::vector<std::vector<std::size_t>> sets;
-    for (std::size_t g = 0; g < groups_.size(); ++g)
-      for (std::size_t h = 0; h < g; ++h) sets.push_back({h, g});
-    return try_sets(std::move(sets), true);
-  }
+  /// Where nothing agrees.
+  void search_all() { (void)take(fits_.anew(weights_), {}, true); }
 
-  [[nodiscard]] bool found() const { return found_.has_value(); }
-  Fit take(Eigen::VectorXd& weights, std::vector<std::size_t>& out) {
-    weights = kept_;
-    out = out_;
-    return std::move(*found_);
-  }
+  [[nodiscard]] bool found() const { return found_; }
+  [[nodiscard]] bool interrupted() const { return interrupted_; }
+  [[nodiscard]] const Set& out() const { return out_; }
+  [[nodiscard]] Eigen::VectorXd kept() const { return without(out_); }
+  /// What agrees; else the fit to all readings.
+  Fit fit() { return std::move(fit_); }
+  [[nodiscard]] bool any() const { return any_; }
 
  private:
-  /// All from the last estimate on; anew those alone that promise most.
-  bool try_sets(std::vector<std::vector<std::size_t>> sets, bool anew) {
-    std::erase_if(sets, [&](const std::vector<std::size_t>& out) {
-      return std::any_of(out.begin(), out.end(), [&](std::size_t g) { return read_of(groups_[g], weights_).empty(); });
-    });
-    if (anew) {
-      std::vector<std::pair<double, std::size_t>> promise;
-      for (std::size_t i = 0; i < sets.size(); ++i) promise.emplace_back(forecast_(without(sets[i])), i);
-      std::sort(promise.begin(), promise.end());
-      promise.resize(std::min(promise.size(), most_searches));
-      std::vector<std::vector<std::size_t>> best;
-      for (const auto& [cost, i] : promise) best.push_back(sets[i]);
-      sets = std::move(best);
+  /// A fit whose readings agree is taken, with what else agrees with it.
+  bool take(Fit fit, Set out, bool anew) {
+    interrupted_ = fit.interrupted;
+    found_ = !interrupted_ && agrees(fit, out);
+    if (found_) put_back(fit, out, anew);
+    if (found_ || interrupted_ || (out.empty() && (!any_ || (fit.converged && !fit_.converged)))) {
+      any_ = true;
+      fit_ = std::move(fit);
+      out_ = found_ ? std::move(out) : Set{};
     }
-    return std::all_of(sets.begin(), sets.end(), [&](const auto& out) { return try_without(out, anew); });
+    return found_;
   }
 
-  [[nodiscard]] Eigen::VectorXd without(const std::vector<std::size_t>& out) const {
+  void put_back(Fit& fit, Set& out, bool anew) {
+    for (const std::size_t g : Set(out)) {
+      if (!agrees_with(fit, groups_[g], values_, weights_)) continue;
+      Set fewer = out;
+      std::erase(fewer, g);
+      Fit more = fits_.near(without(fewer), fit, anew);
+      interrupted_ = interrupted_ || more.interrupted;
+      if (interrupted_) return;
+      if (!agrees(more, fewer)) continue;
+      fit = std::move(more);
+      out = std::move(fewer);
+    }
+  }
+
+  [[nodiscard]] bool agrees(const Fit& fit, const Set& out) const {
+    if (!fit.converged) return false;
+    const Judgement judgement = judge(fit, groups_, values_, without(out));
+    return judgement.agrees() && (out.empty() || judgement.freedoms >= least_freedoms);
+  }
+
+  /// Per reading, above what noise costs: where all agree to noise, none is to be left out.
+  [[nodiscard]] double forecast(const Set& out) const {
+    const Eigen::VectorXd weights = without(out);
+    const auto read = static_cast<double>((weights.array() > 0).count());
+    return 1 + fits_.forecast(weights) / std::max(1.0, read);
+  }
+
+  /// Of so many groups that were read.
+  [[nodiscard]] std::vector<Set> sets(std::size_t size) const {
+    std::vector<Set> sets;
+    for (std::size_t g = 0; g < groups_.size(); ++g) {
+      if (read_of(groups_[g], weights_).empty()) continue;
+      if (size == 1) sets.push_back({g});
+      for (std::size_t h = 0; h < g && size == 2; ++h)
+        if (!read_of(groups_[h], weights_).empty()) sets.push_back({h, g});
+    }
+    return sets;
+  }
+
+  [[nodiscard]] Eigen::VectorXd without(const Set& out) const {
     Eigen::VectorXd weights = weights_;
     for (const std::size_t g : out)
       for (const Index c : groups_[g].columns) weights[c] = 0;
@@ -133,11 +195,10 @@ class Search {
   const std::vector<ReadingGroup>& groups_;
   const Eigen::VectorXd& values_;
   const Eigen::VectorXd weights_;
-  const Refit& refit_;
-  const Forecast& forecast_;
-  std::optional<Fit> found_;
-  std::vector<std::size_t> out_;
-  Eigen::VectorXd kept_;
+  const Fits& fits_;
+  Fit fit_;
+  Set out_;
+  bool any_ = false, found_ = false, interrupted_ = false;
 };
 
 }  // namespace
@@ -148,18 +209,18 @@ double excess(double chi_square, double freedoms) {
   return (std::cbrt(chi_square / freedoms) - (1 - spread)) / std::sqrt(spread);
 }
 
-Fit without_outliers(const std::vector<ReadingGroup>& groups, const Eigen::VectorXd& values, Eigen::VectorXd& weights,
-                     Fit all, bool tracked, const Refit& refit, const Forecast& forecast,
-                     std::vector<std::size_t>& out) {
-  if (all.converged && judge(all, groups, values, weights).agrees()) return all;
-  Search search(groups, values, weights, refit, forecast);
-  bool going = true;
-  if (tracked) going = search.try_each(false);
-  if (tracked && going && !search.found()) going = search.try_without({}, true);
-  if (going && !search.found()) going = search.try_each(true);
-  if (going && !search.found()) going = search.try_pairs();
-  if (!going) all.interrupted = true;
-  return search.found() ? search.take(weights, out) : all;
+Fit agreeing_fit(const std::vector<ReadingGroup>& groups, const Eigen::VectorXd& values, Eigen::VectorXd& weights,
+                 const Fits& fits, std::vector<std::size_t>& out) {
+  Trials trials(groups, values, weights, fits);
+  if (fits.tracked) trials.track();
+  if (!trials.found() && !trials.interrupted()) trials.search();
+  if (!trials.any() && !trials.interrupted()) trials.search_all();
+  Fit fit = trials.fit();
+  fit.interrupted = trials.interrupted();
+  if (!trials.found()) return fit;
+  out = trials.out();
+  weights = trials.kept();
+  return fit;
 }
 
 }  // namespace softkin::estimate

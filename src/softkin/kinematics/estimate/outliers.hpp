@@ -11,21 +11,25 @@ namespace softkin::estimate {
 /// source  Wilson, Hilferty 1931, The distribution of chi-square
 [[nodiscard]] double excess(double chi_square, double freedoms);
 
-/// Fits readings of some weights: from the last estimate, or anew.
-using Refit = std::function<Fit(const Eigen::VectorXd& weights, bool anew)>;
+/// Fits to readings of some weights.
+struct Fits {
+  using ToWeights = std::function<Fit(const Eigen::VectorXd& weights)>;
+  ToWeights anew;
+  ToWeights tracked{};   // from the last estimate on; empty: there is none
+  ToWeights foretold{};  // the same by its slopes, without an equilibrium
+  /// From another fit, with what was known before that one.
+  std::function<Fit(const Eigen::VectorXd& weights, const Fit& near, bool anew)> near;
+  /// What a fit anew may come to, from a linear fit: a cost.
+  std::function<double(const Eigen::VectorXd& weights)> forecast;
+};
 
-/// What a search anew may come to, from a linear fit: a cost.
-using Forecast = std::function<double(const Eigen::VectorXd& weights)>;
-
-/// Where readings contradict each other: leaves out the group without which the others agree best, or the two groups.
-/// Where that does not make them agree either nothing is left out: then the model is wrong, not a reading.
+/// The fit to all readings where they agree; else to those without the group, or the two groups, without which the
+/// others do and which they contradict. Where nothing makes them agree nothing is left out: then the model is wrong,
+/// not a reading.
 ///
-/// all      the fit to all readings
-/// tracked  was it one from the last estimate on?
 /// weights  those of what is left out become 0
-/// out      what is left out
-[[nodiscard]] Fit without_outliers(const std::vector<ReadingGroup>& groups, const Eigen::VectorXd& values,
-                                   Eigen::VectorXd& weights, Fit all, bool tracked, const Refit& refit,
-                                   const Forecast& forecast, std::vector<std::size_t>& out);
+/// out      groups that are left out, ascending
+[[nodiscard]] Fit agreeing_fit(const std::vector<ReadingGroup>& groups, const Eigen::VectorXd& values,
+                               Eigen::VectorXd& weights, const Fits& fits, std::vector<std::size_t>& out);
 
 }  // namespace softkin::estimate

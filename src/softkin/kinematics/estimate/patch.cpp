@@ -62,20 +62,20 @@ Patch::Patch(const Model& model, std::vector<CavityFace> faces)
 
 /// By the corners; of a triangle, the second moment about the origin is A / 12 (sum of x x^T + 9 m m^T).
 void Patch::measure() {
-  double area = 0, longest = 0;
+  double longest = 0;
   Mat3 second = Mat3::Zero();
   for (const CavityFace& face : faces_) {
     const Vec3 a = vertex_at(model_.rest, face.corners[0]), b = vertex_at(model_.rest, face.corners[1]),
                c = vertex_at(model_.rest, face.corners[2]), m = (a + b + c) / 3;
     longest = std::max({longest, (b - a).norm(), (c - b).norm(), (a - c).norm()});
     const double own = (b - a).cross(c - a).norm() / 2;
-    area += own;
+    area_ += own;
     middle_ += own * m;
     second += own / 12 * (a * a.transpose() + b * b.transpose() + c * c.transpose() + 9 * m * m.transpose());
   }
   radius_ = spot * longest;
-  middle_ /= area;
-  covariance_ = second / area - middle_ * middle_.transpose();
+  middle_ /= area_;
+  covariance_ = second / area_ - middle_ * middle_.transpose();
 }
 
 Eigen::Matrix<double, 3, 2> Patch::tangents(const Place& place) const {

@@ -45,6 +45,7 @@ class Patch {
   [[nodiscard]] std::vector<Place> spread(std::size_t most) const;
 
   /// Of its area at rest: the mean place [mm], and the covariance of a place that may be anywhere [mm^2].
+  [[nodiscard]] double area() const { return area_; }  // [mm^2]
   [[nodiscard]] const Vec3& middle() const { return middle_; }
   [[nodiscard]] const Mat3& covariance() const { return covariance_; }
 
@@ -56,7 +57,7 @@ class Patch {
   std::vector<Index> nodes_;
   std::vector<std::vector<Index>> of_face_;  // nodes of each face, by their place in nodes_
   SurfaceTree tree_;
-  double radius_ = 0;  // of a spot [mm]
+  double radius_ = 0, area_ = 0;  // of a spot [mm], of all faces [mm^2]
   Vec3 middle_{0, 0, 0};
   Mat3 covariance_ = Mat3::Zero();
 };

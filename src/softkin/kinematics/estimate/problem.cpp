@@ -6,6 +6,9 @@ namespace softkin::estimate {
 
 namespace {
 
+/// Of a solve that begins at an equilibrium nearby: where it takes more, a shorter step is the shorter way.
+constexpr int most_iterations = 12;
+
 StaticsOptions quiet(StaticsOptions options) {
   options.keep_history = false;
   options.trace = false;
@@ -35,12 +38,18 @@ bool Problem::reads_supports() const {
 }
 
 Guess Problem::solve(const Actuation& commands, const Eigen::VectorXd& values, const std::vector<Place>& places,
-                     const Guess* near, const ProgressCallback& progress) const {
+                     const Guess* near, const ProgressCallback& progress, const State* foretold) const {
   Guess guess{values, places, {}, {}};
   const State start = near && near->solved() ? near->equilibrium.state : statics_.rest();
-  guess.equilibrium = statics_.solve(variables_.actuation(commands, values, places), start, options_, progress);
+  if (near && near->solved() && foretold) (void)statics_.foretell(start, *foretold, options_);
+  StaticsOptions options = options_;
+  if (near && near->solved()) options.max_iterations = std::min(options.max_iterations, most_iterations);
+  guess.equilibrium = statics_.solve(variables_.actuation(commands, values, places), start, options, progress);
   ++solves_;
-  if (guess.equilibrium.report.status != Status::converged) return guess;
+  if (guess.equilibrium.report.status != Status::converged) {
+    ++lost_;
+    return guess;
+  }
   const State& state = guess.equilibrium.state;
   Points reactions;
   if (reads_supports()) reactions = statics_.measured(state).reactions;
@@ -51,18 +60,22 @@ Guess Problem::solve(const Actuation& commands, const Eigen::VectorXd& values, c
   return guess;
 }
 
-Slopes Problem::slopes(const Guess& at) const {
-  std::vector<Actuation> changes = variables_.changes(at.values, at.places);
-  const std::vector<Index> measured = variables_.measured();
-  for (const Index a : measured)
+Nearby Problem::nearby(const Guess& at) const {
+  std::vector<Actuation> changes = variables_.part_changes(at.places);
+  const auto own = static_cast<Index>(changes.size());
+  for (const Index a : variables_.measured())
     changes.emplace_back(Actuation::Unit(static_cast<Index>(variables_.model().actuators.size()), a));
   Slopes all = slopes(at, changes);
-  all.by_commands.setZero(all.of_readings.rows(), variables_.own_actuators());
-  for (std::size_t i = 0; i < measured.size(); ++i)
-    all.by_commands.col(measured[i]) = all.of_readings.col(variables_.columns() + static_cast<Index>(i));
-  all.of_readings.conservativeResize(Eigen::NoChange, variables_.columns());
-  all.moves.resize(static_cast<std::size_t>(variables_.columns()));
-  return all;
+  Nearby near{at.places, {}, {}};
+  near.commands.of_readings = all.of_readings.rightCols(all.of_readings.cols() - own);
+  near.commands.multipliers = all.multipliers.rightCols(all.multipliers.cols() - own);
+  near.commands.moves.assign(std::make_move_iterator(all.moves.begin() + own),
+                             std::make_move_iterator(all.moves.end()));
+  all.of_readings.conservativeResize(Eigen::NoChange, own);
+  all.multipliers.conservativeResize(Eigen::NoChange, own);
+  all.moves.resize(static_cast<std::size_t>(own));
+  near.parts = std::move(all);
+  return near;
 }
 
 Slopes Problem::slopes(const Guess& at, const std::vector<Actuation>& changes) const {
@@ -79,7 +92,29 @@ Slopes Problem::slopes(const Guess& at, const std::vector<Actuation>& changes) c
           reading_change(variables_.model(), columns_[r], state, change);
   }
   slopes.moves = std::move(found.positions);
+  slopes.multipliers = std::move(found.multipliers);
   return slopes;
+}
+
+bool Problem::reciprocal() const {
+  return std::all_of(columns_.begin(), columns_.end(),
+                     [](const PoseColumn& column) { return column.marker >= 0 || column.sensor >= 0; });
+}
+
+Eigen::MatrixXd Problem::by_node_forces(const Guess& at, std::size_t force) const {
+  const State& state = at.equilibrium.state;
+  if (!reciprocal()) return {};
+  std::vector<Points> gradients;
+  for (const PoseColumn& column : columns_)
+    gradients.push_back(reading_gradient(variables_.model(), column, state.positions));
+  const std::vector<Points> moves = statics_.reciprocal_moves(state, gradients, options_, slope_accuracy_);
+  if (moves.empty()) return {};
+  const std::vector<Index>& nodes = variables_.forces()[force].patch->nodes();
+  Eigen::MatrixXd by(static_cast<Index>(moves.size()), 3 * static_cast<Index>(nodes.size()));
+  for (std::size_t r = 0; r < moves.size(); ++r)
+    for (std::size_t i = 0; i < nodes.size(); ++i)
+      by.block<1, 3>(static_cast<Index>(r), 3 * static_cast<Index>(i)) = moves[r].row(nodes[i]);
+  return by;
 }
 
 Normal Problem::normal(const Guess& at, const Eigen::MatrixXd& slopes, const Readings& read) const {
@@ -107,6 +142,60 @@ void Problem::move(const Guess& from, const Eigen::VectorXd& step, Eigen::Vector
                     patch.tangents(places[f]) * step.segment<2>(variables_.numbers() + 2 * static_cast<Index>(f));
     places[f] = patch.nearest(to);
   }
+}
+
+Eigen::VectorXd Problem::way(const Guess& from, const Guess& to) const {
+  Eigen::VectorXd way(variables_.columns());
+  way.head(variables_.numbers()) = to.values - from.values;
+  for (std::size_t f = 0; f < to.places.size(); ++f) {
+    const Patch& patch = *variables_.forces()[f].patch;
+    const Points& rest = variables_.model().rest;
+    way.segment<2>(variables_.numbers() + 2 * static_cast<Index>(f)) =
+        patch.tangents(from.places[f]).transpose() * (patch.at(to.places[f], rest) - patch.at(from.places[f], rest));
+  }
+  return way;
+}
+
+Eigen::MatrixXd Problem::slopes(const Nearby& nearby, const Guess& at) const {
+  return nearby.parts.of_readings * variables_.part_slopes(at.values, at.places, nearby.base);
+}
+
+std::vector<Points> Problem::moves(const Nearby& nearby, const Guess& at) const {
+  const Eigen::MatrixXd by = variables_.part_slopes(at.values, at.places, nearby.base);
+  std::vector<Points> moves;
+  for (Index c = 0; c < static_cast<Index>(by.cols()); ++c) {
+    Points& of = moves.emplace_back(Points::Zero(variables_.model().rest.rows(), 3));
+    for (Index p = 0; p < static_cast<Index>(by.rows()); ++p)
+      if (by(p, c) != 0) of += by(p, c) * nearby.parts.moves[static_cast<std::size_t>(p)];
+  }
+  return moves;
+}
+
+void Problem::follow(const Nearby& nearby, const Guess& from, const Guess& to, const Actuation& commands,
+                     Eigen::VectorXd& computed, State* state) const {
+  const auto add = [&](const Slopes& by, const Eigen::VectorXd& way) {
+    computed += by.of_readings * way;
+    if (state == nullptr) return;
+    state->multipliers += by.multipliers * way;
+    for (Index c = 0; c < static_cast<Index>(way.size()); ++c)
+      if (way[c] != 0) state->positions += way[c] * by.moves[static_cast<std::size_t>(c)];
+  };
+  add(nearby.parts,
+      variables_.parts(to.values, to.places, nearby.base) - variables_.parts(from.values, from.places, nearby.base));
+  if (commands.size() == 0) return;
+  const std::vector<Index> measured = variables_.measured();
+  Eigen::VectorXd way(static_cast<Index>(measured.size()));
+  for (std::size_t i = 0; i < measured.size(); ++i) way[static_cast<Index>(i)] = commands[measured[i]];
+  add(nearby.commands, way);
+}
+
+double Problem::largest_move(const Nearby& nearby, const Guess& from, const Guess& to) const {
+  Eigen::VectorXd computed = from.computed;
+  State moved;
+  moved.positions = Points::Zero(variables_.model().rest.rows(), 3);
+  moved.multipliers = Eigen::VectorXd::Zero(nearby.parts.multipliers.rows());
+  follow(nearby, from, to, {}, computed, &moved);
+  return moved.positions.rowwise().norm().maxCoeff();
 }
 
 }  // namespace softkin::estimate

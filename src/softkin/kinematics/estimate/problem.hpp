@@ -13,11 +13,18 @@ struct Guess {
   [[nodiscard]] bool solved() const { return computed.size() > 0; }
 };
 
-/// How readings change with the unknowns, near a guess.
+/// How readings and shapes change at an equilibrium.
 struct Slopes {
-  Eigen::MatrixXd of_readings;    // by columns of Variables
+  Eigen::MatrixXd of_readings;    // by columns
   std::vector<Points> moves{};    // of the vertices, per column
-  Eigen::MatrixXd by_commands{};  // of readings, by commands of the robot; 0 by those that are told, held or moved
+  Eigen::MatrixXd multipliers{};  // of the actuators of the extended robot, by columns [N or kPa per unit]
+};
+
+/// Readings and shapes near an equilibrium, as functions of the unknowns that are linear in Variables::parts.
+struct Nearby {
+  std::vector<Place> base;  // of the parts
+  Slopes parts;
+  Slopes commands;  // by those that are measured, Variables::measured()
 };
 
 /// What is read at one time, and what was known before.
@@ -39,7 +46,7 @@ struct Normal {
 class Problem {
  public:
   /// Of derivatives, relative: far below what readings tell.
-  static constexpr double enough = 1e-6;
+  static constexpr double enough = 1e-4;
 
   Problem(const Model& model, const std::vector<EstimatedUnknown>& unknowns, std::vector<PoseColumn> columns,
           const StaticsOptions& options, double slope_accuracy = enough);
@@ -48,20 +55,43 @@ class Problem {
   [[nodiscard]] const std::vector<PoseColumn>& columns() const { return columns_; }
   [[nodiscard]] const Statics& statics() const { return statics_; }
 
-  /// near  a guess from whose equilibrium the search begins; null: from rest
+  /// near      a guess from whose equilibrium the search begins; null: from rest
+  /// foretold  where the equilibrium is about, from `near`; null: along the tangent there
   [[nodiscard]] Guess solve(const Actuation& commands, const Eigen::VectorXd& values, const std::vector<Place>& places,
-                            const Guess* near, const ProgressCallback& progress) const;
-  [[nodiscard]] Slopes slopes(const Guess& at) const;
+                            const Guess* near, const ProgressCallback& progress, const State* foretold = nullptr) const;
+  [[nodiscard]] Nearby nearby(const Guess& at) const;
   /// Of some changes of the commands: readings by changes.
   [[nodiscard]] Slopes slopes(const Guess& at, const std::vector<Actuation>& changes) const;
+
+  /// Are all readings of markers and sensors?
+  [[nodiscard]] bool reciprocal() const;
+  /// Readings by forces on the nodes of a patch, three columns for each node; no columns where some reading is neither
+  /// of a marker nor of a sensor, or the stiffness is not symmetric.
+  [[nodiscard]] Eigen::MatrixXd by_node_forces(const Guess& at, std::size_t force) const;
 
   [[nodiscard]] Normal normal(const Guess& at, const Eigen::MatrixXd& slopes, const Readings& read) const;
   [[nodiscard]] double cost(const Guess& at, const Readings& read) const;
   /// A step from a guess: numbers within their ranges, places along their surfaces.
   void move(const Guess& from, const Eigen::VectorXd& step, Eigen::VectorXd& values, std::vector<Place>& places) const;
 
+  /// By how much the unknowns of another guess differ from those of one, in its columns.
+  [[nodiscard]] Eigen::VectorXd way(const Guess& from, const Guess& to) const;
+  /// Readings by the columns, and how the vertices move.
+  [[nodiscard]] Eigen::MatrixXd slopes(const Nearby& nearby, const Guess& at) const;
+  [[nodiscard]] std::vector<Points> moves(const Nearby& nearby, const Guess& at) const;
+  /// Adds to readings of a guess, and to its shape, what they change by to another one and to other commands.
+  ///
+  /// commands  change of those of the robot; no rows: none
+  /// state     null: not asked for. Its actuation stays as it is
+  void follow(const Nearby& nearby, const Guess& from, const Guess& to, const Actuation& commands,
+              Eigen::VectorXd& computed, State* state) const;
+  /// What a vertex moves by from one to the other, at most [mm].
+  [[nodiscard]] double largest_move(const Nearby& nearby, const Guess& from, const Guess& to) const;
+
   /// Equilibria that were solved.
   [[nodiscard]] int solves() const { return solves_; }
+  /// Those that were not found.
+  [[nodiscard]] int lost() const { return lost_; }
 
  private:
   [[nodiscard]] bool reads_supports() const;
@@ -71,7 +101,7 @@ class Problem {
   StaticsOptions options_;
   double slope_accuracy_;
   Statics statics_;
-  mutable int solves_ = 0;
+  mutable int solves_ = 0, lost_ = 0;
 };
 
 }  // namespace softkin::estimate

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <softkin/kinematics/estimate/readings.hpp>
 #include <softkin/model/sensor.hpp>
 #include <softkin/statics/deformation.hpp>
@@ -55,6 +56,39 @@ double reading_change(const Model& model, const PoseColumn& column, const State&
   }
   if (column.support >= 0) return force_on(model, column, at, change.reactions);
   return change.multipliers[column.actuator];
+}
+
+namespace {
+
+/// Those that a marker or a sensor is read from, some of them twice.
+std::vector<Index> vertices_of(const Model& model, const PoseColumn& column) {
+  if (column.marker >= 0) return model.markers[static_cast<std::size_t>(column.marker)].point.vertices;
+  const Sensor& sensor = *model.sensors[static_cast<std::size_t>(column.sensor)];
+  std::vector<Index> all;
+  for (const FibrePlace& place : sensor.places) all.insert(all.end(), place.vertices.begin(), place.vertices.end());
+  for (const TurningSection& section : sensor.sections)
+    for (const Marker& marker : section.along)
+      all.insert(all.end(), marker.point.vertices.begin(), marker.point.vertices.end());
+  return all;
+}
+
+}  // namespace
+
+Points reading_gradient(const Model& model, const PoseColumn& column, const Points& positions) {
+  std::vector<Index> vertices = vertices_of(model, column);
+  std::sort(vertices.begin(), vertices.end());
+  vertices.erase(std::unique(vertices.begin(), vertices.end()), vertices.end());
+  Points gradient = Points::Zero(positions.rows(), 3), move = gradient;
+  for (const Index v : vertices)
+    for (Index axis = 0; axis < 3; ++axis) {
+      move(v, axis) = 1;
+      gradient(v, axis) =
+          column.marker >= 0
+              ? model.markers[static_cast<std::size_t>(column.marker)].velocity(positions, move)[column.axis]
+              : model.sensors[static_cast<std::size_t>(column.sensor)]->velocity(positions, move);
+      move(v, axis) = 0;
+    }
+  return gradient;
 }
 
 }  // namespace softkin::estimate

@@ -26,4 +26,7 @@ struct ShapeChange {
 [[nodiscard]] double reading_change(const Model& model, const PoseColumn& column, const State& state,
                                     const ShapeChange& change);
 
+/// Its derivative by the vertices' places, #V by 3, of a marker's coordinate or of what a sensor measures.
+[[nodiscard]] Points reading_gradient(const Model& model, const PoseColumn& column, const Points& positions);
+
 }  // namespace softkin::estimate

@@ -136,25 +136,58 @@ std::vector<Actuation> Variables::changes_at(std::size_t number, const Place& pl
   return changes;
 }
 
-std::vector<Actuation> Variables::changes(const Eigen::VectorXd& values, const std::vector<Place>& places) const {
+Eigen::VectorXd Variables::parts(const Eigen::VectorXd& values, const std::vector<Place>& places,
+                                 const std::vector<Place>& base) const {
+  std::vector<double> parts(values.data(), values.data() + values.size());
+  for (std::size_t f = 0; f < forces_.size(); ++f) {
+    const Patch& patch = *forces_[f].patch;
+    const Eigen::Vector2d way =
+        patch.tangents(base[f]).transpose() * (patch.at(places[f], model_->rest) - patch.at(base[f], model_->rest));
+    for (const Index variable : forces_[f].variables)
+      for (Index t = 0; variable >= 0 && t < 2; ++t) parts.push_back(values[variable] * way[t]);
+  }
+  return Eigen::Map<const Eigen::VectorXd>(parts.data(), static_cast<Index>(parts.size()));
+}
+
+Eigen::MatrixXd Variables::part_slopes(const Eigen::VectorXd& values, const std::vector<Place>& places,
+                                       const std::vector<Place>& base) const {
+  Eigen::MatrixXd slopes = Eigen::MatrixXd::Zero(parts(values, places, base).size(), columns());
+  slopes.topLeftCorner(numbers(), numbers()).setIdentity();
+  Index part = numbers();
+  for (std::size_t f = 0; f < forces_.size(); ++f) {
+    const Patch& patch = *forces_[f].patch;
+    const Eigen::Matrix<double, 2, 3> along = patch.tangents(base[f]).transpose();
+    const Eigen::Vector2d way = along * (patch.at(places[f], model_->rest) - patch.at(base[f], model_->rest));
+    const Eigen::Matrix2d turned = along * patch.tangents(places[f]);
+    for (const Index variable : forces_[f].variables)
+      for (Index t = 0; variable >= 0 && t < 2; ++t, ++part) {
+        slopes(part, variable) = way[t];
+        slopes.block<1, 2>(part, numbers() + 2 * static_cast<Index>(f)) = values[variable] * turned.row(t);
+      }
+  }
+  return slopes;
+}
+
+std::vector<Actuation> Variables::part_changes(const std::vector<Place>& base) const {
   const Actuation none = Actuation::Zero(static_cast<Index>(model_->actuators.size()));
-  std::vector<Actuation> changes(static_cast<std::size_t>(columns()), none);
+  std::vector<Actuation> changes(static_cast<std::size_t>(numbers()), none);
   for (Index i = 0; i < numbers(); ++i)
     if (const Variable& variable = variables_[static_cast<std::size_t>(i)]; variable.force < 0)
       changes[static_cast<std::size_t>(i)][variable.actuator] = 1;
   for (std::size_t f = 0; f < forces_.size(); ++f) {
     const FreeForce& force = forces_[f];
-    const Patch::Shares at = force.patch->shares(places[f]);
-    std::vector<Actuation> along = changes_at(f, places[f]);
+    const Patch::Shares at = force.patch->shares(base[f]);
+    std::vector<Actuation> along = changes_at(f, base[f]);
     std::size_t next = 0;
     for (Index axis = 0; axis < 3; ++axis) {
       const Index variable = force.variables[static_cast<std::size_t>(axis)];
       if (variable < 0) continue;
       changes[static_cast<std::size_t>(variable)] = std::move(along[next++]);
-      for (Index t = 0; t < 2; ++t)
+      for (Index t = 0; t < 2; ++t) {
+        Actuation& change = changes.emplace_back(none);
         for (std::size_t i = 0; i < at.nodes.size(); ++i)
-          changes[static_cast<std::size_t>(numbers() + t) + 2 * f][force.first_command + 3 * at.nodes[i] + axis] =
-              values[variable] * at.slopes(static_cast<Index>(i), t);
+          change[force.first_command + 3 * at.nodes[i] + axis] = at.slopes(static_cast<Index>(i), t);
+      }
     }
   }
   return changes;

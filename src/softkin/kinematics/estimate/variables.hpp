@@ -38,8 +38,16 @@ class Variables {
   /// Of the extended robot. commands: of the robot
   [[nodiscard]] Actuation actuation(const Actuation& commands, const Eigen::VectorXd& values,
                                     const std::vector<Place>& places) const;
-  /// How it changes with each column.
-  [[nodiscard]] std::vector<Actuation> changes(const Eigen::VectorXd& values, const std::vector<Place>& places) const;
+  /// What it is of near some places, `base`, to first order in the way from them: a sum of parts, which are the
+  /// numbers, and of each component of a force of unknown place its products with both tangents' ways. So it is linear
+  /// in the force wherever that acts.
+  [[nodiscard]] Eigen::VectorXd parts(const Eigen::VectorXd& values, const std::vector<Place>& places,
+                                      const std::vector<Place>& base) const;
+  /// Derivatives of the parts by the columns.
+  [[nodiscard]] Eigen::MatrixXd part_slopes(const Eigen::VectorXd& values, const std::vector<Place>& places,
+                                            const std::vector<Place>& base) const;
+  /// How it changes with each part.
+  [[nodiscard]] std::vector<Actuation> part_changes(const std::vector<Place>& base) const;
   /// By a force at some place of a patch, along the axes that are told.
   [[nodiscard]] std::vector<Actuation> changes_at(std::size_t force, const Place& place) const;
 

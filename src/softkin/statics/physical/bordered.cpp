@@ -36,8 +36,34 @@ void Bordered::multiply(const Columns& columns, Columns& product) {
   if (compliance_.size() > 0) product.multipliers -= compliance_.asDiagonal() * columns.multipliers;
 }
 
+/// Columns gain from each other's directions, but each is made orthogonal to all: many are solved in blocks.
 linear::Remainder Bordered::solve(const Columns& right, double accuracy, int rounds, Columns& found,
                                   const Columns* guess) {
+  constexpr Index most = 16;
+  const auto all = static_cast<Index>(right.moves.cols());
+  if (all <= most) return solve_block(right, accuracy, rounds, found, guess);
+  const auto block = [](const Columns& of, Index first, Index count) {
+    return Columns{of.moves.middleCols(first, count), of.multipliers.middleCols(first, count)};
+  };
+  found = {Eigen::MatrixXd(right.moves.rows(), all), Eigen::MatrixXd(right.multipliers.rows(), all)};
+  linear::Remainder worst;
+  for (Index first = 0; first < all; first += most) {
+    const Index count = std::min(most, all - first);
+    Columns part;
+    const Columns begun = guess != nullptr ? block(*guess, first, count) : Columns{};
+    const linear::Remainder remainder =
+        solve_block(block(right, first, count), accuracy, rounds, part, guess != nullptr ? &begun : nullptr);
+    if (part.moves.cols() != count) return remainder;
+    found.moves.middleCols(first, count) = part.moves;
+    found.multipliers.middleCols(first, count) = part.multipliers;
+    if (!(remainder.left <= worst.left)) worst.left = remainder.left;  // also where it is not a number
+    if (!(remainder.apart <= worst.apart)) worst.apart = remainder.apart;
+  }
+  return worst;
+}
+
+linear::Remainder Bordered::solve_block(const Columns& right, double accuracy, int rounds, Columns& found,
+                                        const Columns* guess) {
   constexpr linear::Remainder failed{1, 1};
   const Index size = static_cast<Index>(slopes_.rows()), count = static_cast<Index>(slopes_.cols());
   if (count > 0 && saddle_.schur().rank() < count) return failed;
@@ -78,7 +104,7 @@ linear::Remainder Bordered::solve(const Columns& right, double accuracy, int rou
     known = std::numeric_limits<double>::infinity();
     for (Eigen::Index i = 0; i < left.cols(); ++i)
       if (!left.col(i).isZero(0)) known = std::min(known, all.col(i).norm() / left.col(i).norm());
-    if (!(known > 1)) return solve(right, accuracy, rounds, found);
+    if (!(known > 1)) return solve_block(right, accuracy, rounds, found, nullptr);
   }
   linear::Remainder remainder = linear::conjugate_residuals(product, accuracy * known, rounds, left, x);
   remainder.left /= known;

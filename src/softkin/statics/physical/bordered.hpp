@@ -38,6 +38,8 @@ class Bordered {
                          Eigen::VectorXd& change);
 
  private:
+  linear::Remainder solve_block(const Columns& right, double accuracy, int rounds, Columns& found,
+                                const Columns* guess);
   void precondition(Columns& columns);
   void multiply(const Columns& columns, Columns& product);
   [[nodiscard]] const Eigen::MatrixXd& pulls() const { return pulls_.cols() > 0 ? pulls_ : slopes_; }

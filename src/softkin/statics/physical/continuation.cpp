@@ -109,7 +109,8 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
   bool led = false;
   const auto prediction = [&] {
     led = whole && !led && !system_.contact() &&
-          (follow_foreseen(system_, here, there, active_, work_, team_, trial) ||
+          (follow_foretold(here, there, work_, trial) ||
+           follow_foreseen(system_, here, there, active_, work_, team_, trial) ||
            work_.trail.lead(here, there, active_, tolerance_mm_, trial));
     if (led) {
       system_.placement().hold(there, trial.positions);

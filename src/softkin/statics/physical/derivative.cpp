@@ -168,6 +168,10 @@ Points Derivative::ask_along(const Iterate& at, const Demand& demand, Index colu
   Points sum = pulled, way = pulled;
   for (Index a = 0; a < system_.actuators(); ++a) {
     if (change[a] == 0 || system_.measures().constrains(a)) continue;
+    if (system_.model().actuators[static_cast<std::size_t>(a)].kind == ActuatorKind::force) {
+      system_.surroundings().add_force(a, change[a], sum);  // of hundreds where a force may act anywhere
+      continue;
+    }
     system_.command_force(at, demand, balance_, a, work_, force, moves, team_);
     sum += change[a] * force;
     if (!moves.isZero(0)) way += change[a] * moves;
@@ -203,6 +207,17 @@ ParameterSensitivity Derivative::of(const Iterate& at, const Demand& demand, con
             changes[static_cast<std::size_t>(p)][a] * system_.measures().rate(a) / system_.measures().unit(a);
   }
   return result;
+}
+
+std::vector<Points> Derivative::under(const Iterate& at, const Demand& demand, const std::vector<Points>& forces) {
+  hold(at, demand);
+  make_room(static_cast<Index>(forces.size()));
+  for (std::size_t p = 0; p < forces.size(); ++p)
+    ask(at, static_cast<Index>(p), -forces[p], Points::Zero(at.positions.rows(), 3));
+  std::vector<Points> found;
+  if (forces.empty() || !find(at, demand)) return found;
+  for (std::size_t p = 0; p < forces.size(); ++p) found.push_back(positions(at, static_cast<Index>(p)));
+  return found;
 }
 
 namespace {
@@ -295,6 +310,20 @@ ParameterSensitivity Equilibria::sensitivity(const State& state, const std::vect
                                    .of(system_.iterate(*at), {at->actuation, at->share}, changes, reactions);
   for (Points& moves : found.positions) drop_vertices(moves);
   for (Points& forces : found.reactions) drop_vertices(forces);
+  return found;
+}
+
+std::vector<Points> Equilibria::moves_under(const State& state, const std::vector<Points>& forces, bool reuse_factor,
+                                            double accuracy, Team& team) const {
+  const Inside at(*this, state, team);
+  Lease lease(*this, at->positions, reuse_factor);
+  system_.set_time(at->history, at->elapsed_s, lease.work(), team);
+  const Points none = Points::Zero(at->positions.rows() - state.positions.rows(), 3);  // of what is no vertex
+  std::vector<Points> all;
+  for (const Points& force : forces) (all.emplace_back(at->positions.rows(), 3)) << force, none;
+  std::vector<Points> found =
+      Derivative(system_, lease.work(), accuracy, team).under(system_.iterate(*at), {at->actuation, at->share}, all);
+  for (Points& moves : found) drop_vertices(moves);
   return found;
 }
 

@@ -27,6 +27,8 @@ class Derivative {
   /// Along some changes of the commands.
   [[nodiscard]] ParameterSensitivity of(const Iterate& at, const Demand& demand, const std::vector<Actuation>& changes,
                                         bool reactions);
+  /// Moves under dead forces on the vertices; none where there is no solution.
+  [[nodiscard]] std::vector<Points> under(const Iterate& at, const Demand& demand, const std::vector<Points>& forces);
   /// By numbers of the robot: F and T are what the equations miss in the shape with more and less of them, over the
   /// difference. history, elapsed_s: of the equilibrium. reactions: are those of supports asked for
   [[nodiscard]] ParameterSensitivity of(const Iterate& at, const Demand& demand,

@@ -52,8 +52,15 @@ class Equilibria {
   [[nodiscard]] ParameterSensitivity sensitivity(const State& at, const std::vector<Actuation>& changes,
                                                  bool reuse_factor, double accuracy, bool reactions, Team& team) const;
 
+  /// See Statics::reciprocal_moves.
+  [[nodiscard]] std::vector<Points> moves_under(const State& at, const std::vector<Points>& forces, bool reuse_factor,
+                                                double accuracy, Team& team) const;
+
   /// See Statics::foresee.
   bool foresee(const Actuation& actuation, const State& at, Points& positions, Team& team) const;
+
+  /// See Statics::foretell.
+  bool foretell(const State& at, State there) const;
 
   /// Adds stress and reactions of an equilibrium; see Statics::measured.
   void measure(const State& at, ElementDeformation& out, Team& team) const;

@@ -26,6 +26,7 @@ class Equilibria::Lease {
     if (reuse && is_at(*work_, start)) return;
     work_->home.resize(0, 3);
     work_->tangents.at.resize(0, 3);
+    work_->foretold.reset();
     work_->saddle.factor().forget();
   }
   /// What an exception left half done is not used again.

@@ -1,6 +1,7 @@
 #include <softkin/statics/physical/bordered.hpp>
 #include <softkin/statics/physical/contact_steps.hpp>
 #include <softkin/statics/physical/prediction.hpp>
+#include <utility>
 
 namespace softkin::physical {
 
@@ -179,6 +180,16 @@ bool follow_foreseen(const System& system, const Demand& here, const Demand& the
   at = slopes.foreseen;
   system.advance(tangent.step, 1, work, at.positions, team, &there);
   follow(tangent, 1, system, there, active, at.multipliers);
+  return true;
+}
+
+bool follow_foretold(const Demand& here, const Demand& there, Workspace& work, Iterate& at) {
+  if (!work.foretold) return false;
+  const State foretold = *std::exchange(work.foretold, std::nullopt);
+  if (foretold.actuation != there.actuation || here.share != there.share || here.fading != 0 || there.fading != 0)
+    return false;
+  at.positions = foretold.positions;
+  at.multipliers = foretold.multipliers;
   return true;
 }
 

@@ -32,6 +32,9 @@ bool foresee(const System& system, const Demand& here, const Demand& there, Work
 bool follow_foreseen(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
                      Workspace& work, Team& team, Iterate& at);
 
+/// Moves `at` to where the caller foretold the equilibrium of a demand. False where nothing was.
+bool follow_foretold(const Demand& here, const Demand& there, Workspace& work, Iterate& at);
+
 /// The stiffness at an equilibrium, for predictions of those around it.
 class Predictor {
  public:

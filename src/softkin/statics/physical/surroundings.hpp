@@ -31,6 +31,10 @@ class Surroundings : public Term {
   [[nodiscard]] bool holds(Index command) const {
     return model_.actuators[static_cast<std::size_t>(command)].kind == ActuatorKind::hold;
   }
+  /// What a command of a force adds to the gradient, linear in it [N].
+  void add_force(Index command, double newtons, Points& gradient) const {
+    add_force(model_.actuators[static_cast<std::size_t>(command)], newtons, gradient);
+  }
   /// To first order, from the first demand on.
   void add_change(const Demand& from, const Demand& to, const Points& positions, Scratch& scratch, Points& force,
                   Team& team) const override;

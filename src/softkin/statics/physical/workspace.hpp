@@ -44,9 +44,10 @@ struct Workspace {
   };
   std::optional<Softest> softest;  // of the factorisation, where it was asked for
 
-  Points home;      // equilibrium at which the last solve ended, and near which it factorised
-  Trail trail;      // that led there
-  Slopes tangents;  // of an equilibrium
+  Points home;                    // equilibrium at which the last solve ended, and near which it factorised
+  Trail trail;                    // that led there
+  Slopes tangents;                // of an equilibrium
+  std::optional<State> foretold;  // where the caller has the next solve from home begin, multipliers in internal units
 };
 
 }  // namespace softkin::physical
