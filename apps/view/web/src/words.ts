@@ -19,5 +19,6 @@ export const measured = '× rest';
 
 export function loadWords({kind, load_unit: unit}: Actuator): string {
   if (unit === measured) return kind === 'dea' ? 'area' : 'volume';
+  if (unit === 'mL') return 'volume';  // of a chamber that is flat at rest
   return {cable: 'tension', dea: 'voltage'}[kind as string] ?? 'pressure';
 }
