@@ -62,7 +62,7 @@ struct CellGrid {
 /// several dimensions, those of the highest have that name and the others "..._2d", "_1d", "_0d". Labels with more
 /// than 1000 distinct values and no names are ids of cells, not regions, and are left out.
 ///
-/// throws  InvalidInput at origin where there is no tetrahedron, no wedge and no triangle, or orders are mixed; at the label's
+/// throws  InvalidInput at origin where there is no tetrahedron, wedge or triangle, or orders are mixed; at the label's
 ///         origin where a value has no name or two regions have the same name
 [[nodiscard]] Mesh mesh_of(const CellGrid& grid, const Origin& origin);
 

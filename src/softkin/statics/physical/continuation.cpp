@@ -40,7 +40,7 @@ constexpr double most_correction = 0.5, least_snap = 0.01;
 constexpr double least_jump = 0.9, finest = 0.02;
 /// A longer step that inverts an element is made shorter: laws that have an energy for it have a mirrored equilibrium.
 constexpr double most_inverting = 0.01;
-/// How smoothly sheets that were flat wrinkle at last, and from one solve to the next; and how pressures fall from one to
+/// How smoothly sheets that were flat wrinkle at last, and from one solve to the next; how pressures fall from one to
 /// the next.
 constexpr double narrowest_barrier = 1e-11, narrower = 0.1, fall = 0.2;
 /// Share of normal forces whose friction gives way, from which on it is told where the way ends.
