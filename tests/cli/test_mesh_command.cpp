@@ -60,6 +60,22 @@ TEST(MeshInfo, MeasuresCube) {
 }
 
 /// Of a rod of twelve corners and 10 mm radius: what `curve` would give, what a scene's gives, and a mesh's own edges.
+TEST(MeshInfo, TellsOfSurfaces) {
+  const TemporaryFolder folder;
+  const std::string triangle =
+      folder.write("film.msh",
+                   "$MeshFormat\n2.2 0 8\n$EndMeshFormat\n$Nodes\n3\n1 0 0 0\n2 3 0 0\n3 0 4 0\n$EndNodes\n"
+                   "$Elements\n1\n1 2 2 0 1 1 2 3\n$EndElements\n");
+  const json info = run_json({"mesh", "info", triangle});
+  EXPECT_EQ(info["tetrahedra"], 0);
+  EXPECT_EQ(info["surface_cells"], json({{"triangles", 1}, {"quads", 0}}));
+  EXPECT_EQ(info["size_mm"], json({3.0, 4.0, 0.0}));
+  EXPECT_EQ(info["edge_lengths_mm"], json({{"min", 3.0}, {"median", 4.0}, {"max", 5.0}}));
+  const std::string copy = folder / "film.vtu";
+  EXPECT_EQ(run_program({"mesh", "convert", triangle, copy}).exit_code, 0);
+  EXPECT_EQ(run_json({"mesh", "info", copy})["surface_cells"]["triangles"], 1);
+}
+
 TEST(MeshInfo, MeasuresWithCurvedEdges) {
   const TemporaryFolder folder;
   const Mesh rod = rod_mesh(12, 1, 5, 10, 40);

@@ -11,11 +11,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Contact is physical, and materials without a shape ratio are.
+/// Contact is physical, and materials without a shape ratio are, and robots of layers alone.
 bool can_be_of_target_shapes(const fs::path& scene) {
   const RobotSpec spec = read_scene(scene);
-  return !spec.contact && std::all_of(spec.materials.begin(), spec.materials.end(),
-                                      [](const MaterialSpec& material) { return material.shape_ratio.has_value(); });
+  return !spec.contact && !spec.materials.empty() &&
+         std::all_of(spec.materials.begin(), spec.materials.end(),
+                     [](const MaterialSpec& material) { return material.shape_ratio.has_value(); });
 }
 
 std::vector<fs::path> scenes() {

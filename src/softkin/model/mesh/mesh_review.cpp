@@ -36,8 +36,11 @@ double volume(const Points& vertices, const Element& element) {
   return std::abs(signed_volume(vertices, element));
 }
 
-/// The value below which a share of the values lies, by nearest rank; values are sorted.
+constexpr int triangle_edges[3][2] = {{0, 1}, {1, 2}, {2, 0}};
+
+/// The value below which a share of the values lies, by nearest rank; values are sorted. Of none 0.
 double percentile(const std::vector<double>& values, double share) {
+  if (values.empty()) return 0;
   const double rank = std::ceil(share * static_cast<double>(values.size()));
   return values[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
 }
@@ -52,6 +55,7 @@ std::vector<double> edge_lengths(const Mesh& mesh) {
   std::vector<Edge> edges;
   add_edges(mesh.tetrahedra, tetrahedron_edges, edges);
   add_edges(mesh.prisms, prism_edges, edges);
+  if (edges.empty()) add_edges(mesh.triangles, triangle_edges, edges);
   sort_unique(edges);
   std::vector<double> lengths;
   lengths.reserve(edges.size());
@@ -99,6 +103,9 @@ void measure_box(const Mesh& mesh, const MeshCheck& check, MeshMeasures& measure
   Eigen::AlignedBox3d box;
   for (const auto& part : check.parts)
     for (const Index v : part) box.extend(Vec3(mesh.vertices.row(v).transpose()));
+  if (check.parts.empty())  // sheets without elements
+    for (const Triangle& t : mesh.triangles)
+      for (const Index v : t) box.extend(Vec3(mesh.vertices.row(v).transpose()));
   measures.low = box.min();
   measures.high = box.max();
 }
