@@ -14,8 +14,8 @@ constexpr double smooth = 50, widest_barrier = 1e-4;
 /// By which pressures are to stretch the sheets at first: below it they are too stiff in their plane for their loads.
 constexpr double least_strain = 1e-3;
 /// Of the first residual, with which its equations are solved.
-constexpr double accuracy = 1e-3;
-constexpr int most_rounds = 2000;
+constexpr double begin_accuracy = 1e-3;
+constexpr int begin_rounds = 2000;
 
 /// What pushes: loads and what chambers are filled with, whatever that takes.
 Eigen::VectorXd push_of(const System& system, const Demand& there, const std::vector<bool>& active, const Iterate& at,
@@ -46,8 +46,8 @@ class Drum {
     left = kept(left);
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(left.size()), along = left;
     double before = left.squaredNorm();
-    const double end = accuracy * accuracy * before;
-    for (int round = 0; round < most_rounds && before > end; ++round) {
+    const double end = begin_accuracy * begin_accuracy * before;
+    for (int round = 0; round < begin_rounds && before > end; ++round) {
       const Eigen::VectorXd product = stiffness(along);
       const double curvature = along.dot(product);
       if (!(curvature > 0)) break;
