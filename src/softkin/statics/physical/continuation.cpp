@@ -477,6 +477,7 @@ Status Continuation::limit(double done, const std::string& why, const Iterate& a
   tell_balance();
   report_.reached = whole(done);
   report_.remark = why + pull_in_text(system_.model(), way_.from, between(way_.from, way_.to, done), at.positions);
+  if (system_.limp()) report_.remark += "; sheets that nothing keeps taut have no shape of their own";
   const double slipping = slipping_share(system_, at, work_, team_);
   if (slipping >= worth_telling)
     report_.remark += "; there " + number(100 * slipping, 3) + " % of what rubs slips, or nearly";
