@@ -55,4 +55,7 @@ struct Layer {
   std::vector<CavityFace> faces;   // of the mesh, for pictures; none where elements carry it along
 };
 
+/// Per vertex: is it of an element, edge nodes too. Sheets beside the body have others.
+[[nodiscard]] std::vector<bool> vertices_of_elements(const Model& model);
+
 }  // namespace softkin

@@ -179,6 +179,18 @@ std::vector<Index> nodes_of(const CavityFace& face) {
   return nodes;
 }
 
+std::vector<bool> vertices_of_elements(const Model& model) {
+  std::vector<bool> of_element(static_cast<std::size_t>(model.rest.rows()));
+  const auto mark = [&](const auto& elements) {
+    for (const auto& element : elements)
+      for (const Index v : element) of_element[static_cast<std::size_t>(v)] = true;
+  };
+  mark(model.tetrahedra);
+  mark(model.edge_nodes);
+  mark(model.prisms);
+  return of_element;
+}
+
 double enclosed_volume(const Points& positions, const std::vector<CavityFace>& faces) {
   if (faces.empty()) return 0;
   // relative to a point of the boundary: far from the origin the terms would cancel

@@ -10,11 +10,7 @@ namespace {
 
 /// Faces of layers some vertex of which is of no element, each once.
 std::vector<Triangle> sheets_of(const Model& model) {
-  std::vector<bool> of_element(static_cast<std::size_t>(model.rest.rows()));
-  for (const Tetrahedron& t : model.tetrahedra)
-    for (const Index v : t) of_element[static_cast<std::size_t>(v)] = true;
-  for (const Prism& p : model.prisms)
-    for (const Index v : p) of_element[static_cast<std::size_t>(v)] = true;
+  const std::vector<bool> of_element = vertices_of_elements(model);
   std::vector<Triangle> sheets;
   std::set<Triangle> known;
   for (const auto& layer : model.layers)

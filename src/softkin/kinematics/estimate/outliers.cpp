@@ -41,22 +41,33 @@ std::vector<Index> read_of(const ReadingGroup& group, const Eigen::VectorXd& wei
   return read;
 }
 
+/// Of the readings of a group, in their deviations.
+struct Weighted {
+  Eigen::MatrixXd slopes;
+  Eigen::VectorXd off;  // from the fit
+};
+
+Weighted weighted(const Fit& fit, const ReadingGroup& group, const Eigen::VectorXd& values,
+                  const Eigen::VectorXd& weights) {
+  const std::vector<Index> read = read_of(group, weights);
+  const auto count = static_cast<Index>(read.size());
+  Weighted of{Eigen::MatrixXd(count, fit.slopes.cols()), Eigen::VectorXd(count)};
+  for (Index i = 0; i < count; ++i) {
+    const Index r = read[static_cast<std::size_t>(i)];
+    of.slopes.row(i) = std::sqrt(weights[r]) * fit.slopes.row(r);
+    of.off[i] = std::sqrt(weights[r]) * (fit.told.computed[r] - values[r]);
+  }
+  return of;
+}
+
 Judgement judge(const Fit& fit, const std::vector<ReadingGroup>& groups, const Eigen::VectorXd& values,
                 const Eigen::VectorXd& weights) {
-  const Eigen::MatrixXd& slopes = fit.slopes;
   const CholeskyFactor factor(fit.normal.matrix);
   Judgement judgement;
   double chi_square = 0;
   for (const ReadingGroup& group : groups) {
-    const std::vector<Index> read = read_of(group, weights);
-    const auto count = static_cast<Index>(read.size());
-    Eigen::MatrixXd own(count, slopes.cols());
-    Eigen::VectorXd off(count);
-    for (Index i = 0; i < count; ++i) {
-      const Index r = read[static_cast<std::size_t>(i)];
-      own.row(i) = std::sqrt(weights[r]) * slopes.row(r);
-      off[i] = std::sqrt(weights[r]) * (fit.told.computed[r] - values[r]);
-    }
+    const auto [own, off] = weighted(fit, group, values, weights);
+    const auto count = static_cast<Index>(off.size());
     const Eigen::MatrixXd told = own * factor.solve(Eigen::MatrixXd(own.transpose()));
     const Eigen::MatrixXd left = (1 + least_variance) * Eigen::MatrixXd::Identity(count, count) - told;
     chi_square += off.squaredNorm();
@@ -71,15 +82,8 @@ Judgement judge(const Fit& fit, const std::vector<ReadingGroup>& groups, const E
 /// Does a fit agree with a group that it was not made of?
 bool agrees_with(const Fit& fit, const ReadingGroup& group, const Eigen::VectorXd& values,
                  const Eigen::VectorXd& weights) {
-  const std::vector<Index> read = read_of(group, weights);
-  const auto count = static_cast<Index>(read.size());
-  Eigen::MatrixXd own(count, fit.slopes.cols());
-  Eigen::VectorXd off(count);
-  for (Index i = 0; i < count; ++i) {
-    const Index r = read[static_cast<std::size_t>(i)];
-    own.row(i) = std::sqrt(weights[r]) * fit.slopes.row(r);
-    off[i] = std::sqrt(weights[r]) * (fit.told.computed[r] - values[r]);
-  }
+  const auto [own, off] = weighted(fit, group, values, weights);
+  const auto count = static_cast<Index>(off.size());
   const CholeskyFactor factor(fit.normal.matrix);
   const Eigen::MatrixXd spread =
       Eigen::MatrixXd::Identity(count, count) + own * factor.solve(Eigen::MatrixXd(own.transpose()));

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <softkin/model/compile/parts.hpp>
+#include <softkin/model/layer.hpp>
 #include <softkin/model/mesh/quadratic_elements.hpp>
 #include <softkin/model/mesh/surface_tree.hpp>
 
@@ -153,13 +154,7 @@ void take_edge_nodes(const Compilation& c, const std::vector<Tetrahedron>& eleme
 
 void find_used_vertices(Compilation& c) {
   Model& model = c.model;
-  model.used.assign(static_cast<std::size_t>(model.rest.rows()), false);
-  for (const Tetrahedron& t : model.tetrahedra)
-    for (const Index v : t) model.used[v] = true;
-  for (const EdgeNodes& nodes : model.edge_nodes)
-    for (const Index v : nodes) model.used[v] = true;
-  for (const Prism& p : model.prisms)
-    for (const Index v : p) model.used[v] = true;
+  model.used = vertices_of_elements(model);
   use_sheets(c);
   Bounds bounds;
   model.fixed.assign(model.used.size(), {false, false, false});

@@ -105,13 +105,7 @@ Layers::Layers(const Model& model) : model_(model) {
     add_membrane(*layer);
     add_bending(*layer);
   }
-  std::vector<bool> of_element(static_cast<std::size_t>(model.rest.rows()));
-  for (const Tetrahedron& t : model.tetrahedra)
-    for (const Index v : t) of_element[static_cast<std::size_t>(v)] = true;
-  for (const EdgeNodes& nodes : model.edge_nodes)
-    for (const Index v : nodes) of_element[static_cast<std::size_t>(v)] = true;
-  for (const Prism& p : model.prisms)
-    for (const Index v : p) of_element[static_cast<std::size_t>(v)] = true;
+  const std::vector<bool> of_element = vertices_of_elements(model);
   for (const Face& face : faces_)
     std::copy_if(face.vertices.begin(), face.vertices.end(), std::back_inserter(alone_),
                  [&](Index v) { return !of_element[static_cast<std::size_t>(v)]; });

@@ -92,7 +92,6 @@ class Drum {
 
 std::optional<Swelling> swell(const System& system, const Demand& there, const std::vector<bool>& active, Iterate& at,
                               Workspace& work, Team& team) {
-  if (!system.limp() || !system.layers()->flat(at.positions)) return std::nullopt;
   Iterate begin = at;
   for (Index a = 0; a < system.actuators(); ++a)
     if (!active[static_cast<std::size_t>(a)] && system.measures().given_load(a))

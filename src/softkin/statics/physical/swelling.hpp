@@ -17,8 +17,8 @@ struct Swelling {
 /// says, which has one answer; scaled so that it stretches them by some percent.
 ///
 /// active   as in System::evaluate()
-/// at       becomes that shape, its multipliers those that are given
-/// returns  none, and leaves the shape, where it is another one, or nothing loads it
+/// at       of limp sheets that are flat; becomes that shape, its multipliers those that are given
+/// returns  none, and leaves the shape, where nothing loads it
 [[nodiscard]] std::optional<Swelling> swell(const System& system, const Demand& there, const std::vector<bool>& active,
                                             Iterate& at, Workspace& work, Team& team);
 
