@@ -11,6 +11,7 @@
 #include <softkin/core/dense.hpp>
 #include <softkin/kinematics/estimate/problem.hpp>
 #include <softkin/kinematics/estimator.hpp>
+#include <softkin/model/names.hpp>
 
 #include "command_line.hpp"
 #include "machine.hpp"
@@ -30,7 +31,7 @@ struct Options {
   unsigned seed = 1;
   double fade_s = 0;
   int places = 80, starts = 3;
-  bool quadratic = false, volume_only = false;
+  bool verbose = false, quadratic = false, volume_only = false;
   int threads = 1;
 };
 
@@ -222,6 +223,23 @@ void run_draws(const Model& model, const Options& options) {
               draws.without_equilibrium());
 }
 
+/// A line of what was drawn and told.
+void tell_swap(int draw, const Truth& truth, const std::vector<std::size_t>& wrong, const Estimate& told) {
+  const auto list = [](const std::vector<std::size_t>& groups) {
+    std::string text;
+    for (const std::size_t g : groups) text += std::to_string(g + 1);
+    return text.empty() ? std::string("none") : text;
+  };
+  const Vec3 off = Vec3(told.numbers[0].value, told.numbers[1].value, told.numbers[2].value) - truth.force;
+  std::printf(
+      "  %3d: %.2f kPa, (%.3f %.3f %.3f) N at (%.1f %.1f) mm; wrong %s, left out %s; %s, misfit %.1f, %.3f N off, "
+      "%d equilibria, %.2f s\n",
+      draw, truth.commands[0], truth.force[0], truth.force[1], truth.force[2], truth.place[0], truth.place[1],
+      list(wrong).c_str(), list(told.left_out).c_str(), softkin::name_of(told.status), told.misfit(), off.norm(),
+      told.equilibria, told.seconds);
+  std::fflush(stdout);
+}
+
 /// Two markers exchanged, or one that is 30 mm off.
 void run_swaps(const Model& model, const Options& options) {
   const std::vector<PoseColumn> columns = columns_of(model, false);
@@ -250,6 +268,7 @@ void run_swaps(const Model& model, const Options& options) {
       const Estimate& told = estimator.update(truth.commands, values);
       named += std::includes(told.left_out.begin(), told.left_out.end(), wrong.begin(), wrong.end());
       exact += told.left_out == wrong;
+      if (options.verbose) tell_swap(d, truth, wrong, told);
       seconds.push_back(told.seconds);
       if (told.status == Status::converged)
         force_N.push_back(
@@ -343,6 +362,7 @@ int main(int argc, char** argv) {
   app.add_option("--places", options.places, "Where a search begins to look");
   app.add_option("--starts", options.starts, "Of these that it follows");
   app.add_flag("--quadratic", options.quadratic, "Elements of order 2");
+  app.add_flag("--verbose", options.verbose, "A line for each of the swaps");
   app.add_flag("--volume-only", options.volume_only, "Read the chamber's volume at a pressure instead of markers");
   CLI11_PARSE(app, argc, argv);
   const Model model = compile(softkin::bench::touched_finger(options.quadratic));

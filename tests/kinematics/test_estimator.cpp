@@ -339,6 +339,23 @@ TEST(Estimator, NamesAndLeavesOutWrongReadings) {
   }
 }
 
+/// Two markers tell five unknowns badly: the least cost lies in a bent valley, where steps must become short gradually.
+TEST(Estimator, FitsConvergeWhereReadingsTellLittle) {
+  std::mt19937 random(11);
+  std::uniform_real_distribution<double> any{-1, 1};
+  const Model model = compile(touched_finger());
+  Estimator estimator = of_touch(model, 0.2);
+  for (int draw = 0; draw < 40; ++draw) {
+    const Vec3 force(0.3 * any(random), 0.2 * any(random), 0.3 * any(random));
+    const Touch touch = touched(force, {35 + 20 * any(random), 6 + 5 * any(random), 16}, 5 + 5 * any(random));
+    Eigen::VectorXd values = noisy(touch.readings, 0.2, random);
+    for (const Index lost : {draw % 4, (draw + 1 + draw / 4 % 3) % 4})
+      values.segment<3>(3 * lost).setConstant(std::numeric_limits<double>::quiet_NaN());
+    estimator.forget();
+    EXPECT_EQ(estimator.update(touch.commands, values).status, Status::converged) << draw;
+  }
+}
+
 /// A camera that is tilted is no wrong reading: nothing is left out, and that the readings do not fit is said.
 TEST(Estimator, SaysWhereTheModelIsWrong) {
   const Model model = compile(touched_finger());

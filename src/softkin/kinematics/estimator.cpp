@@ -123,6 +123,7 @@ Fit Estimator::Parts::fit(const Actuation& commands, const Eigen::VectorXd& valu
   Fits fits;
   fits.anew = [&](const Eigen::VectorXd& some) { return searcher.search(read(some, true)); };
   fits.forecast = [&](const Eigen::VectorXd& some) { return searcher.forecast(read(some, true)); };
+  fits.exhausted = [&] { return fitter.exhausted(); };
   fits.near = [&](const Eigen::VectorXd& some, const Fit& near, bool anew) {
     return fitter.refine(near.at, read(some, anew), near.nearby);
   };

@@ -9,6 +9,8 @@ namespace softkin::estimate {
 namespace {
 
 constexpr double first_damping = 1e-3, most_damping = 1e9;
+/// Of steps to other shapes, over what is known before.
+constexpr double first_hold = 1, most_hold = 1e9;
 /// Slopes of another shape are used while each step by them is so much shorter than the one before.
 constexpr double contraction = 0.15;
 /// Longest move of a vertex that a step foretells, over the diagonal: equilibria farther away take long to find, and
@@ -26,7 +28,7 @@ constexpr double inner_length = 0.01;
 
 /// Steps so far, and what one more would leave.
 struct Pace {
-  double damping = 0;
+  double hold = 0;
   double last = std::numeric_limits<double>::infinity();  // length of the last step by these slopes
   double rate = 1, of_length = 1;  // lengths of two steps, the next over the last, as last seen; that of the last
   double reach = 1;                // of longest_move: less where no equilibrium was found that far away
@@ -47,16 +49,16 @@ struct Pace {
     return rate * length * (fresh ? std::min(1.0, length / of_length) : 1);
   }
   void advanced(double length) {
-    last = fresh && damping > 0 ? std::numeric_limits<double>::infinity() : length;
-    damping = damping > first_damping ? damping / 16 : 0;
+    last = fresh && hold > 0 ? std::numeric_limits<double>::infinity() : length;
+    hold = hold > first_hold ? hold / 16 : 0;
     reach = std::min(1.0, 2 * reach);
     fresh = false;
   }
   /// False where that leads nowhere.
   bool shorten(bool lost, int most) {
     if (lost) return ++failures < most && (reach /= 4) > least_reach;
-    damping = damping == 0 ? first_damping : 8 * damping;
-    return damping <= most_damping;
+    hold = hold == 0 ? first_hold : 8 * hold;
+    return hold <= most_hold;
   }
 };
 
@@ -100,14 +102,16 @@ void Fitter::set_normal(Fit& fit, const Readings& readings) const {
   fit.normal = problem_.normal(fit.told, fit.slopes, readings);
 }
 
-/// Of the readings as fit.nearby has them from fit.at on; damping holds it there.
-Guess Fitter::least(const Fit& fit, const Readings& readings, double damping) const {
+/// Of the readings as fit.nearby has them from fit.at on, where it is held by so many times what is known before.
+Guess Fitter::least(const Fit& fit, const Readings& readings, double holding) const {
   Guess at{fit.at.values, fit.at.places, {}, fit.at.computed};
   const auto normal_at = [&](const Guess& guess) {
     return problem_.normal(guess, problem_.slopes(*fit.nearby, guess), readings);
   };
   Normal normal = normal_at(at);
-  const Eigen::VectorXd hold = damping * normal.matrix.diagonal();
+  const Eigen::MatrixXd directions = directions_at(problem_.variables(), fit.at.places);
+  const Eigen::MatrixXd hold = holding * (directions.transpose() * readings.known.information * directions);
+  normal.matrix += hold;
   double inner = 0;
   for (int i = 0; i < most_inner; ++i) {
     const Eigen::VectorXd step = step_of(at, normal, inner);
@@ -117,9 +121,9 @@ Guess Fitter::least(const Fit& fit, const Readings& readings, double damping) co
     problem_.follow(*fit.nearby, fit.at, next, {}, next.computed, nullptr);
     Normal there = normal_at(next);
     const Eigen::VectorXd way = problem_.way(fit.at, next);
-    there.matrix.diagonal() += hold;
-    there.gradient += hold.cwiseProduct(way);
-    there.cost += way.dot(hold.cwiseProduct(way));
+    there.matrix += hold;
+    there.gradient += hold * way;
+    there.cost += way.dot(hold * way);
     if (there.cost < normal.cost) {
       at = std::move(next);
       normal = std::move(there);
@@ -143,6 +147,10 @@ Fit Fitter::foretell(Guess from, const Readings& readings, std::shared_ptr<const
   return fit;
 }
 
+bool Fitter::exhausted() const {
+  return problem_.lost() - lost_before_ > many_failures;
+}
+
 /// A step is gone to first order alone where what that leaves, as the last steps shrank, is below the accuracy.
 Fit Fitter::refine_by(Guess from, const Readings& readings, const Start& start) const {
   Fit fit{std::move(from)};
@@ -156,12 +164,12 @@ Fit Fitter::refine_by(Guess from, const Readings& readings, const Start& start) 
     problem_.follow(*fit.nearby, fit.at, fit.at, elsewhere, fit.at.computed, nullptr);
   }
   while (true) {
-    fit.told = least(fit, readings, pace.damping);
+    fit.told = least(fit, readings, pace.hold);
     set_normal(fit, readings);
     const double length = length_of(problem_.way(fit.at, fit.told), fit.normal);
     if (!std::isfinite(length)) break;
     pace.see(length);
-    fit.converged = elsewhere.size() == 0 && pace.damping == 0 && pace.left_of(length) <= options_.accuracy;
+    fit.converged = elsewhere.size() == 0 && pace.hold == 0 && pace.left_of(length) <= options_.accuracy;
     if (fit.converged) return fit;
     if (fit.iterations >= start.most_iterations) break;
     if (!pace.fresh && elsewhere.size() == 0 && length > contraction * pace.last) {
@@ -193,8 +201,7 @@ Fit Fitter::refine_by(Guess from, const Readings& readings, const Start& start) 
       fit.nearby = nearby_of(fit.at);
       pace.renewed();
     }
-    const bool many = problem_.lost() - lost_before_ > many_failures;
-    if (!pace.shorten(!next.solved(), many ? 1 : most_failures)) break;
+    if (!pace.shorten(!next.solved(), exhausted() ? 1 : most_failures)) break;
   }
   fit.told = {fit.at.values, fit.at.places, {}, fit.at.computed};
   set_normal(fit, readings);

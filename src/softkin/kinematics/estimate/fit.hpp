@@ -45,10 +45,12 @@ class Fitter {
   /// The least cost as it is foretold, without an equilibrium.
   [[nodiscard]] Fit foretell(Guess from, const Readings& readings, std::shared_ptr<const Nearby> nearby,
                              const Actuation& before) const;
+  /// Were so many equilibria not found that fits end at the first that is not?
+  [[nodiscard]] bool exhausted() const;
 
  private:
   [[nodiscard]] Eigen::VectorXd step_of(const Guess& at, const Normal& normal, double damping) const;
-  [[nodiscard]] Guess least(const Fit& fit, const Readings& readings, double damping) const;
+  [[nodiscard]] Guess least(const Fit& fit, const Readings& readings, double holding) const;
   [[nodiscard]] Guess stepped(const Fit& fit, const Readings& readings, const Actuation& elsewhere, double reach) const;
   void set_normal(Fit& fit, const Readings& readings) const;
 

@@ -121,7 +121,7 @@ class Trials {
     std::sort(promise.begin(), promise.end());
     promise.resize(std::min(promise.size(), most_searches));
     for (const auto& [cost, out] : promise) {
-      if (take(fits_.anew(without(out)), out, true) || interrupted_) return;
+      if (take(fits_.anew(without(out)), out, true) || interrupted_ || fits_.exhausted()) return;
     }
   }
 

@@ -19,6 +19,8 @@ struct Fits {
   ToWeights foretold{};  // the same by its slopes, without an equilibrium
   /// From another fit, with what was known before that one.
   std::function<Fit(const Eigen::VectorXd& weights, const Fit& near, bool anew)> near;
+  /// Have so many equilibria not been found that no further readings are to be left out?
+  std::function<bool()> exhausted{};
   /// What a fit anew may come to, from a linear fit: a cost.
   std::function<double(const Eigen::VectorXd& weights)> forecast;
 };
