@@ -11,6 +11,8 @@
 #include <softkin/core/dense.hpp>
 #include <softkin/kinematics/estimate/problem.hpp>
 #include <softkin/kinematics/estimator.hpp>
+#include <softkin/kinematics/map_build.hpp>
+#include <softkin/kinematics/map_estimate.hpp>
 #include <softkin/model/names.hpp>
 
 #include "command_line.hpp"
@@ -24,9 +26,11 @@ using softkin::bench::finger_length;
 
 /// 90 % of a chi-square of 2 and 3 freedoms.
 constexpr double ninety_of_2 = 4.6052, ninety_of_3 = 6.2514;
+/// Of the largest force along each axis that maps are made for: under the whole one the finger has no equilibrium.
+constexpr double map_force_share = 0.2;
 
 struct Options {
-  int draws = 100, swaps = 100, updates = 300;
+  int draws = 100, swaps = 100, updates = 300, map_draws = 0;
   double noise_mm = 0.2, most_force_N = 2;
   unsigned seed = 1;
   double fade_s = 0;
@@ -346,6 +350,66 @@ void run_updates(const Model& model, const Options& options) {
   errors.print("in time");
 }
 
+/// A force of unknown size at a known place, told by a map of the finger from readings of the solver's equilibria.
+void run_map(const Options& options) {
+  RobotSpec spec = softkin::bench::touched_finger(options.quadratic);
+  const double most_N = map_force_share * options.most_force_N;
+  spec.actuators[0].low = 0;
+  spec.actuators[0].high = 20;
+  spec.forces[0].at = {Vec3(80, 7.5, 20), {}};
+  spec.forces[0].range = std::array<Vec3, 2>{Vec3::Constant(-most_N), Vec3::Constant(most_N)};
+  const Model model = compile(spec);
+  MapOptions wanted;
+  wanted.accuracy_mm = 0.1 * options.noise_mm;
+  wanted.checks = 50;
+  const MapResult made = build_map(model, wanted).value();
+  const KinematicMap map(made.data);
+  std::printf("map: %lld equilibria, markers within %.4f mm at %lld checks\n",
+              static_cast<long long>(made.data.equilibria), made.data.check.largest.head(12).maxCoeff(),
+              static_cast<long long>(made.data.check.points));
+  std::vector<MapUnknown> unknowns;
+  for (Index i = 1; i < map.inputs(); ++i) unknowns.push_back({i, 0, most_N / 2});
+  std::mt19937 random(options.seed);
+  std::normal_distribution<double> normal;
+  std::uniform_real_distribution<double> uniform(0, 1);
+  const Statics statics(model);
+  std::vector<double> force_N, deviation_N;
+  const Eigen::VectorXd deviations = Eigen::VectorXd::Constant(map.outputs(), options.noise_mm);
+  double seconds = 0;
+  int held = 0, told = 0, calls = 0, outside = 0;
+  for (int d = 0; d < options.map_draws; ++d) {
+    Actuation commands = model.rest_actuation();
+    const Vec3 force = most_N * uniform(random) * Vec3(normal(random), normal(random), normal(random)).normalized();
+    commands << 20 * uniform(random), force;
+    const Equilibrium truth = statics.solve(commands, statics.rest());
+    Eigen::VectorXd values = Eigen::VectorXd::Constant(map.outputs(), std::nan("")), begin = map.commands(commands);
+    for (Index m = 0; m < 4; ++m)
+      for (int axis = 0; axis < 3; ++axis)
+        values[3 * m + axis] = model.markers[static_cast<std::size_t>(m)].at(truth.state.positions)[axis] +
+                               options.noise_mm * normal(random);
+    begin.tail<3>().setZero();
+    const auto start = std::chrono::steady_clock::now();
+    std::optional<MapEstimate> found;
+    for (int repeated = 0; repeated < 100; ++repeated, ++calls)
+      found = estimate_by_map(map, unknowns, begin, values, deviations);
+    seconds += std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (!found || !found->converged || truth.report.status != Status::converged) {
+      ++outside;
+      continue;
+    }
+    ++told;
+    const Vec3 off = found->commands.tail<3>() - force;
+    force_N.push_back(off.norm());
+    deviation_N.push_back(std::sqrt(found->covariance.trace()));
+    held += distance2(off, found->covariance) < ninety_of_3;
+  }
+  std::printf(
+      "by a map: %.0f a second; %d of %d told; force off by %.3f N in the median, stated deviation %.3f N; ellipsoids "
+      "of 90 %% hold %.1f %%\n",
+      calls / seconds, told, told + outside, quantile(force_N, 0.5), quantile(deviation_N, 0.5),
+      100.0 * held / std::max(1, told));
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -353,6 +417,7 @@ int main(int argc, char** argv) {
   CLI::App app{"What is told of a force of unknown place on a made-up finger"};
   app.add_option("--draws", options.draws, "Forces that are drawn and told");
   app.add_option("--swaps", options.swaps, "Readings with two markers exchanged, and with one 30 mm off");
+  app.add_option("--map-draws", options.map_draws, "Forces at a known place that are told by a map");
   app.add_option("--updates", options.updates, "Updates in time");
   app.add_option("--fade", options.fade_s, "Time in which an update forgets the last one [s]; 0: each by itself");
   app.add_option("--noise", options.noise_mm, "Of markers [mm]");
@@ -368,6 +433,7 @@ int main(int argc, char** argv) {
   const Model model = compile(softkin::bench::touched_finger(options.quadratic));
   std::printf("%zu tetrahedra of order %d, %lld vertices\n", model.tetrahedra.size(), options.quadratic ? 2 : 1,
               static_cast<long long>(model.rest.rows()));
+  if (options.map_draws > 0) run_map(options);
   if (options.draws > 0) run_draws(model, options);
   if (options.updates > 1) run_updates(model, options);
   if (options.swaps > 0) run_swaps(model, options);

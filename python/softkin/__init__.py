@@ -13,7 +13,8 @@ from .estimate import Estimate, Estimator, PlannedReading, ToldNumber, ToldPlace
 from .examples import example
 from .grasp import Grasp, Pull
 from .inverse import Answer
-from .maps import KinematicMap, MapAnswer, MapCheck, MapInput, MapOutput, MapProgress, load_map
+from .map_answer import MapAnswer, MapCheck, MapEstimate, MapInput, MapOutput, MapProgress
+from .maps import KinematicMap, load_map
 from .page import PageView
 from .robot import Robot, load
 from .runs import FollowRun, PathRun, Waypoint
@@ -43,6 +44,7 @@ __all__ = [
     "MagneticLoad",
     "MapAnswer",
     "MapCheck",
+    "MapEstimate",
     "MapInput",
     "MapOutput",
     "MapProgress",

@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 import os
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from html import escape
 from pathlib import Path
-from typing import Any, Literal, NamedTuple
+from typing import Any, Literal
 from weakref import WeakKeyDictionary
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from . import _core
 from ._arrays import Floats, floats
@@ -21,147 +21,12 @@ from ._compiled import Compiled
 from ._core import InvalidInput
 from ._files import PathLike, ending
 from ._warning import warn
+from .map_answer import MapAnswer, MapCheck, MapEstimate, MapInput, MapOutput, MapProgress, markers_of
 from .solver import Solver, options_of
 
-__all__ = ["KinematicMap", "MapAnswer", "MapCheck", "MapInput", "MapOutput", "MapProgress", "load_map"]
+__all__ = ["KinematicMap", "load_map"]
 
 Numbers = ArrayLike | Mapping[str, float]
-
-
-class MapProgress(NamedTuple):
-    """What the making of a map tells while it runs."""
-
-    equilibria: int
-    checks: int
-    """solved so far"""
-    error: float
-    """of the last predictions, over the accuracy that is wanted; inf at first"""
-    doing: str
-    """'all cables taut', 'tendon2 slack', 'checking'"""
-
-
-@dataclass(frozen=True)
-class MapInput:
-    """A command that a map takes."""
-
-    name: str
-    """of the actuator"""
-    unit: str
-    """'kPa', 'N', 'mT', 'A', 'mm' or 'A m^2'; '' for a ratio to rest [-]"""
-    range: tuple[float, float]
-    rest: float
-    """where none is given"""
-
-
-@dataclass(frozen=True)
-class MapOutput:
-    """A number that a map gives."""
-
-    name: str
-    """'tip_x', 'air_pressure', 'tendon1_ratio'"""
-    unit: str
-    """'mm', 'kPa', 'N' or ''"""
-    accuracy: float
-    """that was asked for, in its unit"""
-    largest_error: float
-    """at the checks, in its unit"""
-    mean_error: float
-
-    @property
-    def column(self) -> str:
-        """Of tables: 'tip_x_mm', 'air_pressure_kPa', 'tendon1_ratio'."""
-        return f"{self.name}_{self.unit}" if self.unit else self.name
-
-
-@dataclass(frozen=True)
-class MapCheck:
-    """How far a map was from the solver at random actuations that it was not made of. Not a bound."""
-
-    points: int
-    """that were compared"""
-    outside: int
-    """of the random ones, that the map refuses or the robot has no equilibrium for"""
-    seed: int
-    shape_accuracy_mm: float
-    """that was asked for of every vertex; 0: the map has no shape"""
-    shape_largest_mm: float
-    """of any vertex at any point"""
-    shape_mean_mm: float
-    """of the farthest vertex, mean over the points"""
-    strain_largest: float
-    """of the body's least and greatest principal strain, taken from the shape"""
-
-
-@dataclass(frozen=True, eq=False)
-class MapAnswer:
-    """What a map says of commands: of one set, or of N, where every array has a row for each."""
-
-    commands: Floats
-    """(i,) or (N, i)"""
-    outputs: Floats
-    """(q,) or (N, q), in the order of the map's outputs, in their units"""
-    inside: NDArray[np.bool_]
-    """() or (all,): which of the commands that were asked for are inside the map; those are the N"""
-    jacobians: Floats | None
-    """(q, i) or (N, q, i) [unit of the output per unit of the command]; None: not asked for"""
-    of: tuple[MapOutput, ...]
-    """the map's outputs"""
-
-    @cached_property
-    def _markers(self) -> dict[str, int]:
-        return _markers(self.of)
-
-    def _marker(self, name: str) -> int:
-        place = self._markers.get(name)
-        if place is None:
-            raise InvalidInput(f"the map has no marker {name!r}, but {', '.join(map(repr, self._markers))}")
-        return place
-
-    def __getitem__(self, marker: str) -> Floats:
-        """(3,) or (N, 3) [mm]"""
-        place = self._marker(marker)
-        return self.outputs[..., place : place + 3]
-
-    @property
-    def markers(self) -> dict[str, Floats]:
-        """All of them, by name."""
-        return {name: self[name] for name in self._markers}
-
-    @property
-    def loads(self) -> dict[str, Floats]:
-        """Pressures and tensions by their columns, 'air_pressure_kPa', 'tendon1_tension_N': () or (N,) each."""
-        return self._columns("kPa", "N")
-
-    @property
-    def ratios(self) -> dict[str, Floats]:
-        """Those that actuators achieve, by their columns, 'air_ratio': () or (N,) each [-]."""
-        return self._columns("")
-
-    def _columns(self, *units: str) -> dict[str, Floats]:
-        return {output.column: self.outputs[..., q][()] for q, output in enumerate(self.of) if output.unit in units}
-
-    def jacobian(self, marker: str | None = None) -> Floats:
-        """(3, i) or (N, 3, i) of a marker by the commands [mm per unit]; None: of all outputs, (q, i) or (N, q, i).
-
-        raises  ValueError where jacobian=True was not said
-        """
-        if self.jacobians is None:
-            raise ValueError("the Jacobian was not asked for: solve(..., jacobian=True)")
-        if marker is None:
-            return self.jacobians
-        place = self._marker(marker)
-        return self.jacobians[..., place : place + 3, :]
-
-    def __repr__(self) -> str:
-        if self.outputs.ndim > 1:
-            return f"<softkin.MapAnswer to {len(self.outputs)} of {len(self.inside)} commands>"
-        places = "; ".join(f"{name} {', '.join(f'{x:.6g}' for x in at)} mm" for name, at in self.markers.items())
-        return f"<softkin.MapAnswer {places}>"
-
-
-def _markers(outputs: tuple[MapOutput, ...]) -> dict[str, int]:
-    """Where the x of each marker is."""
-    return {output.name[:-2]: q for q, output in enumerate(outputs) if output.unit == "mm" and output.name[-2:] == "_x"}
 
 
 class KinematicMap:
@@ -187,7 +52,7 @@ class KinematicMap:
 
     @property
     def markers(self) -> list[str]:
-        return list(_markers(self._outputs))
+        return list(markers_of(self._outputs))
 
     @property
     def ranges(self) -> Floats:
@@ -285,6 +150,50 @@ class KinematicMap:
             rows, outputs = rows[inside], outputs[inside]
             jacobians = None if jacobians is None else jacobians[inside]
         return MapAnswer(rows, outputs, inside, jacobians, self._outputs)
+
+    def estimate(
+        self,
+        readings: Mapping[str, float],
+        deviations: Mapping[str, float] | float,
+        unknowns: Mapping[str, tuple[float, float]],
+        commands: Numbers | None = None,
+        /,
+        **named: float,
+    ) -> MapEstimate:
+        """Commands that were not measured, such as forces, from outputs that were read: the most probable ones inside
+        their ranges, in microseconds. docs/maps.md
+
+        readings    by the columns of outputs: tip_x_mm, air_pressure_kPa; NaN: not read
+        deviations  of each, > 0, in its unit; a number: of all of them
+        unknowns    inputs to be told: mean and standard deviation before
+        commands    the others, as to `solve`; of the unknowns where the search begins, their means if they are not there
+        raises      InvalidInput naming what is not there; where the search begins outside the map
+        """
+        columns = {each.column: q for q, each in enumerate(self._outputs)}
+        values, off = np.full(len(columns), np.nan), np.ones(len(columns))
+        for name, value in readings.items():
+            if name not in columns:
+                raise InvalidInput(f"the map has no output {name!r}, but {', '.join(map(repr, columns))}")
+            values[columns[name]] = value
+            if isinstance(deviations, Mapping) and name not in deviations:
+                raise InvalidInput(f"the reading {name!r} needs a deviation")
+            off[columns[name]] = deviations[name] if isinstance(deviations, Mapping) else deviations
+        means = {name: mean for name, (mean, _) in unknowns.items()}
+        given = self._commands(commands, named if commands is not None else {**means, **named})
+        if given.ndim != 1:
+            raise ValueError(f"commands must have shape ({len(self._inputs)},), not {given.shape}: readings at a time")
+        for name in unknowns:
+            if name not in self._places:
+                raise InvalidInput(f"the map has no input {name!r}, but {', '.join(map(repr, self._places))}")
+        before = np.array([unknowns[name] for name in unknowns], dtype=np.float64).reshape(-1, 2)
+        places = [self._places[name] for name in unknowns]
+        told, covariance, computed, *rest = self._core.estimate(
+            places, np.ascontiguousarray(before[:, 0]), np.ascontiguousarray(before[:, 1]), given, values, off
+        )
+        answer = MapAnswer(told, computed, np.array(True), None, self._outputs)
+        found = {name: float(told[i]) for name, i in zip(unknowns, places, strict=True)}
+        left = dict(zip(unknowns, np.sqrt(np.diag(covariance)).tolist(), strict=True))
+        return MapEstimate(found, left, covariance, answer, *rest)
 
     def shape(self, commands: Numbers | None = None, /, **named: float) -> Floats:
         """(n, 3) the robot's vertices [mm] under one set of commands, given as to `solve`.

@@ -19,7 +19,8 @@ from ._solving import Solving
 from ._warning import SoftkinWarning
 from .estimate import Estimator
 from .grasp import AXES, Direction, Grasp, grasped
-from .maps import KinematicMap, MapProgress, check_map, made
+from .map_answer import MapProgress
+from .maps import KinematicMap, check_map, made
 from .page import DEFAULT_HEIGHT, PageView, page
 from .runs import FollowRun, PathRun, Steps, remarked, steps_of, waypoints_of
 from .session import Session

@@ -9,6 +9,7 @@
 #include <softkin/core/text.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/kinematics/map_build.hpp>
+#include <softkin/kinematics/map_estimate.hpp>
 #include <softkin/kinematics/map_robot.hpp>
 #include <softkin/runs/map_export.hpp>
 #include <softkin/runs/map_file.hpp>
@@ -185,6 +186,25 @@ TableOut shape_at(const Map& map, const VectorIn& commands) {
   return table_of<double>(points.data(), static_cast<std::size_t>(points.rows()), 3);
 }
 
+/// Commands, covariance of the unknowns by rows, outputs; chi-square, freedoms, misfit; converged.
+using EstimateOut = std::tuple<VectorOut, TableOut, VectorOut, double, double, double, bool>;
+EstimateOut estimate_at(const Map& map, const std::vector<Index>& inputs, const VectorIn& means,
+                        const VectorIn& spreads, const VectorIn& commands, const VectorIn& values,
+                        const VectorIn& deviations) {
+  std::vector<MapUnknown> unknowns;
+  for (std::size_t i = 0; i < inputs.size(); ++i) unknowns.push_back({inputs[i], means.data()[i], spreads.data()[i]});
+  const auto told = estimate_by_map(map.map, unknowns, vector_of(commands), vector_of(values), vector_of(deviations));
+  if (!told) throw InvalidInput(refusal(map, commands));
+  const maps::RowMatrix covariance = told->covariance;
+  return {vector_out(told->commands),
+          table_of<double>(covariance.data(), inputs.size(), inputs.size()),
+          vector_out(told->computed),
+          told->chi_square,
+          told->freedoms,
+          told->misfit(),
+          told->converged};
+}
+
 /// Name, unit, accuracy that was asked for, largest and mean error.
 using OutputOut = std::tuple<std::string, std::string, double, double, double>;
 std::vector<OutputOut> outputs_of(const Map& map) {
@@ -266,6 +286,8 @@ void bind_map(nb::module_& module) {
       .def("text", [](const Map& m) { return runs::map_text(m.map.data()); })
       .def("solve", &solve_rows, nb::arg("commands"), nb::arg("sloped"), nb::arg("threads"))
       .def("refusal", &refusal, nb::arg("commands"))
+      .def("estimate", &estimate_at, nb::arg("inputs"), nb::arg("means"), nb::arg("spreads"), nb::arg("commands"),
+           nb::arg("values"), nb::arg("deviations"))
       .def("shape", &shape_at, nb::arg("commands"))
       .def(
           "save_c",

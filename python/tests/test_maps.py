@@ -408,3 +408,34 @@ def test_runs_tell_of_their_map(robot: softkin.Robot, made: softkin.KinematicMap
     assert json.loads((tmp_path / "followed/report.json").read_text())["solver"]["name"] == "map"
     with pytest.raises(softkin.InvalidInput, match="cannot go on from"):
         robot.follow(targets, store=tmp_path / "followed")
+
+
+def test_estimate_tells_commands_from_outputs(made: softkin.KinematicMap) -> None:
+    rng = np.random.default_rng(3)
+    columns = [each.column for each in made.outputs if each.unit == "mm"]
+    held = 0
+    for commands in inside(made, 200):
+        answer = made.solve(commands)
+        read = {name: answer.outputs[q] for q, name in enumerate(columns)}
+        read = {name: value + 0.05 * rng.standard_normal() for name, value in read.items()}
+        told = made.estimate(read, 0.05, {"air2": (commands[1], 0.1), "air3": (1.25, 10)}, commands)
+        assert told.converged and list(told.values) == ["air2", "air3"]
+        assert told.answer.commands[0] == commands[0]
+        low, high = made.ranges[2]
+        assert low <= told.values["air3"] <= high
+        held += abs(told.values["air3"] - commands[2]) <= 1.645 * told.deviations["air3"]
+    assert 170 <= held <= 195
+    assert told.covariance.shape == (2, 2) and told.deviations["air2"] < 0.1
+    wrong = made.estimate({**read, "tip_y_mm": read["tip_y_mm"] + 100}, 0.05, {"air3": (1.25, 1)}, commands)
+    assert wrong.misfit > 5
+
+
+def test_estimate_refuses(made: softkin.KinematicMap) -> None:
+    with pytest.raises(softkin.InvalidInput, match="no output 'top_x_mm'"):
+        made.estimate({"top_x_mm": 1}, 0.1, {"air1": (1, 1)})
+    with pytest.raises(softkin.InvalidInput, match="no input 'air9'"):
+        made.estimate({"tip_x_mm": 1}, 0.1, {"air9": (1, 1)})
+    with pytest.raises(softkin.InvalidInput, match="'tip_x_mm' needs a deviation"):
+        made.estimate({"tip_x_mm": 1}, {}, {"air1": (1, 1)})
+    with pytest.raises(softkin.InvalidInput, match="outside the map"):
+        made.estimate({"tip_x_mm": 1}, 0.1, {"air1": (1.2, 1)}, air2=9)

@@ -5,6 +5,7 @@
 #include <random>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
+#include <softkin/kinematics/map_estimate.hpp>
 #include <softkin/runs/map_export.hpp>
 #include <softkin/runs/map_export_parts.hpp>
 
@@ -120,7 +121,7 @@ bool jumps(const Exported& map) {
 }
 
 struct Tally {
-  int inside = 0, outside = 0, reached = 0, not_reached = 0, amid = 0;
+  int inside = 0, outside = 0, reached = 0, not_reached = 0, amid = 0, estimated = 0;
   double worst_mm = 0, worst = 0, worst_slope = 0;  // over the outputs' scales
 };
 
@@ -168,6 +169,37 @@ void compare_ik(const Exported& map, const Eigen::VectorXd& commands, const Eige
   EXPECT_LE((beside.commands - commands).cwiseAbs().maxCoeff(), 0.03);
 }
 
+/// As estimate_by_map() has it, of all commands but the first, from outputs that are a little off.
+void compare_estimate(const Exported& map, const Eigen::VectorXd& commands, const Eigen::VectorXd& values,
+                      ProgramOutput& answers, Tally& tally) {
+  const Index inputs = map.map.inputs(), outputs = map.map.outputs();
+  const int code = static_cast<int>(answers.next());
+  const double chi_square = answers.next();
+  const Eigen::VectorXd told = answers.next(inputs), covariance = answers.next(inputs * inputs);
+  Eigen::VectorXd begin = commands, readings = values;
+  std::vector<MapUnknown> unknowns;
+  for (Index i = 1; i < inputs; ++i) {
+    const MapInput& input = map.data.inputs[static_cast<std::size_t>(i)];
+    unknowns.push_back({i, (input.low + input.high) / 2, (input.high - input.low) / 2});
+    begin[i] = unknowns.back().mean;
+  }
+  for (Index q = 0; q < outputs; ++q) readings[q] = q % 4 == 3 ? std::nan("") : values[q] + 0.01 * double(q % 3 - 1);
+  const auto own = estimate_by_map(map.map, unknowns, begin, readings, Eigen::VectorXd::Constant(outputs, 0.1));
+  EXPECT_EQ(code == 2, !own);
+  if (!own || jumps(map)) return;
+  EXPECT_EQ(code, own->converged ? 0 : 1);
+  if (code != 0 || !own->converged) return;
+  ++tally.estimated;
+  for (std::size_t u = 0; u < unknowns.size(); ++u) {
+    const Index i = unknowns[u].input;
+    const double deviation = std::sqrt(own->covariance(static_cast<Index>(u), static_cast<Index>(u)));
+    EXPECT_NEAR(told[i], own->commands[i], (map.floats ? 0.05 : 0.003) * deviation) << map.data.name;
+    // in float normal equations round what readings tell hardly
+    EXPECT_NEAR(std::sqrt(covariance[i * inputs + i]), deviation, (map.floats ? 0.5 : 0.003) * deviation);
+  }
+  EXPECT_NEAR(chi_square, own->chi_square, map.floats ? 0.05 : 0.003);
+}
+
 /// Of a map whose table is damaged: its check() notices.
 void expect_noticed(const std::string& answers) {
   ASSERT_GE(answers.size(), 2 * sizeof(double));
@@ -189,6 +221,7 @@ Tally compare(const Exported& map, ProgramOutput answers) {
     }
     compare_values(map, values, slopes, answers, tally);
     compare_ik(map, commands, values.head<3>(), ++tally.inside <= 10, answers, tally);
+    compare_estimate(map, commands, values, answers, tally);
   }
   EXPECT_EQ(answers.next(), 0) << "check()";
   EXPECT_NE(map.header.find("Tables: " + std::to_string(static_cast<int>(answers.next())) + " bytes"),
@@ -260,6 +293,7 @@ TEST(MapExportC, AnswersAsTheMapDoes) {
     EXPECT_LE(tally.worst_slope, maps[m].floats ? 1e-3 : 1e-10);
     if (!jumps(maps[m])) {
       EXPECT_LE(tally.not_reached, tally.reached / 50);
+      EXPECT_GT(tally.estimated, tally.inside / 2);
     }
   }
 }

@@ -215,8 +215,10 @@ std::string definitions(const MapData& data, const FlatMap& flat, const MapAnswe
   define("CHECKS", std::to_string(answers.commands.rows()));
   define("ROUNDING", floats ? "1e-6f" : "1e-12");
   define("SHORTEST", floats ? "1e-5f /* step, over the ranges */" : "1e-7 /* step, over the ranges */");
-  define("NOT_REACHED", "1 /* of map_ik() */");
-  define("OUTSIDE", "2 /* of map_fk() and map_ik() */");
+  define("ARRIVED", floats ? "1e-5f /* square of the last step of map_estimate(), in deviations */"
+                           : "1e-6 /* square of the last step of map_estimate(), in deviations */");
+  define("NOT_REACHED", "1 /* of map_ik() and map_estimate() */");
+  define("OUTSIDE", "2 /* of all of them */");
   text +=
       "#ifndef MAP_REACHED_MM\n#define MAP_REACHED_MM 1e-3 /* as near to its target a marker is there */\n#endif\n"
       "#ifndef MAP_STARTS\n#define MAP_STARTS 4 /* that map_ik() tries, the given one first */\n#endif\n";
@@ -229,7 +231,8 @@ std::pair<Index, Index> stack_of(const MapData& data, const FlatMap& flat, CNumb
   const Index bytes = numbers == CNumbers::floats ? 4 : 8;
   const Index fk = 2 * n * degrees_of(flat) + 2 * n + n * outputs, other = 200;  // and counters, registers
   const Index ik = fk + outputs + n * outputs + n * n + 9 * n + 3 * n * 2 + 8;
-  return {bytes * fk + other, bytes * ik + 2 * other};
+  const Index estimate = fk + outputs + n * outputs + 4 * n * n + 12 * n + 8;
+  return {bytes * fk + other, bytes * std::max(ik, estimate) + 2 * other};
 }
 
 std::string head(const MapData& data, const CTables& tables, std::size_t check_bytes, std::pair<Index, Index> stack) {
@@ -237,13 +240,17 @@ std::string head(const MapData& data, const CTables& tables, std::size_t check_b
                      "' goes: a map in closed form, exported by softkin " SOFTKIN_VERSION
                      ". C99 and C++; includes nothing.\n\n"
                      "   map_fk()     outputs and their Jacobian at commands\n" +
-                     (marker_names(data).empty() ? "" : "   map_ik()     commands that bring a marker to a target\n") +
+                     (marker_names(data).empty()
+                          ? ""
+                          : "   map_ik()     commands that bring a marker to a target\n"
+                            "   map_estimate()  commands that were not measured, from outputs that were read\n") +
                      "   map_check()  compares with answers of softkin: call it once\n\n";
   for (const std::string& line : error_lines(data)) text += "   " + commented(line) + "\n";
-  text += "   robot's fingerprint: " + commented(data.robot) + "\n\n   Tables: " + std::to_string(tables.bytes()) +
-          " bytes of flash, and " + std::to_string(check_bytes) + " where map_check() is called. Stack: about " +
-          std::to_string(stack.first) + " bytes in map_fk(), " + std::to_string(stack.second) +
-          " in map_ik(). No heap.\n   Every source file that includes this has tables of its own. */\n";
+  text +=
+      "   robot's fingerprint: " + commented(data.robot) + "\n\n   Tables: " + std::to_string(tables.bytes()) +
+      " bytes of flash, and " + std::to_string(check_bytes) + " where map_check() is called. Stack: about " +
+      std::to_string(stack.first) + " bytes in map_fk(), " + std::to_string(stack.second) +
+      " in map_ik() and map_estimate(). No heap.\n   Every source file that includes this has tables of its own. */\n";
   return text;
 }
 
@@ -266,11 +273,12 @@ std::string map_c_header(const MapData& data, CNumbers numbers) {
   const std::string slack =
       data.cables.empty() ? "\n#define map_wrong_cable(taut, circles, commands, outputs) (-1) /* it has no cables */\n"
                           : c_slack;
-  const std::string text =
-      head(data, tables, checks.bytes(), stack_of(data, flat, numbers)) + "#ifndef MAP_H\n#define MAP_H\n\n" +
-      definitions(data, flat, answers, numbers) + "\n" + tables.text() + "\n#define MAP_TABLE_BYTES (" +
-      tables.sizes() + ")\n" + replaced(c_evaluation, {{"MAP_SLACK\n", slack}}) +
-      (marker_names(data).empty() ? "" : c_inverse) + "\n" + checks.text() + c_check + "\n#endif\n";
+  const std::string text = head(data, tables, checks.bytes(), stack_of(data, flat, numbers)) +
+                           "#ifndef MAP_H\n#define MAP_H\n\n" + definitions(data, flat, answers, numbers) + "\n" +
+                           tables.text() + "\n#define MAP_TABLE_BYTES (" + tables.sizes() + ")\n" +
+                           replaced(c_evaluation, {{"MAP_SLACK\n", slack}}) +
+                           (marker_names(data).empty() ? std::string() : std::string(c_inverse) + c_estimate) + "\n" +
+                           checks.text() + c_check + "\n#endif\n";
   return replaced(text, {{code_name[0], kept(c_name(data) + "_")},
                          {code_name[1], kept(upper(c_name(data)) + "_")},
                          {kept_name[0], code_name[0]},

@@ -270,6 +270,95 @@ static inline int map_ik(const map_real target[3], int marker, map_real commands
 }
 )C";
 
+const char* const c_estimate = R"C(
+/* The normal equations of map_estimate(), a s = g, in spreads, and its sum of squares; negative: outside. */
+static inline map_real map_weigh(const map_real readings[], const map_real deviations[], const map_real means[],
+                                 const map_real spreads[], const map_real commands[], map_real a[], map_real g[],
+                                 map_real *chi_square) {
+  map_real outputs[MAP_OUTPUTS], jacobian[MAP_OUTPUTS * MAP_INPUTS], square = 0;
+  int i, j, q;
+  if (map_fk(commands, outputs, jacobian)) return -1;
+  *chi_square = 0;
+  for (i = 0; i < MAP_INPUTS; ++i) {
+    g[i] = spreads[i] > 0 ? (means[i] - commands[i]) / spreads[i] : 0;
+    square += g[i] * g[i];
+    for (j = 0; j < MAP_INPUTS; ++j) a[i * MAP_INPUTS + j] = (map_real)(i == j);
+  }
+  for (q = 0; q < MAP_OUTPUTS; ++q) {
+    map_real off;
+    if (!(deviations[q] > 0)) continue;
+    off = (readings[q] - outputs[q]) / deviations[q];
+    *chi_square += off * off;
+    for (i = 0; i < MAP_INPUTS; ++i) jacobian[q * MAP_INPUTS + i] *= spreads[i] / deviations[q];
+    for (i = 0; i < MAP_INPUTS; ++i) {
+      g[i] += off * jacobian[q * MAP_INPUTS + i];
+      for (j = 0; j < MAP_INPUTS; ++j)
+        a[i * MAP_INPUTS + j] += jacobian[q * MAP_INPUTS + i] * jacobian[q * MAP_INPUTS + j];
+    }
+  }
+  return square + *chi_square;
+}
+
+/* Commands that were not measured, such as forces, from outputs that were read: the least of the sum of
+   ((output - reading) / deviation)^2 and ((command - mean) / spread)^2, by Gauss' and Newton's method.
+   readings, deviations: MAP_OUTPUTS each; a deviation of 0: not read
+   means, spreads: MAP_INPUTS each, of what is known before; a spread of 0: the command is known
+   commands: where the search begins, and what it found
+   covariance: MAP_INPUTS rows of what is left, 0 by known commands; chi_square: of the readings; 0: not asked for
+   Returns 0; MAP_NOT_REACHED: not found in 100 steps; MAP_OUTSIDE: the given commands are outside the map. */
+static inline int map_estimate(const map_real readings[], const map_real deviations[], const map_real means[],
+                               const map_real spreads[], map_real commands[], map_real *covariance,
+                               map_real *chi_square) {
+  map_real a[MAP_INPUTS * MAP_INPUTS], g[MAP_INPUTS], chi, hold = 0;
+  map_real square = map_weigh(readings, deviations, means, spreads, commands, a, g, &chi);
+  int turn, i, j, found = 0;
+  if (!(square >= 0)) return MAP_OUTSIDE;
+  for (turn = 0; turn < 100 && !found; ++turn) {
+    map_real held[MAP_INPUTS * MAP_INPUTS], trial_a[MAP_INPUTS * MAP_INPUTS], trial_g[MAP_INPUTS], trial_chi;
+    map_real low[MAP_INPUTS], high[MAP_INPUTS], s[MAP_INPUTS], trial[MAP_INPUTS], trial_square, length = 0;
+    for (i = 0; i < MAP_INPUTS; ++i) {
+      const map_real spread = spreads[i] > 0 ? spreads[i] : 1;
+      low[i] = (map_low[i] - commands[i]) / spread;
+      high[i] = (map_high[i] - commands[i]) / spread;
+      for (j = 0; j < MAP_INPUTS; ++j) held[i * MAP_INPUTS + j] = a[i * MAP_INPUTS + j] + (i == j ? hold : 0);
+    }
+    map_step(held, g, low, high, s);
+    for (i = 0; i < MAP_INPUTS; ++i) {
+      trial[i] = commands[i] + s[i] * spreads[i];
+      trial[i] = trial[i] < map_low[i] ? map_low[i] : trial[i] > map_high[i] ? map_high[i] : trial[i];
+      for (j = 0; j < MAP_INPUTS; ++j) length += s[i] * a[i * MAP_INPUTS + j] * s[j];
+    }
+    found = length <= MAP_ARRIVED; /* held: at a kink, or an end of the map */
+    if (found) break;
+    trial_square = map_weigh(readings, deviations, means, spreads, trial, trial_a, trial_g, &trial_chi);
+    if (!(trial_square >= 0 && trial_square < square)) {
+      hold = hold > 0 ? 8 * hold : 1;
+      continue;
+    }
+    hold = hold > 1 ? hold / 16 : 0;
+    square = trial_square;
+    chi = trial_chi;
+    for (i = 0; i < MAP_INPUTS; ++i) {
+      commands[i] = trial[i];
+      g[i] = trial_g[i];
+    }
+    for (i = 0; i < MAP_INPUTS * MAP_INPUTS; ++i) a[i] = trial_a[i];
+  }
+  for (i = 0; covariance && i < MAP_INPUTS; ++i) {
+    map_real column[MAP_INPUTS];
+    int held[MAP_INPUTS];
+    for (j = 0; j < MAP_INPUTS; ++j) {
+      column[j] = (map_real)(i == j);
+      held[j] = 0;
+    }
+    map_solve(a, held, column);
+    for (j = 0; j < MAP_INPUTS; ++j) covariance[j * MAP_INPUTS + i] = spreads[i] * spreads[j] * column[j];
+  }
+  if (chi_square) *chi_square = chi;
+  return found ? 0 : MAP_NOT_REACHED;
+}
+)C";
+
 const char* const c_check = R"C(
 /* 0: at MAP_CHECKS commands outputs and slopes are those of softkin, to map_check_tolerances, and commands out of range
    are refused. Else 1 + the number of the first where something is wrong. */

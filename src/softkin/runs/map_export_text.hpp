@@ -9,6 +9,7 @@ namespace softkin::runs {
 extern const char* const c_evaluation;  // outputs and Jacobian
 extern const char* const c_slack;       // which cables hang slack
 extern const char* const c_inverse;
+extern const char* const c_estimate;  // of commands, from outputs; after c_inverse
 extern const char* const c_check;
 
 /// The code of maps that pages run: exported() of apps/view/web/src/exported_map.ts, in a variable softkinMap.
