@@ -187,13 +187,13 @@ class KinematicMap:
                 raise InvalidInput(f"the map has no input {name!r}, but {', '.join(map(repr, self._places))}")
         before = np.array([unknowns[name] for name in unknowns], dtype=np.float64).reshape(-1, 2)
         places = [self._places[name] for name in unknowns]
-        told, covariance, computed, *rest = self._core.estimate(
+        told, covariance, computed, chi_square, freedoms, misfit, converged = self._core.estimate(
             places, np.ascontiguousarray(before[:, 0]), np.ascontiguousarray(before[:, 1]), given, values, off
         )
         answer = MapAnswer(told, computed, np.array(True), None, self._outputs)
         found = {name: float(told[i]) for name, i in zip(unknowns, places, strict=True)}
         left = dict(zip(unknowns, np.sqrt(np.diag(covariance)).tolist(), strict=True))
-        return MapEstimate(found, left, covariance, answer, *rest)
+        return MapEstimate(found, left, covariance, answer, chi_square, freedoms, misfit, converged)
 
     def shape(self, commands: Numbers | None = None, /, **named: float) -> Floats:
         """(n, 3) the robot's vertices [mm] under one set of commands, given as to `solve`.

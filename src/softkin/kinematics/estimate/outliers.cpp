@@ -15,6 +15,8 @@ constexpr double least_freedoms = 0.9;
 /// Of a reading's variance, that a residual keeps however well the fit follows it.
 constexpr double least_variance = 0.01;
 
+/// How often a fit goes on that agrees but has not converged.
+constexpr int most_returns = 3;
 /// Sets of readings that are tried by a search.
 constexpr std::size_t most_searches = 8;
 /// By so many times a linear fit must become better for each group that is left out, to be tried before fits to more.
@@ -139,8 +141,11 @@ class Trials {
  private:
   /// A fit whose readings agree is taken, with what else agrees with it.
   bool take(Fit fit, Set out, bool anew) {
+    found_ = !fit.interrupted && agrees(fit, out);
+    for (int times = 0; found_ && !fit.converged && !fit.interrupted && times < most_returns; ++times)
+      fit = fits_.near(without(out), fit, anew);
     interrupted_ = fit.interrupted;
-    found_ = !interrupted_ && agrees(fit, out);
+    found_ = found_ && !interrupted_;
     if (found_) put_back(fit, out, anew);
     if (found_ || interrupted_ || (out.empty() && (!any_ || (fit.converged && !fit_.converged)))) {
       any_ = true;
@@ -164,8 +169,9 @@ class Trials {
     }
   }
 
+  /// What is not the least cost yet but agrees shows as well that the least does.
   [[nodiscard]] bool agrees(const Fit& fit, const Set& out) const {
-    if (!fit.converged) return false;
+    if (!fit.at.solved() || fit.normal.matrix.size() == 0) return false;
     const Judgement judgement = judge(fit, groups_, values_, without(out));
     return judgement.agrees() && (out.empty() || judgement.freedoms >= least_freedoms);
   }
