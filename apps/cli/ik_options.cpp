@@ -19,17 +19,20 @@ constexpr int most = 1'000'000;
 void add_goals(CLI::App& command, IkOptions& options) {
   add_repeated(command, "--target", options.targets, "M=P",
                "MARKER=X,Y,Z: where a marker is to be [mm]; a coordinate left\nempty does not count (tip=,,40); "
-               "repeatable, as the two below");
+               "repeatable, as the three below");
   add_repeated(command, "--plane", options.planes, "M=P/N",
                "MARKER=PX,PY,PZ/NX,NY,NZ: a plane for a marker to be in, by a\npoint [mm] and its normal");
   add_repeated(command, "--direction", options.directions, "A:B=D",
                "FROM:TO=X,Y,Z: where the line from one marker to another is to\npoint; its error is that of its unit "
                "vector times --lever");
+  add_repeated(command, "--press", options.presses, "N=F",
+               "NAME=FX,FY,FZ: the force that the robot is to exert on a support,\nan obstacle or a body [N]; a "
+               "component left empty does not\ncount (floor=,,-2); physical");
   add_value(command, "--lever", options.lever_mm, "MM",
             "How far away a wrong direction counts [mm] (default: as far as\nits markers are apart at rest)",
             positive_length());
   add_repeated(command, "--weight", options.weights, "M=W",
-               "MARKER=W or FROM:TO=W: weight in the sum of squares of what is\nasked of them (default: 1); "
+               "MARKER=W, FROM:TO=W or NAME=W: weight in the sum of squares of\nwhat is asked of them (default: 1); "
                "repeatable");
 }
 
@@ -48,6 +51,8 @@ void add_start(CLI::App& command, IkOptions& options) {
 void add_search(CLI::App& command, IkOptions& options) {
   const InverseOptions defaults;
   add_method(command, options, "Error of every goal at which they are reached");
+  add_value(command, "--tolerance-force", options.tolerance_force_N, "N",
+            "Error of a --press at which it is reached [N] (default: 0.001 of\nthe force)", positive_force());
   add_value(command, "--max-equilibria", options.max_equilibria, "N",
             "newton: give up after so many (default: " + std::to_string(defaults.max_equilibria) + ")",
             integer_from(1, most));
@@ -176,6 +181,22 @@ runs::NamedGoal direction_of(const Model& model, const std::string& text, std::o
   return {argument.name(), {goal}};
 }
 
+runs::NamedGoal press_of(const Model& model, const std::string& text, double tolerance_mm,
+                         std::optional<double> tolerance_N) {
+  const Argument argument(model, "--press", text, "NAME=FX,FY,FZ in N, for example floor=0,0,-2 or floor=,,-2");
+  const std::vector<std::string> names = names_of_pressed(model);
+  if (std::find(names.begin(), names.end(), argument.name()) == names.end())
+    argument.refuse("no support, obstacle or body " + excerpt(argument.name()) +
+                    (names.empty() ? "; the scene has none" : suggest_name(argument.name(), names)));
+  ForceGoal goal = force_on(model, argument.name());
+  const Coordinates components = argument.coordinates(argument.value(), true);
+  goal.force = point_of(components);
+  for (std::size_t axis = 0; axis < 3; ++axis) goal.axes[axis] = components[axis].has_value();
+  if (goal.axes == std::array<bool, 3>{}) argument.refuse("no component of it is given");
+  goal.mm_per_N = usual_mm_per_N(goal, tolerance_mm, tolerance_N);
+  return {argument.name(), {goal}};
+}
+
 void set_weight(const Model& model, const std::string& text, std::vector<runs::NamedGoal>& goals) {
   const Argument argument(model, "--weight", text, "GOAL=WEIGHT, for example tip=2 or base:tip=0.5");
   double weight = 0;
@@ -225,8 +246,12 @@ void add_options(CLI::App& command, IkOptions& options) {
 }
 
 void check_usage(const IkOptions& options) {
-  if (options.targets.empty() && options.planes.empty() && options.directions.empty())
-    throw InvalidInput("nothing to reach: ik needs a --target MARKER=X,Y,Z, a --plane or a --direction");
+  if (options.targets.empty() && options.planes.empty() && options.directions.empty() && options.presses.empty())
+    throw InvalidInput("nothing to reach: ik needs a --target MARKER=X,Y,Z, a --plane, a --direction or a --press");
+  if (!options.presses.empty() && !options.map.empty())
+    throw InvalidInput("--press is solved for: a map tells no forces, so it does not go with --map");
+  if (options.tolerance_force_N && options.presses.empty())
+    throw InvalidInput("--tolerance-force is that of a force: it needs --press");
   if (!options.workspace.empty() && !options.start.empty())
     throw InvalidInput("--workspace chooses the start: it does not go with --start");
   if (!options.start_file().empty()) {
@@ -255,6 +280,9 @@ std::vector<runs::NamedGoal> asked_goals(const Model& model, const IkOptions& op
   for (const std::string& text : options.targets) goals.push_back(target_of(model, text));
   for (const std::string& text : options.planes) goals.push_back(plane_of(model, text));
   for (const std::string& text : options.directions) goals.push_back(direction_of(model, text, options.lever_mm));
+  const double tolerance_mm = options.inverse().tolerance_mm;
+  for (const std::string& text : options.presses)
+    goals.push_back(press_of(model, text, tolerance_mm, options.tolerance_force_N));
   for (const std::string& text : options.weights) set_weight(model, text, goals);
   std::vector<Goal> plain;
   for (const runs::NamedGoal& goal : goals) plain.push_back(goal.goal);
