@@ -136,8 +136,8 @@ class Bench {
     return 0;
   }
 
-  /// Random poses that press on something: the largest component of the force is asked for, and the marker's coordinates
-  /// along the other two axes. Forward kinematics from rest tells what came of it.
+  /// Random poses that press on something: the largest component of the force is asked for, and the marker's
+  /// coordinates along the other two axes. Forward kinematics from rest tells what came of it.
   int press() {
     const ForceGoal on = force_on(model_, options_.press);
     rest_ = statics_.solve(model_.rest_actuation(), statics_.rest(), inverse_.statics).state;

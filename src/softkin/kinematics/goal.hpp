@@ -30,8 +30,8 @@ struct DirectionGoal {
   double lever_mm = 1;             // > 0; the distance at which a wrong direction counts [mm]
 };
 
-/// The robot is to exert a force on what holds it or on what it touches: on a support minus what that exerts on the robot;
-/// on an obstacle or a body what all that touches it exerts on it. Its error is that of the force times mm_per_N.
+/// The robot is to exert a force on what holds it or on what it touches: on a support minus what that exerts on the
+/// robot; on an obstacle or a body what all that touches it exerts on it. Its error is that of the force, by mm_per_N.
 struct ForceGoal {
   enum class On { support, part };
   On on = On::support;
@@ -48,8 +48,8 @@ struct Goal {
 };
 
 /// throws InvalidInput on a marker that the model does not have, a number that is not finite, an empty list, a weight
-/// or lever that is not > 0, no axis, a normal or direction of length 0, a direction from a marker to itself, a force on
-/// nothing that the robot has or may touch, or one of target shapes
+/// or lever that is not > 0, no axis, a normal or direction of length 0, a direction from a marker to itself, a force
+/// on nothing that the robot has or may touch, or one of target shapes
 void check_goals(const Model& model, const std::vector<Goal>& goals);
 
 /// Distance of each goal from being met [mm], unweighted.

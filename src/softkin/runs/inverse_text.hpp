@@ -7,8 +7,8 @@
 
 namespace softkin::runs {
 
-/// Of an answer: a line for each actuator, one for each goal of markers, and one for each force that is asked for; no rows
-/// where there is none.
+/// Of an answer: a line for each actuator, one for each goal of markers, and one for each force that is asked for; no
+/// rows where there is none.
 struct InverseTables {
   Table actuators, goals, forces;
 };
