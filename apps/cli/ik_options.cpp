@@ -134,6 +134,7 @@ void check_usage(const IkOptions& options) {
 std::vector<runs::NamedGoal> asked_goals(const Model& model, const IkOptions& options) {
   runs::GoalTexts texts = options.goals;
   texts.tolerance_mm = options.inverse().tolerance_mm;
+  texts.before_name = "--";
   return runs::asked_goals(model, texts);
 }
 

@@ -128,7 +128,7 @@ class Answer(Saving[CoreAnswer]):
         return f"<softkin.Answer {self.status}, {self._core.off} off: {commands}>"
 
 
-def counted(what: str, of: str, target: Target) -> tuple[Floats, tuple[bool, bool, bool]]:
+def counted(what: str, of: str, target: Target) -> tuple[tuple[float, float, float], tuple[bool, bool, bool]]:
     """Three numbers, zero where one does not count, and which do."""
     if len(target) != 3:
         raise ValueError(f"{what} must be three {of}, not {len(target)}")

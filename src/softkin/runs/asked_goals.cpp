@@ -79,8 +79,8 @@ class Argument {
   std::string option_, text_, form_, name_, value_;
 };
 
-NamedGoal target_of(const Model& model, const std::string& text) {
-  const Argument argument(model, "--target", text, "MARKER=X,Y,Z in mm, for example tip=100,0,50 or tip=,,50");
+NamedGoal target_of(const Model& model, const std::string& before, const std::string& text) {
+  const Argument argument(model, before + "target", text, "MARKER=X,Y,Z in mm, for example tip=100,0,50 or tip=,,50");
   PositionGoal goal;
   goal.marker = argument.marker(argument.name());
   const Coordinates coordinates = argument.coordinates(argument.value(), true);
@@ -90,8 +90,8 @@ NamedGoal target_of(const Model& model, const std::string& text) {
   return {argument.name(), {goal}};
 }
 
-NamedGoal plane_of(const Model& model, const std::string& text) {
-  const Argument argument(model, "--plane", text, "MARKER=PX,PY,PZ/NX,NY,NZ, for example tip=0,0,50/0,0,1");
+NamedGoal plane_of(const Model& model, const std::string& before, const std::string& text) {
+  const Argument argument(model, before + "plane", text, "MARKER=PX,PY,PZ/NX,NY,NZ, for example tip=0,0,50/0,0,1");
   const std::size_t slash = argument.value().find('/');
   if (slash == std::string::npos)
     argument.refuse("expected a point in mm and a normal, PX,PY,PZ/NX,NY,NZ, not " + excerpt(argument.value()));
@@ -102,8 +102,9 @@ NamedGoal plane_of(const Model& model, const std::string& text) {
   return {argument.name(), {goal}};
 }
 
-NamedGoal direction_of(const Model& model, const std::string& text, std::optional<double> lever_mm) {
-  const Argument argument(model, "--direction", text, "FROM:TO=X,Y,Z, for example base:tip=0,0,1");
+NamedGoal direction_of(const Model& model, const std::string& before, const std::string& text,
+                       std::optional<double> lever_mm) {
+  const Argument argument(model, before + "direction", text, "FROM:TO=X,Y,Z, for example base:tip=0,0,1");
   const std::size_t colon = argument.name().find(':');
   if (colon == std::string::npos) argument.refuse("expected two markers, FROM:TO=X,Y,Z");
   DirectionGoal goal;
@@ -116,9 +117,9 @@ NamedGoal direction_of(const Model& model, const std::string& text, std::optiona
   return {argument.name(), {goal}};
 }
 
-NamedGoal press_of(const Model& model, const std::string& text, double tolerance_mm,
+NamedGoal press_of(const Model& model, const std::string& before, const std::string& text, double tolerance_mm,
                    std::optional<double> tolerance_N) {
-  const Argument argument(model, "--press", text, "NAME=FX,FY,FZ in N, for example floor=0,0,-2 or floor=,,-2");
+  const Argument argument(model, before + "press", text, "NAME=FX,FY,FZ in N, for example floor=0,0,-2 or floor=,,-2");
   const std::vector<std::string> names = names_of_pressed(model);
   if (std::find(names.begin(), names.end(), argument.name()) == names.end())
     argument.refuse("no support, obstacle or body " + excerpt(argument.name()) +
@@ -132,8 +133,8 @@ NamedGoal press_of(const Model& model, const std::string& text, double tolerance
   return {argument.name(), {goal}};
 }
 
-void set_weight(const Model& model, const std::string& text, std::vector<NamedGoal>& goals) {
-  const Argument argument(model, "--weight", text, "GOAL=WEIGHT, for example tip=2 or base:tip=0.5");
+void set_weight(const Model& model, const std::string& before, const std::string& text, std::vector<NamedGoal>& goals) {
+  const Argument argument(model, before + "weight", text, "GOAL=WEIGHT, for example tip=2 or base:tip=0.5");
   double weight = 0;
   if (!parse_real(argument.value(), weight) || !(weight > 0))
     argument.refuse("the weight must be a finite number > 0, not " + excerpt(argument.value()));
@@ -152,12 +153,13 @@ void set_weight(const Model& model, const std::string& text, std::vector<NamedGo
 
 std::vector<NamedGoal> asked_goals(const Model& model, const GoalTexts& texts) {
   std::vector<NamedGoal> goals;
-  for (const std::string& text : texts.targets) goals.push_back(target_of(model, text));
-  for (const std::string& text : texts.planes) goals.push_back(plane_of(model, text));
-  for (const std::string& text : texts.directions) goals.push_back(direction_of(model, text, texts.lever_mm));
+  for (const std::string& text : texts.targets) goals.push_back(target_of(model, texts.before_name, text));
+  for (const std::string& text : texts.planes) goals.push_back(plane_of(model, texts.before_name, text));
+  for (const std::string& text : texts.directions)
+    goals.push_back(direction_of(model, texts.before_name, text, texts.lever_mm));
   for (const std::string& text : texts.presses)
-    goals.push_back(press_of(model, text, texts.tolerance_mm, texts.tolerance_force_N));
-  for (const std::string& text : texts.weights) set_weight(model, text, goals);
+    goals.push_back(press_of(model, texts.before_name, text, texts.tolerance_mm, texts.tolerance_force_N));
+  for (const std::string& text : texts.weights) set_weight(model, texts.before_name, text, goals);
   std::vector<Goal> plain;
   for (const NamedGoal& goal : goals) plain.push_back(goal.goal);
   check_goals(model, plain);

@@ -14,6 +14,7 @@ struct GoalTexts {
   std::optional<double> lever_mm;           // none: the distance of a direction's markers at rest
   double tolerance_mm = 1e-3;               // of places
   std::optional<double> tolerance_force_N;  // none: a thousandth of each force
+  std::string before_name;  // "--" where these are options: stands before their names in what is refused
 
   /// Is anything asked for?
   [[nodiscard]] bool any() const {
@@ -23,7 +24,7 @@ struct GoalTexts {
 
 /// The goals, targets first, then planes, directions and forces.
 ///
-/// throws  InvalidInput naming the command's option: unknown markers or obstacles, numbers that are none or not finite,
+/// throws  InvalidInput naming which of them: unknown markers or obstacles, numbers that are none or not finite,
 ///         a weight for nothing
 [[nodiscard]] std::vector<NamedGoal> asked_goals(const Model& model, const GoalTexts& texts);
 

@@ -239,8 +239,7 @@ Points contact_changes(const ContactPotential& potential, const Points& position
     contact::Gradient way;
     for (int i = 0; i < 4; ++i) way.segment<3>(3 * i) = moves.row(nodes[static_cast<std::size_t>(i)]).transpose();
     const contact::Gradient pull = block * way;
-    for (int i = 0; i < 4; ++i)
-      change.row(nodes[static_cast<std::size_t>(i)]) += pull.segment<3>(3 * i).transpose();
+    for (int i = 0; i < 4; ++i) change.row(nodes[static_cast<std::size_t>(i)]) += pull.segment<3>(3 * i).transpose();
   };
   for (const ContactPotential::Term& term : terms) {
     potential.stiffness(positions, term, false, block);
