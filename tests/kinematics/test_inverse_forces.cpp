@@ -193,12 +193,15 @@ TEST(InverseForces, AFloorIsPressedWhileAMarkerStays) {
     EXPECT_LT((marker_at(robot.model, again) - there).head<2>().norm(), 2e-3);
   }
   EXPECT_GE(pressed, 8);
+  EXPECT_TRUE(doubts_about(robot.model, {{any}}).empty());
 }
 
 /// Friction holds back: the search meets the force all the same, as its own way has it.
 TEST(InverseForces, AFloorThatRubsIsPressedAsAsked) {
   const Pressing robot(beam_over_a_floor(0.4));
   const std::vector<Goal> goals{{robot.asked("floor", {0, 0, -2}, only_z)}};
+  ASSERT_EQ(doubts_about(robot.model, goals).size(), 1u);
+  EXPECT_NE(doubts_about(robot.model, goals)[0].find("remembers its way"), std::string::npos);
   const InverseResult result = solve_inverse(robot.model, robot.statics, goals, robot.statics.rest());
   ASSERT_EQ(result.status, InverseStatus::reached) << result.remark << ", errors " << result.errors_mm.transpose();
   EXPECT_NEAR(robot.force(robot.asked("floor", {0, 0, -2}, only_z), result.equilibrium).z(), -2, 0.0021);

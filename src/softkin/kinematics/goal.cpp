@@ -218,6 +218,11 @@ std::vector<std::string> doubts_about(const Model& model, const std::vector<Goal
                                  : "; it would be " + number(metres, 3) +
                                        " mm away if the coordinates were in metres: are they? They are taken as mm"));
   }
+  if (any_force(goals) && rubs(model))
+    doubts.emplace_back(
+        "what rubs remembers its way: the force is that on the way of the search, and forward kinematics along the "
+        "same "
+        "commands may come to another one");
   return doubts;
 }
 

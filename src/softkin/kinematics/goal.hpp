@@ -82,7 +82,7 @@ void check_goals(const Model& model, const std::vector<Goal>& goals);
                                  const std::optional<std::vector<PairForces>>& contacts);
 
 /// What looks wrong about targets beside this robot, a sentence each: 100 times its size away, or near it if they were
-/// in metres.
+/// in metres; forces where something rubs, as they depend on the way.
 [[nodiscard]] std::vector<std::string> doubts_about(const Model& model, const std::vector<Goal>& goals);
 
 }  // namespace softkin
