@@ -1,5 +1,5 @@
 // Inverse kinematics: how many random targets are reached how well at what cost, what becomes of those that cannot be
-// reached, and how many updates per second follow a moving target.
+// reached, how many updates per second follow a moving target, and how well forces are met while the marker stays.
 
 #include <cmath>
 #include <ctime>
@@ -18,7 +18,7 @@ using namespace softkin::bench;
 
 struct Options {
   std::string robot = "examples/three_chamber_actuator/three_chamber_actuator.yaml", mode = "reach";
-  std::string method = "newton";
+  std::string method = "newton", press;
   int targets = 100, unreachable = 20, threads = 0, order = 0, updates = 300, other_starts = 3;
   unsigned seed = 1;
   double tolerance_mm = 1e-3, size = 2000, millimetres_per_update = 0.5;
@@ -95,6 +95,8 @@ Vec3 tip_of(const Model& model, const State& state) {
   return model.markers[0].point.at(state.positions);
 }
 
+constexpr double least_force_N = 0.05;  // of a pose that presses
+
 class Bench {
  public:
   explicit Bench(const Options& options)
@@ -131,6 +133,41 @@ class Bench {
       far.add(model_, answer);
     }
     print("out of reach", far);
+    return 0;
+  }
+
+  /// Random poses that press on something: the largest component of the force is asked for, and the marker's
+  /// coordinates along the other two axes. Forward kinematics from rest tells what came of it.
+  int press() {
+    const ForceGoal on = force_on(model_, options_.press);
+    rest_ = statics_.solve(model_.rest_actuation(), statics_.rest(), inverse_.statics).state;
+    Tally tally;
+    int met = 0;
+    double worst_share = 0, worst_mm = 0, least_N = HUGE_VAL, most_N = 0;
+    for (int i = 0; i < 20 * options_.targets && tally.count < options_.targets; ++i) {
+      const Equilibrium made = statics_.solve(random_actuation(), rest_, inverse_.statics);
+      const Vec3 force = made.report.status == Status::converged ? exerted(on, made.state) : Vec3::Zero();
+      if (!(force.norm() > least_force_N)) continue;
+      const std::vector<Goal> goals = pressing_goals(on, force, tip_of(model_, made.state));
+      const Answer answer = solve(goals, rest_);
+      tally.add(model_, answer);
+      const Equilibrium again = statics_.solve(answer.result.equilibrium.actuation, rest_, inverse_.statics);
+      const auto& asked = std::get<ForceGoal>(goals[0].what);
+      Vec3 missed = exerted(on, again.state) - asked.force,
+           off = tip_of(model_, again.state) - tip_of(model_, made.state);
+      for (int axis = 0; axis < 3; ++axis) (asked.axes[static_cast<std::size_t>(axis)] ? off : missed)[axis] = 0;
+      const double size = asked.force.cwiseAbs().maxCoeff(), share = missed.norm() / size;
+      met += share <= 0.01 && off.norm() <= 0.1 ? 1 : 0;
+      worst_share = std::max(worst_share, share);
+      worst_mm = std::max(worst_mm, off.norm());
+      least_N = std::min(least_N, size);
+      most_N = std::max(most_N, size);
+    }
+    print("pressing", tally);
+    std::printf(
+        "%d of %d within 1 %% of the force and 0.1 mm of the place; farthest %.2g %% and %.2g mm; forces %.3g to %.3g "
+        "N\n",
+        met, tally.count, 100 * worst_share, worst_mm, least_N, most_N);
     return 0;
   }
 
@@ -194,10 +231,34 @@ class Bench {
     return contacts && !contacts->pairs.empty();
   }
 
+  [[nodiscard]] Vec3 exerted(const ForceGoal& on, const State& state) const {
+    const ElementDeformation found = statics_.measured(state);
+    std::optional<std::vector<PairForces>> pairs;
+    if (found.contacts) pairs = found.contacts->pairs;
+    return exerted_force(on, reactions(model_, state.positions, found), pairs);
+  }
+
+  [[nodiscard]] std::vector<Goal> pressing_goals(ForceGoal on, const Vec3& force, const Vec3& tip) const {
+    Index along = 0;
+    (void)force.cwiseAbs().maxCoeff(&along);
+    PositionGoal place{0, tip};
+    for (int axis = 0; axis < 3; ++axis) {
+      on.axes[static_cast<std::size_t>(axis)] = axis == along;
+      place.axes[static_cast<std::size_t>(axis)] = axis != along;
+    }
+    on.force = force[along] * Vec3::Unit(along);
+    on.mm_per_N = usual_mm_per_N(on, inverse_.tolerance_mm, std::nullopt);
+    return {{on}, {place}};
+  }
+
   Answer solve(const Vec3& target, const State& start, const Sensitivity* sensitivity = nullptr) {
+    return solve({{PositionGoal{0, target}}}, start, sensitivity);
+  }
+
+  Answer solve(const std::vector<Goal>& goals, const State& start, const Sensitivity* sensitivity = nullptr) {
     inverse_.start_sensitivity = sensitivity;
     const std::clock_t begin = std::clock();
-    Answer answer{solve_inverse(model_, statics_, {{PositionGoal{0, target}}}, start, inverse_), 0};
+    Answer answer{solve_inverse(model_, statics_, goals, start, inverse_), 0};
     answer.processor = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
     return answer;
   }
@@ -225,6 +286,7 @@ class Bench {
 int run(const Options& options) {
   print_machine();
   Bench bench(options);
+  if (!options.press.empty()) return bench.press();
   return options.mode == "drag" ? bench.drag() : bench.reach();
 }
 
@@ -237,6 +299,7 @@ int main(int argc, char** argv) {
   app.add_option("--robot", options.robot, "a scene, or 'beam': three chambers in a block");
   app.add_option("--mode", options.mode, "reach: random targets; drag: one that moves")
       ->check(CLI::IsMember({"reach", "drag"}));
+  app.add_option("--press", options.press, "a support, an obstacle or a body on which random poses press");
   app.add_option("--method", options.method)->check(CLI::IsMember({"newton", "gradient"}));
   app.add_option("--targets", options.targets, "reachable ones, made by forward kinematics");
   app.add_option("--unreachable", options.unreachable);

@@ -78,7 +78,9 @@ class IkRun {
     const auto show = [&](const Progress& p) {
       std::string text = counted(static_cast<std::size_t>(p.iteration + 1), "equilibrium", "equilibria") + ", " +
                          duration(seconds_now() - begin);
-      if (std::isfinite(p.step_mm)) text += ", " + number(p.step_mm, 2) + " mm off";
+      if (std::isfinite(p.step_mm))
+        text += ", " + (any_force(search_.goals) ? number(p.step_mm / p.tolerance_mm, 2) + " times the tolerance off"
+                                                 : number(p.step_mm, 2) + " mm off");
       line.show(-1, text);
       return !interrupted();
     };
@@ -89,7 +91,7 @@ class IkRun {
     if (found_.errors_mm.size() == 0) return no_start();
     write();
     if (found_.status == InverseStatus::reached) return done;
-    std::fprintf(stderr, "softkin: %s\n", runs::shortfall_text(model_, found_).c_str());
+    std::fprintf(stderr, "softkin: %s\n", runs::shortfall_text(model_, search_.goals, found_).c_str());
     return not_converged;
   }
 
@@ -102,22 +104,25 @@ class IkRun {
   void write() const {
     const Points& positions = found_.equilibrium.state.positions;
     const ElementDeformation deformation = answers_.statics().measured(found_.equilibrium.state);
-    const runs::InverseRecord record = runs::inverse_record(model_, found_, deformation);
+    const runs::InverseRecord record = runs::inverse_record(model_, search_.goals, found_, deformation);
     const std::string title = fs::path(options_.scene).filename().string() + ": " + name_of(found_.status) + ", " +
-                              number(record.error_mm, 2) + " mm off";
+                              runs::misses_text(record.misses, 2) + " off";
     if (!options_.output.empty())
       runs::write_shape(options_.output, model_, found_.equilibrium.state, deformation,
                         found_.equilibrium.report.status == Status::converged);
     if (!options_.show.image.empty())
       runs::write_image(options_.show.image, model_, positions, options_.show.view, title, search_.goals);
     if (!options_.show.plot.empty())
-      write_svg(options_.show.plot, runs::plot_of_search(found_, search_.inverse.tolerance_mm, options_.scene));
+      write_svg(options_.show.plot,
+                runs::plot_of_search(found_, search_.inverse.tolerance_mm, options_.scene, record.misses));
     if (!options_.json) {
       const std::string found = findings_text(model_, record);
       const runs::InverseTables tables = runs::inverse_tables(model_, search_.asked, found_, record);
-      print(table_text(tables.actuators) + table_text(tables.goals));
+      print(table_text(tables.actuators));
+      for (const Table* table : {&tables.goals, &tables.forces})
+        if (!table->rows.empty()) print(table_text(*table));
       print((found.empty() ? "" : found + "\n") + sliding_text(record) + std::string(name_of(found_.status)) + ": " +
-            runs::inverse_summary(found_) + "\n");
+            runs::inverse_summary(found_, record.misses) + "\n");
     }
     runs::RecordLog report = runs::inverse_report(model_, options_.scene, options_.report, options_.inverse(),
                                                   search_.asked, found_, record, answers_.map());

@@ -2,7 +2,7 @@
 
 #include <optional>
 #include <softkin/kinematics/inverse.hpp>
-#include <softkin/runs/reports.hpp>
+#include <softkin/runs/asked_goals.hpp>
 #include <string>
 #include <vector>
 
@@ -14,13 +14,9 @@ namespace softkin::cli {
 
 /// What the user asks of `softkin ik`. An empty file name: not given.
 struct IkOptions : SolveOptions, MethodOptions, MapUse {
-  std::vector<std::string> targets;     // MARKER=X,Y,Z
-  std::vector<std::string> planes;      // MARKER=PX,PY,PZ/NX,NY,NZ
-  std::vector<std::string> directions;  // FROM:TO=X,Y,Z
-  std::vector<std::string> weights;     // GOAL=W
+  runs::GoalTexts goals;
   std::vector<std::string> start, prefer, fix;
   std::string workspace;
-  std::optional<double> lever_mm;  // none: the distance of a direction's markers at rest
   int max_equilibria = InverseOptions().max_equilibria;
   int other_starts = InverseOptions().other_starts;
   std::string output, report;
@@ -39,7 +35,7 @@ void add_options(CLI::App& command, IkOptions& options);
 /// Throws InvalidInput where the options contradict each other or name files of another form.
 void check_usage(const IkOptions& options);
 
-/// Throws InvalidInput naming the option: unknown markers, numbers that are none or not finite, a weight for nothing.
+/// See runs::asked_goals.
 [[nodiscard]] std::vector<runs::NamedGoal> asked_goals(const Model& model, const IkOptions& options);
 
 }  // namespace softkin::cli

@@ -211,7 +211,7 @@ void LiveRobot::search(const TargetRequest& request, std::uint64_t asker) {
     answer.target = target_answer(model_, request, last_.state.positions);
     answer.target->reached = shape && found.status == InverseStatus::reached;
     if (!answer.target->reached)
-      answer.target->why = stands ? runs::shortfall_text(model_, found) : "not converged: " + found.remark;
+      answer.target->why = stands ? runs::shortfall_text(model_, goals, found) : "not converged: " + found.remark;
     if (!shape) {
       answer.status = name_of(Status::not_converged);
       answer.remark = found.remark;

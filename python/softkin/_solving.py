@@ -97,6 +97,7 @@ class Solving:
         planes: Mapping[str, tuple[Sequence[float], Sequence[float]]] | None = None,
         directions: Mapping[tuple[str, str], Sequence[float]] | None = None,
         lever_mm: float | None = None,
+        press: Mapping[str, Target] | None = None,
         weights: Mapping[str | tuple[str, str], float] | None = None,
         start: Shape | Commands | None = None,
         workspace: PathLike | None = None,
@@ -106,6 +107,7 @@ class Solving:
         polish: bool = False,
         method: str = "newton",
         tolerance_mm: float | None = None,
+        tolerance_force_N: float | None = None,
         max_equilibria: int = 200,
         descents: int = 30,
         other_starts: int = 3,
@@ -115,14 +117,16 @@ class Solving:
         progress: ProgressFunction | None = None,
         **markers: Target,
     ) -> Answer:
-        """The actuation that brings markers where they should be, or as near as the ranges allow.
+        """The actuation that brings markers where they should be and presses as asked, or as near as the ranges allow.
 
         targets         by the marker's name: (x, y, z) [mm]; None for a coordinate that does not count. Also as
                         keywords: tip=(100, 0, None)
         planes          by the marker's name: a point [mm] and the normal of a plane for it to be in
         directions      by (from, to), two markers: where the line from one to the other is to point
         lever_mm        how far away a wrong direction counts [mm]; None: as far as its markers are apart at rest
-        weights         in the sum of squares, by marker or (from, to); 1 where none is given
+        press           by the name of a support, an obstacle or a body: the force that the robot is to exert on it [N];
+                        None for a component that does not count; physical
+        weights         in the sum of squares, by marker, (from, to) or what is pressed; 1 where none is given
         start           an equilibrium, or commands as `solve` takes them; None: rest
         workspace       CSV of a workspace, in place of start: its sample nearest to the goals
         prefer          where several actuations reach the goals, the one nearest to these commands; None: to the start
@@ -130,6 +134,7 @@ class Solving:
         map, polish     as solve's
         method          'newton', or 'gradient': Algorithm 2 of Fang et al. 2020
         tolerance_mm    error of every goal at which they are reached [mm]; None: 0.001, gradient 0.2
+        tolerance_force_N  error of every force at which it is reached [N]; None: 0.001 of it
         max_equilibria  newton: gives up after so many
         descents        gradient: iterations
         other_starts    newton: from where it is tried again before goals are called out of reach
@@ -139,9 +144,10 @@ class Solving:
         if not OLD_OF_SEARCH.isdisjoint(markers):
             solver = with_old("inverse", solver, OLD_OF_SEARCH, markers)
         robot = self._owner
-        goals = goals_of(robot, {**(targets or {}), **markers}, planes, directions, lever_mm, weights)
         statics = options_of(solver, elapsed_s=elapsed_s, budget_s=budget_s)
         options = _core.InverseOptions(method, tolerance_mm, max_equilibria, descents, other_starts, statics)
+        places, tolerances = {**(targets or {}), **markers}, (options.tolerance_mm, tolerance_force_N)
+        goals = goals_of(robot, places, planes, directions, lever_mm, press, tolerances, weights)
         start = start_of(goals, start, workspace)
         begin, last = (self._last, self._answer) if start is None else (start, None)
         by = session_of(robot, map, polish, statics, self._session)

@@ -54,13 +54,24 @@ class Answer(Saving[CoreAnswer]):
 
     @property
     def errors_mm(self) -> Floats:
-        """(g,) of each goal [mm], in the order in which they were given: targets, planes, directions."""
+        """(g,) of each goal of markers [mm], in the order in which they were given: targets, planes, directions."""
         return self._core.errors_mm
 
     @property
+    def errors_N(self) -> Floats:
+        """(f,) of each force of `press` [N], in the order in which they were given."""
+        return self._core.errors_N
+
+    @property
     def error_mm(self) -> float:
-        """Of the farthest goal [mm]; NaN where the start has no equilibrium."""
+        """Of the farthest goal of markers [mm]; NaN where there is none, or the start has no equilibrium."""
         errors = self.errors_mm
+        return float(errors.max()) if len(errors) else float("nan")
+
+    @property
+    def error_N(self) -> float:
+        """Of the force that is missed most [N]; NaN where none is asked for, or the start has no equilibrium."""
+        errors = self.errors_N
         return float(errors.max()) if len(errors) else float("nan")
 
     @property
@@ -93,7 +104,7 @@ class Answer(Saving[CoreAnswer]):
 
     def _title(self) -> str:
         title = f"{self._robot.name}: {self.status}"
-        return title + f", {self.error_mm:.2g} mm off" if self._core.has_shape else title
+        return title + f", {self._core.off} off" if self._core.has_shape else title
 
     def save_plot(self, path: str | os.PathLike[str]) -> None:
         """The error over the equilibria of the search: an .svg."""
@@ -105,7 +116,7 @@ class Answer(Saving[CoreAnswer]):
         """Itself; raises NotConverged where not every goal is met."""
         if self.reached:
             return self
-        raise NotConverged(f"{self.status}, {self.error_mm:.3g} mm off: {self.reason}", self.shape)
+        raise NotConverged(f"{self.status}, {self._core.off or 'nan mm'} off: {self.reason}", self.shape)
 
     def __repr__(self) -> str:
         if not self._core.has_shape:
@@ -114,7 +125,15 @@ class Answer(Saving[CoreAnswer]):
             f"{info.name}={info.command_text(value)}"
             for info, value in zip(self._robot.actuator_infos, self.shape.actuation)
         )
-        return f"<softkin.Answer {self.status}, {self.error_mm:.3g} mm off: {commands}>"
+        return f"<softkin.Answer {self.status}, {self._core.off} off: {commands}>"
+
+
+def counted(what: str, of: str, target: Target) -> tuple[tuple[float, float, float], tuple[bool, bool, bool]]:
+    """Three numbers, zero where one does not count, and which do."""
+    if len(target) != 3:
+        raise ValueError(f"{what} must be three {of}, not {len(target)}")
+    axes = [value is not None for value in target]
+    return vector(what, [0.0 if value is None else value for value in target]), (axes[0], axes[1], axes[2])
 
 
 def goals_of(
@@ -123,21 +142,25 @@ def goals_of(
     planes: Mapping[str, tuple[Sequence[float], Sequence[float]]] | None,
     directions: Mapping[tuple[str, str], Sequence[float]] | None,
     lever_mm: float | None,
+    press: Mapping[str, Target] | None,
+    tolerances: tuple[float, float | None],
     weights: Mapping[str | tuple[str, str], float] | None,
 ) -> _core.Goals:
     left = dict(weights or {})
     goals = _core.Goals(robot._core)
+    named = {name: left.get(name, 1.0) for name in press or {}}
     for marker, target in targets.items():
-        if len(target) != 3:
-            raise ValueError(f"the target of {marker!r} must be three coordinates [mm], not {len(target)}")
-        axes = [value is not None for value in target]
-        place = vector(f"the target of {marker!r}", [0.0 if value is None else value for value in target])
-        goals.position(marker, place, (axes[0], axes[1], axes[2]), left.pop(marker, 1.0))
+        place, axes = counted(f"the target of {marker!r}", "coordinates [mm]", target)
+        goals.position(marker, place, axes, left.pop(marker, 1.0))
     for marker, (point, normal) in (planes or {}).items():
         goals.plane(marker, vector("planes: point", point), vector("planes: normal", normal), left.pop(marker, 1.0))
     for (first, second), direction in (directions or {}).items():
         weight = left.pop((first, second), 1.0)
         goals.direction(first, second, vector("directions", direction), lever_mm, weight)
+    for name, asked in (press or {}).items():
+        force, axes = counted(f"press: the force on {name!r}", "components [N]", asked)
+        goals.press(name, force, axes, *tolerances, named[name])
+        left.pop(name, None)
     if left:
         raise ValueError(f"weights: nothing is asked of {next(iter(left))!r}")
     for doubt in goals.check():

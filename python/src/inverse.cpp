@@ -44,6 +44,20 @@ struct Answer : std::enable_shared_from_this<Answer> {
   ShapePtr shape;
 
   [[nodiscard]] bool has_shape() const { return found.errors_mm.size() > 0; }
+  /// "4.2 mm and 0.3 N"; empty without a shape.
+  [[nodiscard]] std::string off() const {
+    return has_shape() ? runs::misses_text(runs::misses_of(goals.plain(), found), 3) : "";
+  }
+  /// Of the goals of places [mm], or of those of forces [N].
+  [[nodiscard]] Eigen::VectorXd errors(bool of_forces) const {
+    std::vector<double> errors;
+    for (std::size_t i = 0; has_shape() && i < goals.named.size(); ++i) {
+      const auto* force = std::get_if<ForceGoal>(&goals.named[i].goal.what);
+      if ((force != nullptr) != of_forces) continue;
+      errors.push_back(found.errors_mm[static_cast<Index>(i)] / (force != nullptr ? force->mm_per_N : 1));
+    }
+    return Eigen::Map<Eigen::VectorXd>(errors.data(), static_cast<Index>(errors.size()));
+  }
 };
 
 InverseOptions options_of(const std::string& method, std::optional<double> tolerance_mm, int max_equilibria,
@@ -94,7 +108,8 @@ std::shared_ptr<Answer> inverse(const Goals& goals, const SessionPtr& session, c
 std::string report_of(const Answer& answer) {
   if (!answer.has_shape()) throw InvalidInput("there is no report: " + answer.found.remark);
   const Model& model = answer.robot->model();
-  const runs::InverseRecord record = runs::inverse_record(model, answer.found, answer.shape->deformation());
+  const runs::InverseRecord record =
+      runs::inverse_record(model, answer.goals.plain(), answer.found, answer.shape->deformation());
   const runs::RecordLog log =
       runs::inverse_report(model, model.name, {}, answer.options, answer.goals.named, answer.found, record);
   std::string text;
@@ -140,6 +155,18 @@ void bind_goals(nb::module_& module) {
           },
           nb::arg("first"), nb::arg("second"), nb::arg("direction"), nb::arg("lever_mm").none(), nb::arg("weight"))
       .def(
+          "press",
+          [](Goals& goals, const std::string& name, const Three& force, const std::array<bool, 3>& axes,
+             double tolerance_mm, std::optional<double> tolerance_N, double weight) {
+            ForceGoal goal = force_on(goals.robot->model(), name);
+            goal.force = vec3_of(force);
+            goal.axes = axes;
+            goal.mm_per_N = usual_mm_per_N(goal, tolerance_mm, tolerance_N);
+            goals.named.push_back({name, {goal, weight}});
+          },
+          nb::arg("name"), nb::arg("force"), nb::arg("axes"), nb::arg("tolerance_mm"), nb::arg("tolerance_N").none(),
+          nb::arg("weight"))
+      .def(
           "check",
           [](const Goals& goals) {
             check_goals(goals.robot->model(), goals.plain());
@@ -175,7 +202,10 @@ void bind_inverse(nb::module_& module) {
       .def_prop_ro("status", [](const Answer& a) { return name_of(a.found.status); })
       .def_prop_ro("reached", [](const Answer& a) { return a.found.status == InverseStatus::reached; })
       .def_prop_ro(
-          "errors_mm", [](const Answer& a) { return vector_out(a.found.errors_mm); }, nb::rv_policy::automatic)
+          "errors_mm", [](const Answer& a) { return vector_out(a.errors(false)); }, nb::rv_policy::automatic)
+      .def_prop_ro(
+          "errors_N", [](const Answer& a) { return vector_out(a.errors(true)); }, nb::rv_policy::automatic)
+      .def_prop_ro("off", &Answer::off)
       .def_prop_ro(
           "at_end", [](const Answer& a) { return a.found.active; },
           "Per actuator: -1 at the low end of its range, 1 at the high end, else 0.")
@@ -212,7 +242,8 @@ void bind_inverse(nb::module_& module) {
       .def(
           "save_plot",
           [](const Answer& a, const std::string& path) {
-            write_svg(path, runs::plot_of_search(a.found, a.options.tolerance_mm, a.robot->model().name));
+            write_svg(path, runs::plot_of_search(a.found, a.options.tolerance_mm, a.robot->model().name,
+                                                 runs::misses_of(a.goals.plain(), a.found)));
           },
           nb::arg("path"))
       .def("report", [](const Answer& a) {

@@ -85,11 +85,16 @@ void members(A& archive, DirectionGoal& g) {
   archive(g.from, g.to, g.direction, g.lever_mm);
 }
 template <class A>
+void members(A& archive, ForceGoal& g) {
+  archive(g.on, g.index, g.force, g.axes, g.mm_per_N);
+}
+template <class A>
 void members(A& archive, runs::NamedGoal& g) {
   std::uint64_t kind = g.goal.what.index();
   archive(g.name, g.goal.weight, kind);
   if (kind == 1 && g.goal.what.index() != 1) g.goal.what = PlaneGoal();
   if (kind == 2 && g.goal.what.index() != 2) g.goal.what = DirectionGoal();
+  if (kind == 3 && g.goal.what.index() != 3) g.goal.what = ForceGoal();
   std::visit([&archive](auto& goal) { archive(goal); }, g.goal.what);
 }
 template <class A>

@@ -45,6 +45,46 @@ def test_direction(robot: softkin.Robot) -> None:
     assert answer.reached
 
 
+def over_a_floor() -> softkin.Robot:
+    from beams import beam
+
+    contact = {"distance": 0.1, "friction": 0, "self": False}
+    floor = {"name": "floor", "halfspace": {"point": (0, 0, -1), "normal": (0, 0, 1)}}
+    return beam(contact=contact, obstacles=[floor])
+
+
+def test_press() -> None:
+    robot = over_a_floor()
+    answer = robot.inverse(tip=(None, 10, None), press={"floor": (None, None, -0.3)})
+    assert answer.reached, answer
+    assert len(answer.errors_N) == len(answer.errors_mm) == 1
+    assert answer.error_N == answer.errors_N[0] <= 0.0003
+    goal = answer.report["ik"]["goals"][1]
+    assert goal["of"] == "floor" and goal["force_N"] == [None, None, -0.3]
+    assert goal["found_N"][2] == pytest.approx(-0.3, abs=0.0003)
+    again = pickle.loads(pickle.dumps(answer))
+    assert again.report == answer.report and again.error_N == answer.error_N
+    loose = robot.inverse(press={"floor": (None, None, -0.3)}, tolerance_force_N=0.01, weights={"floor": 2})
+    assert loose.reached and loose.error_N <= 0.01 and len(loose.errors_mm) == 0 and np.isnan(loose.error_mm)
+    on_base = robot.inverse(press={"base": (None, None, -0.3)})  # what the floor bears pulls at the base
+    assert not on_base.reached or on_base.error_N <= 0.0003
+
+
+def test_press_that_is_not_to_be_had() -> None:
+    robot = over_a_floor()
+    pull = robot.inverse(press={"floor": (None, None, 1)}, other_starts=0)
+    assert pull.status == "not reached" and "nothing touches 'floor' there" in pull.reason
+    assert "1 N off" in repr(pull)
+    with pytest.raises(softkin.NotConverged, match="1 N off"):
+        pull.require()
+    with pytest.raises(ValueError, match="no support, obstacle or body 'flor'; did you mean 'floor'"):
+        robot.inverse(press={"flor": (0, 0, 1)})
+    with pytest.raises(ValueError, match="press: the force on 'floor' must be three components"):
+        robot.inverse(press={"floor": (0, 1)})
+    with pytest.raises(ValueError, match="finite and > 0"):
+        robot.inverse(press={"floor": (0, 0, 1)}, tolerance_force_N=-1)
+
+
 def test_starts_preferences_and_what_is_fixed(robot: softkin.Robot, goal: softkin.Shape) -> None:
     y = goal["tip"][1]
     kept = robot.inverse(tip=(None, y, None), fix={"air1": 1.1})

@@ -7,6 +7,9 @@
 
 namespace softkin {
 
+using inverse::Exertion;
+using inverse::ExertionSlopes;
+
 namespace {
 
 template <class... Cases>
@@ -26,11 +29,18 @@ Vec3 marker_move(const Model& model, Index marker, const Points& positions, cons
 }
 
 /// The coordinates that count.
-Eigen::VectorXd counted(const PositionGoal& goal, const Vec3& vector) {
+Eigen::VectorXd counted(const auto& goal, const Vec3& vector) {
   Eigen::VectorXd terms(std::count(goal.axes.begin(), goal.axes.end(), true));
   for (Index axis = 0, row = 0; axis < 3; ++axis)
     if (goal.axes[static_cast<std::size_t>(axis)]) terms[row++] = vector[axis];
   return terms;
+}
+
+/// The same with zero for those that do not.
+Vec3 masked(const ForceGoal& goal, Vec3 vector) {
+  for (int axis = 0; axis < 3; ++axis)
+    if (!goal.axes[static_cast<std::size_t>(axis)]) vector[axis] = 0;
+  return vector;
 }
 
 /// Of a vector that may vanish: markers may come to lie on each other.
@@ -39,8 +49,19 @@ Vec3 unit(const Vec3& vector) {
   return length > 0 ? Vec3(vector / length) : Vec3::Zero();
 }
 
-/// Errors of one goal, unweighted: one value per coordinate that counts [mm].
-Eigen::VectorXd terms_of(const Model& model, const Goal& goal, const Points& positions) {
+/// Along which closing the gap leads towards a force: zero where there is none, or where pushing is not what is asked.
+Vec3 way_to_touch(const ForceGoal& goal, const Exertion& found) {
+  const Vec3 along = unit(masked(goal, goal.force));
+  return found.gap && along.dot(found.gap->towards) > 0 ? along : Vec3(Vec3::Zero());
+}
+
+/// What is left of the way to where surfaces begin to feel each other [mm].
+double way_left(const Model& model, const Exertion& found) {
+  return found.gap ? std::max(0.0, found.gap->width_mm - model.contact.distance_mm) : 0;
+}
+
+/// Errors of one goal, unweighted: one value per coordinate that counts [mm]. found: of a force
+Eigen::VectorXd terms_of(const Model& model, const Goal& goal, const Points& positions, const Exertion& found) {
   return std::visit(Overloaded{[&](const PositionGoal& g) -> Eigen::VectorXd {
                                  return counted(g, marker_at(model, g.marker, positions) - g.target);
                                },
@@ -52,37 +73,47 @@ Eigen::VectorXd terms_of(const Model& model, const Goal& goal, const Points& pos
                                  const Vec3 line =
                                      marker_at(model, g.to, positions) - marker_at(model, g.from, positions);
                                  return g.lever_mm * (unit(line) - unit(g.direction));
+                               },
+                               [&](const ForceGoal& g) -> Eigen::VectorXd {
+                                 const Vec3 way = way_left(model, found) * way_to_touch(g, found);
+                                 return counted(g, g.mm_per_N * (found.force - g.force) - way);
                                }},
                     goal.what);
 }
 
-/// Derivative of terms_of along a change of the positions.
-Eigen::VectorXd change_of(const Model& model, const Goal& goal, const Points& positions, const Points& moves) {
-  return std::visit(Overloaded{[&](const PositionGoal& g) -> Eigen::VectorXd {
-                                 return counted(g, marker_move(model, g.marker, positions, moves));
-                               },
-                               [&](const PlaneGoal& g) -> Eigen::VectorXd {
-                                 const Vec3 move = marker_move(model, g.marker, positions, moves);
-                                 return Eigen::VectorXd::Constant(1, unit(g.normal).dot(move));
-                               },
-                               [&](const DirectionGoal& g) -> Eigen::VectorXd {
-                                 const Vec3 line =
-                                     marker_at(model, g.to, positions) - marker_at(model, g.from, positions);
-                                 const Vec3 move = marker_move(model, g.to, positions, moves) -
-                                                   marker_move(model, g.from, positions, moves);
-                                 const double length = line.stableNorm();
-                                 if (!(length > 0)) return Vec3::Zero();
-                                 const Vec3 along = line / length;
-                                 return g.lever_mm / length * (move - along.dot(move) * along);
-                               }},
-                    goal.what);
+/// Derivative of terms_of along a change of the positions. change: of what is found, by command a
+Eigen::VectorXd change_of(const Model& model, const Goal& goal, const Points& positions, const Points& moves,
+                          const Exertion& found, const ExertionSlopes& change, Index a) {
+  return std::visit(
+      Overloaded{[&](const PositionGoal& g) -> Eigen::VectorXd {
+                   return counted(g, marker_move(model, g.marker, positions, moves));
+                 },
+                 [&](const PlaneGoal& g) -> Eigen::VectorXd {
+                   const Vec3 move = marker_move(model, g.marker, positions, moves);
+                   return Eigen::VectorXd::Constant(1, unit(g.normal).dot(move));
+                 },
+                 [&](const DirectionGoal& g) -> Eigen::VectorXd {
+                   const Vec3 line = marker_at(model, g.to, positions) - marker_at(model, g.from, positions);
+                   const Vec3 move =
+                       marker_move(model, g.to, positions, moves) - marker_move(model, g.from, positions, moves);
+                   const double length = line.stableNorm();
+                   if (!(length > 0)) return Vec3::Zero();
+                   const Vec3 along = line / length;
+                   return g.lever_mm / length * (move - along.dot(move) * along);
+                 },
+                 [&](const ForceGoal& g) -> Eigen::VectorXd {
+                   const Vec3 way = found.gap ? Vec3(change.gap[a] * way_to_touch(g, found)) : Vec3::Zero();
+                   return counted(g, g.mm_per_N * change.force.col(a) - way);
+                 }},
+      goal.what);
 }
 
+/// each(i) of every goal.
 template <class Each>
 Eigen::VectorXd joined(const std::vector<Goal>& goals, const Each& each) {
   std::vector<double> all;
-  for (const Goal& goal : goals) {
-    const Eigen::VectorXd terms = std::sqrt(goal.weight) * each(goal);
+  for (std::size_t i = 0; i < goals.size(); ++i) {
+    const Eigen::VectorXd terms = std::sqrt(goals[i].weight) * each(i);
     all.insert(all.end(), terms.data(), terms.data() + terms.size());
   }
   return Eigen::Map<Eigen::VectorXd>(all.data(), static_cast<Index>(all.size()));
@@ -108,6 +139,19 @@ class Check {
     if (goal.from == goal.to) refuse("the direction from a marker to itself is none");
     directed(goal.direction, "direction");
     positive(goal.lever_mm, "lever");
+  }
+  void operator()(const ForceGoal& goal) const {
+    if (model_.formulation != Formulation::physical)
+      refuse("a force is found in the physical formulation alone: target shapes have no forces");
+    const std::vector<ContactPart>& parts = model_.contact.parts;
+    const std::size_t count = goal.on == ForceGoal::On::support ? model_.supports.size() : parts.size();
+    const auto place = static_cast<std::size_t>(goal.index);
+    const bool there = goal.index >= 0 && place < count;
+    if (!there || (goal.on == ForceGoal::On::part && parts[place].rank == ContactRank::robot))
+      refuse("the robot has no support, obstacle or body number " + std::to_string(goal.index) + " to press on");
+    finite(goal.force, "force");
+    if (goal.axes == std::array<bool, 3>{}) refuse("no component of its force counts");
+    positive(goal.mm_per_N, "length per force");
   }
   void positive(double value, const std::string& what) const {
     if (!(value > 0 && std::isfinite(value))) refuse("its " + what + " must be finite and > 0");
@@ -153,10 +197,8 @@ void check_goals(const Model& model, const std::vector<Goal>& goals) {
 }
 
 Eigen::VectorXd goal_errors(const Model& model, const std::vector<Goal>& goals, const Points& positions) {
-  Eigen::VectorXd errors(static_cast<Index>(goals.size()));
-  for (std::size_t i = 0; i < goals.size(); ++i)
-    errors[static_cast<Index>(i)] = terms_of(model, goals[i], positions).stableNorm();
-  return errors;
+  if (any_force(goals)) throw InvalidInput("positions alone do not tell what a robot exerts");
+  return inverse::errors_of(model, goals, positions, {});
 }
 
 std::vector<std::string> doubts_about(const Model& model, const std::vector<Goal>& goals) {
@@ -176,20 +218,43 @@ std::vector<std::string> doubts_about(const Model& model, const std::vector<Goal
                                  : "; it would be " + number(metres, 3) +
                                        " mm away if the coordinates were in metres: are they? They are taken as mm"));
   }
+  if (any_force(goals) && rubs(model))
+    doubts.emplace_back(
+        "what rubs remembers its way: the force is that on the way of the search, and forward kinematics along the "
+        "same "
+        "commands may come to another one");
   return doubts;
 }
 
-Eigen::VectorXd inverse::goal_terms(const Model& model, const std::vector<Goal>& goals, const Points& positions) {
-  return joined(goals, [&](const Goal& goal) { return terms_of(model, goal, positions); });
+Eigen::VectorXd inverse::errors_of(const Model& model, const std::vector<Goal>& goals, const Points& positions,
+                                   const std::vector<Exertion>& exertions) {
+  Eigen::VectorXd errors(static_cast<Index>(goals.size()));
+  for (std::size_t i = 0; i < goals.size(); ++i) {
+    const Exertion found{exertions.empty() ? Vec3(Vec3::Zero()) : exertions[i].force, std::nullopt};
+    errors[static_cast<Index>(i)] = terms_of(model, goals[i], positions, found).stableNorm();
+  }
+  return errors;
+}
+
+Eigen::VectorXd inverse::goal_terms(const Model& model, const std::vector<Goal>& goals, const Points& positions,
+                                    const std::vector<Exertion>& exertions) {
+  return joined(goals, [&](std::size_t i) {
+    return terms_of(model, goals[i], positions, exertions.empty() ? Exertion{} : exertions[i]);
+  });
 }
 
 Eigen::MatrixXd inverse::goal_slopes(const Model& model, const std::vector<Goal>& goals, const Points& positions,
-                                     const Sensitivity& sensitivity) {
-  Eigen::MatrixXd slopes(inverse::goal_terms(model, goals, positions).size(),
+                                     const Sensitivity& sensitivity, const std::vector<Exertion>& exertions,
+                                     const std::vector<ExertionSlopes>& changes) {
+  Eigen::MatrixXd slopes(inverse::goal_terms(model, goals, positions, exertions).size(),
                          static_cast<Index>(sensitivity.positions.size()));
+  const Exertion nothing;
+  const ExertionSlopes no_change;
   for (std::size_t a = 0; a < sensitivity.positions.size(); ++a)
-    slopes.col(static_cast<Index>(a)) =
-        joined(goals, [&](const Goal& goal) { return change_of(model, goal, positions, sensitivity.positions[a]); });
+    slopes.col(static_cast<Index>(a)) = joined(goals, [&](std::size_t i) {
+      return change_of(model, goals[i], positions, sensitivity.positions[a], exertions.empty() ? nothing : exertions[i],
+                       changes.empty() ? no_change : changes[i], static_cast<Index>(a));
+    });
   return slopes;
 }
 

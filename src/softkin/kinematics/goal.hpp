@@ -1,6 +1,8 @@
 #pragma once
 
+#include <optional>
 #include <softkin/model/model.hpp>
+#include <softkin/statics/deformation.hpp>
 #include <string>
 #include <variant>
 #include <vector>
@@ -28,21 +30,59 @@ struct DirectionGoal {
   double lever_mm = 1;             // > 0; the distance at which a wrong direction counts [mm]
 };
 
+/// The robot is to exert a force on what holds it or on what it touches: on a support minus what that exerts on the
+/// robot; on an obstacle or a body what all that touches it exerts on it. Its error is that of the force, by mm_per_N.
+struct ForceGoal {
+  enum class On { support, part };
+  On on = On::support;
+  Index index = 0;                             // of model.supports; of model.contact.parts, an obstacle or a body
+  Vec3 force = Vec3::Zero();                   // [N]
+  std::array<bool, 3> axes{true, true, true};  // components that count
+  double mm_per_N = 1;                         // > 0; what a wrong force counts [mm/N]
+};
+
 /// What inverse kinematics is to reach, with its weight (> 0) in the sum of squares.
 struct Goal {
-  std::variant<PositionGoal, PlaneGoal, DirectionGoal> what;
+  std::variant<PositionGoal, PlaneGoal, DirectionGoal, ForceGoal> what;
   double weight = 1;
 };
 
 /// throws InvalidInput on a marker that the model does not have, a number that is not finite, an empty list, a weight
-/// or lever that is not > 0, no axis, a normal or direction of length 0, a direction from a marker to itself
+/// or lever that is not > 0, no axis, a normal or direction of length 0, a direction from a marker to itself, a force
+/// on nothing that the robot has or may touch, or one of target shapes
 void check_goals(const Model& model, const std::vector<Goal>& goals);
 
 /// Distance of each goal from being met [mm], unweighted.
+///
+/// throws  InvalidInput on a force, which positions alone do not tell
 [[nodiscard]] Eigen::VectorXd goal_errors(const Model& model, const std::vector<Goal>& goals, const Points& positions);
 
+/// Is a force among them?
+[[nodiscard]] bool any_force(const std::vector<Goal>& goals);
+
+/// What a robot may be asked to press on: its supports, obstacles and bodies, in this order.
+[[nodiscard]] std::vector<std::string> names_of_pressed(const Model& model);
+
+/// A goal on what has that name, with no force yet.
+///
+/// throws  InvalidInput where nothing has it, naming what is there, and where a support and an obstacle or body do
+[[nodiscard]] ForceGoal force_on(const Model& model, const std::string& name);
+
+/// mm_per_N of a goal that is to be met at its own tolerance while places are at theirs: tolerance_mm over tolerance_N;
+/// none: a thousandth of the force, 0.001 N where that is zero.
+///
+/// throws  InvalidInput on tolerances that are not finite and > 0
+[[nodiscard]] double usual_mm_per_N(const ForceGoal& goal, double tolerance_mm, std::optional<double> tolerance_N);
+
+/// What a robot exerts on that in an equilibrium [N].
+///
+/// reactions  of every support, in their order
+/// contacts   none: nothing can touch
+[[nodiscard]] Vec3 exerted_force(const ForceGoal& goal, const std::vector<Reaction>& reactions,
+                                 const std::optional<std::vector<PairForces>>& contacts);
+
 /// What looks wrong about targets beside this robot, a sentence each: 100 times its size away, or near it if they were
-/// in metres.
+/// in metres; forces where something rubs, as they depend on the way.
 [[nodiscard]] std::vector<std::string> doubts_about(const Model& model, const std::vector<Goal>& goals);
 
 }  // namespace softkin

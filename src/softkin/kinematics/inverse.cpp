@@ -106,7 +106,7 @@ class Inverse {
     first.report.status = Status::converged;
     if (known || response_.solve(first.actuation, start, first)) return true;
     result_.equilibrium = first;
-    result_.errors_mm = goal_errors(model_, goals_, first.state.positions);
+    if (!any_force(goals_)) result_.errors_mm = goal_errors(model_, goals_, first.state.positions);
     result_.active.assign(model_.actuators.size(), 0);
     result_.status = response_.interrupted() ? InverseStatus::interrupted : InverseStatus::not_converged;
     result_.remark = response_.interrupted() ? "interrupted" : "the start has no equilibrium: " + first.report.remark;
@@ -251,9 +251,22 @@ class Inverse {
 
   void finish(inverse::Pose pose) {
     if (!is_told(pose.equilibrium) && !response_.interrupted()) look_at(pose.equilibrium);
-    result_.errors_mm = goal_errors(model_, goals_, pose.equilibrium.state.positions);
+    result_.errors_mm = response_.errors_at(pose.equilibrium.state);
+    if (result_.status != InverseStatus::reached) result_.remark += untouched(pose.equilibrium.state);
     result_.equilibrium = std::move(pose.equilibrium);
     result_.equilibrium.actuation = result_.equilibrium.state.actuation;
+  }
+
+  /// "; nothing touches 'floor' there" of each that is to be pressed.
+  [[nodiscard]] std::string untouched(const State& state) const {
+    std::string text;
+    const std::vector<inverse::Exertion>& exertions = response_.exertions_at(state);
+    for (std::size_t i = 0; i < exertions.size(); ++i)
+      if (exertions[i].gap)
+        text += "; nothing touches '" +
+                model_.contact.parts[static_cast<std::size_t>(std::get<ForceGoal>(goals_[i].what).index)].name +
+                "' there";
+    return text;
   }
 
   /// Has it a report, or was it taken for an equilibrium as it is?
@@ -348,7 +361,7 @@ InverseResult solve_inverse_from(const Model& model, const Statics& statics, con
     result.status = result.stopped ? InverseStatus::interrupted : InverseStatus::not_converged;
     result.remark =
         result.stopped ? "interrupted on the way to its start" : "the start has no equilibrium: " + first.report.remark;
-    if (result.stopped) result.errors_mm = goal_errors(model, goals, first.state.positions);
+    if (result.stopped && !any_force(goals)) result.errors_mm = goal_errors(model, goals, first.state.positions);
     tell_stop(result, options.statics.deadline);
     result.active.assign(model.actuators.size(), 0);
     result.equilibria = 1;
@@ -356,7 +369,9 @@ InverseResult solve_inverse_from(const Model& model, const Statics& statics, con
     result.seconds = seconds();
     return result;
   }
-  const double error = goal_errors(model, goals, first.state.positions).maxCoeff();
+  const double error =
+      inverse::errors_of(model, goals, first.state.positions, inverse::exertions_of(model, statics, goals, first.state))
+          .maxCoeff();
   InverseOptions begun = options;  // at the start's time
   begun.statics.history = first.state.history;
   result = solve_inverse(model, statics, goals, first, begun, progress);

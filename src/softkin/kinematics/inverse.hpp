@@ -45,7 +45,7 @@ struct InverseResult {
   InverseStatus status = InverseStatus::not_converged;
   bool stopped = false;       // by progress or the deadline: the best so far
   Equilibrium equilibrium;    // at the best actuation found, inside every range
-  Eigen::VectorXd errors_mm;  // per goal
+  Eigen::VectorXd errors_mm;  // per goal; of a force times its mm_per_N
   std::vector<int> active;    // m: -1 at the low end of its range and pushed there, +1 at the high end, else 0
   double slope = 0;           // norm of the projected gradient of the error (root of the weighted sum of squares)
                               // by the share of each range [mm]: 0 where no allowed change helps; newton

@@ -26,6 +26,7 @@ RobotResponse::RobotResponse(const Model& model, const Statics& statics, const s
       options_(options),
       free_(std::move(free)),
       progress_(progress),
+      any_force_(any_force(goals)),
       least_error_(none),
       most_(options.max_equilibria) {
   for (std::size_t i = 0; i < free_.size(); ++i)
@@ -62,11 +63,22 @@ Actuation RobotResponse::actuation_of(const Eigen::VectorXd& shares, const Actua
   return actuation;
 }
 
+const std::vector<Exertion>& RobotResponse::exertions_at(const State& state) const {
+  if (any_force_ && (last_.positions.rows() == 0 || last_.positions != state.positions))
+    last_ = {state.positions, exertions_of(model_, statics_, goals_, state)};
+  return last_.exertions;
+}
+
+Eigen::VectorXd RobotResponse::errors_at(const State& state) const {
+  return errors_of(model_, goals_, state.positions, exertions_at(state));
+}
+
 Pose RobotResponse::pose_of(Equilibrium equilibrium, bool taut) const {
   Pose pose;
   const Points& positions = equilibrium.state.positions;
-  pose.terms = goal_terms(model_, goals_, positions);
-  pose.miss = goal_errors(model_, goals_, positions).maxCoeff() / options_.tolerance_mm;
+  pose.exertions = exertions_at(equilibrium.state);
+  pose.terms = goal_terms(model_, goals_, positions, pose.exertions);
+  pose.miss = errors_of(model_, goals_, positions, pose.exertions).maxCoeff() / options_.tolerance_mm;
   pose.equilibrium = std::move(equilibrium);
   pose.idle.setZero(static_cast<Index>(free_.size()));
   pose.tensions.setZero(static_cast<Index>(cables_.size()));
@@ -100,7 +112,7 @@ bool RobotResponse::solve(const Actuation& actuation, const State& from, Equilib
   };
   found = statics_.solve(actuation, from, options_.statics, go_on);
   const bool converged = found.report.status == Status::converged;
-  const double error = converged ? goal_errors(model_, goals_, found.state.positions).maxCoeff() : none;
+  const double error = converged ? errors_at(found.state).maxCoeff() : none;
   interrupted_ = interrupted_ || found.report.stopped;
   history_.push_back({actuation, found.report.status, error, found.report.iterations});
   least_error_ = std::min(least_error_, error);
@@ -143,6 +155,7 @@ Response::Outcome RobotResponse::go(const Eigen::VectorXd& shares, const Pose& f
 bool RobotResponse::foresee(const Eigen::VectorXd& shares, const Pose& from, Eigen::VectorXd& terms) {
   const State& state = from.equilibrium.state;
   Points positions;
+  if (any_force_) return false;  // what is foreseen is a shape
   if (!statics_.foresee(actuation_of(shares, state.actuation), state, options_.statics, positions)) return false;
   terms = goal_terms(model_, goals_, positions);
   return terms.allFinite();
@@ -151,10 +164,14 @@ bool RobotResponse::foresee(const Eigen::VectorXd& shares, const Pose& from, Eig
 bool RobotResponse::slopes(const Pose& at, Slopes& slopes) {
   const State& state = at.equilibrium.state;
   const bool given = options_.start_sensitivity != nullptr && history_.empty() && at.idle.isZero(0);
-  slopes.sensitivity =
-      given ? *options_.start_sensitivity : statics_.sensitivity(state, options_.statics, slope_accuracy);
+  if (given)
+    slopes.sensitivity = *options_.start_sensitivity;
+  else if (!any_on_support(goals_))  // else it is asked for with the reactions
+    slopes.sensitivity = statics_.sensitivity(state, options_.statics, slope_accuracy);
+  const std::vector<ExertionSlopes> exertions = exertion_slopes(model_, statics_, goals_, state, at.exertions,
+                                                                options_.statics, slope_accuracy, slopes.sensitivity);
   if (!slopes.sensitivity.regular) return false;
-  const Eigen::MatrixXd all = goal_slopes(model_, goals_, state.positions, slopes.sensitivity);
+  const Eigen::MatrixXd all = goal_slopes(model_, goals_, state.positions, slopes.sensitivity, at.exertions, exertions);
   const auto free = static_cast<Index>(free_.size());
   slopes.terms.resize(all.rows(), free);
   slopes.tensions.resize(static_cast<Index>(cables_.size()), free);

@@ -17,6 +17,9 @@ class RobotResponse : public Response {
 
   /// The pose of an equilibrium. taut: slack cables are shortened to their paths.
   [[nodiscard]] Pose pose_of(Equilibrium equilibrium, bool taut) const;
+  /// Of each goal of an equilibrium that is known [mm].
+  [[nodiscard]] Eigen::VectorXd errors_at(const State& state) const;
+  [[nodiscard]] const std::vector<Exertion>& exertions_at(const State& state) const;
   [[nodiscard]] Eigen::VectorXd shares_of(const Actuation& actuation) const;
   /// In the ranges, whatever rounding does.
   [[nodiscard]] Actuation actuation_of(const Eigen::VectorXd& shares, const Actuation& others) const;
@@ -55,7 +58,13 @@ class RobotResponse : public Response {
   const ProgressCallback& progress_;
   std::vector<InverseTrial> history_;
   std::optional<State> origin_;  // none: of the pose before
-  double least_error_;           // [mm]
+  struct Last {
+    Points positions;
+    std::vector<Exertion> exertions;
+  };
+  mutable Last last_;  // equilibrium whose forces were measured: each is asked for several times
+  bool any_force_;
+  double least_error_;  // [mm]
   int most_;
   bool interrupted_ = false, taut_ = true;
 };

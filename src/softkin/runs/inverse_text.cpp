@@ -29,15 +29,20 @@ std::string coordinates_text(const Vec3& point, int decimals) {
   return decimal(point.x(), decimals) + " " + decimal(point.y(), decimals) + " " + decimal(point.z(), decimals);
 }
 
+/// "any" where a component does not count.
+std::string counted_text(const Vec3& vector, const std::array<bool, 3>& axes, int decimals) {
+  std::string text;
+  for (int axis = 0; axis < 3; ++axis)
+    text += (axis > 0 ? " " : "") +
+            (axes[static_cast<std::size_t>(axis)] ? decimal(vector[axis], decimals) : std::string("any"));
+  return text;
+}
+
 std::string asked_text(const Goal& goal) {
-  if (const auto* position = std::get_if<PositionGoal>(&goal.what)) {
-    std::string text;
-    for (int axis = 0; axis < 3; ++axis)
-      text += (axis > 0 ? " " : "") + (position->axes[static_cast<std::size_t>(axis)]
-                                           ? decimal(position->target[axis], length_decimals)
-                                           : std::string("any"));
-    return text + " mm";
-  }
+  if (const auto* position = std::get_if<PositionGoal>(&goal.what))
+    return counted_text(position->target, position->axes, length_decimals) + " mm";
+  if (const auto* force = std::get_if<ForceGoal>(&goal.what))
+    return counted_text(force->force, force->axes, value_decimals) + " N";
   if (const auto* plane = std::get_if<PlaneGoal>(&goal.what))
     return "plane at " + coordinates_text(plane->point, length_decimals) + " mm across " +
            coordinates_text(plane->normal.stableNormalized(), direction_decimals);
@@ -45,10 +50,11 @@ std::string asked_text(const Goal& goal) {
   return "towards " + coordinates_text(direction.direction.stableNormalized(), direction_decimals);
 }
 
-std::string found_text(const Model& model, const Goal& goal, const Points& positions) {
-  const Vec3 place = place_of(model, goal, positions);
-  if (std::holds_alternative<DirectionGoal>(goal.what)) return coordinates_text(place, direction_decimals);
-  return coordinates_text(place, length_decimals) + " mm";
+std::string found_text(const Model& model, const Goal& goal, const Points& positions, const StepRecord& step) {
+  const Vec3 found = found_of(model, goal, positions, step);
+  if (std::holds_alternative<DirectionGoal>(goal.what)) return coordinates_text(found, direction_decimals);
+  if (std::holds_alternative<ForceGoal>(goal.what)) return coordinates_text(found, value_decimals) + " N";
+  return coordinates_text(found, length_decimals) + " mm";
 }
 
 }  // namespace
@@ -78,17 +84,23 @@ InverseTables inverse_tables(const Model& model, const std::vector<NamedGoal>& g
                  {.title = "asked"},
                  {.title = "found"},
                  {.title = "error", .unit = "mm", .digits = 2}}};
-  for (std::size_t i = 0; i < goals.size(); ++i)
-    reached.rows.push_back({goals[i].name, asked_text(goals[i].goal),
-                            found_text(model, goals[i].goal, found.equilibrium.state.positions),
-                            found.errors_mm[static_cast<Index>(i)]});
-  return {std::move(actuators), std::move(reached)};
+  Table exerted = reached;
+  exerted.columns.front().title = "force on";
+  exerted.columns.back().unit = "N";
+  for (std::size_t i = 0; i < goals.size(); ++i) {
+    const auto* force = std::get_if<ForceGoal>(&goals[i].goal.what);
+    const double error = found.errors_mm[static_cast<Index>(i)];
+    (force != nullptr ? exerted : reached)
+        .rows.push_back({goals[i].name, asked_text(goals[i].goal),
+                         found_text(model, goals[i].goal, found.equilibrium.state.positions, step),
+                         force != nullptr ? error / force->mm_per_N : error});
+  }
+  return {std::move(actuators), std::move(reached), std::move(exerted)};
 }
 
-std::string inverse_summary(const InverseResult& found) {
+std::string inverse_summary(const InverseResult& found, const Misses& misses) {
   const auto count = [](int n) { return static_cast<std::size_t>(std::max(0, n)); };
-  return "error at most " + number(found.errors_mm.maxCoeff(), 2) + " mm; " +
-         counted(count(found.iterations), "iteration") + ", " +
+  return "error at most " + misses_text(misses, 2) + "; " + counted(count(found.iterations), "iteration") + ", " +
          counted(count(found.equilibria), "equilibrium", "equilibria") + ", " + decimal(found.seconds, 2) + " s";
 }
 

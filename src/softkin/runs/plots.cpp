@@ -341,7 +341,7 @@ Plot plot_of_path(const Model& model, const MarkerPath& path, const std::vector<
   return plot;
 }
 
-Plot plot_of_search(const InverseResult& found, double tolerance_mm, const std::string& scene) {
+Plot plot_of_search(const InverseResult& found, double tolerance_mm, const std::string& scene, const Misses& misses) {
   constexpr double least = 1e-9;  // [mm], as small as a logarithmic axis is to show
   PlotSeries each{"each equilibrium", {}, {}, false}, best{"least so far", {}, {}, true, false};
   PlotSeries limit{"tolerance", {}, {tolerance_mm, tolerance_mm}, true, false};
@@ -363,13 +363,12 @@ Plot plot_of_search(const InverseResult& found, double tolerance_mm, const std::
   PlotPanel panel;
   panel.x.label = "equilibria";
   panel.x.whole = true;
-  panel.y.label = "largest error [mm]";
+  panel.y.label = misses.N ? "largest error [mm; of forces as much at their tolerance]" : "largest error [mm]";
   panel.y.logarithmic = true;
   panel.series = {each, limit};
   if (!best.x.empty()) panel.series.insert(panel.series.begin() + 1, best);
   Plot plot;
-  plot.title =
-      file_name(scene) + ": " + name_of(found.status) + ", " + number(found.errors_mm.maxCoeff(), 2) + " mm off";
+  plot.title = file_name(scene) + ": " + name_of(found.status) + ", " + misses_text(misses, 2) + " off";
   plot.rows = {{panel}};
   return plot;
 }

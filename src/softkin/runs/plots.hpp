@@ -3,6 +3,7 @@
 #include <softkin/io/plot/svg_plot.hpp>
 #include <softkin/kinematics/inverse.hpp>
 #include <softkin/runs/records.hpp>
+#include <softkin/runs/shortfall_text.hpp>
 #include <softkin/runs/turns.hpp>
 #include <string>
 #include <vector>
@@ -26,7 +27,9 @@ namespace softkin::runs {
                                 const std::optional<MarkerLine>& line = {});
 
 /// The error of each equilibrium that a search solved for, at least one, and the least so far. scene: its file
-[[nodiscard]] Plot plot_of_search(const InverseResult& found, double tolerance_mm, const std::string& scene);
+/// misses: of the answer
+[[nodiscard]] Plot plot_of_search(const InverseResult& found, double tolerance_mm, const std::string& scene,
+                                  const Misses& misses);
 
 /// Places of the feet, commands and friction over the steps of a walk.
 [[nodiscard]] Plot plot_of_walk(const Model& model, const std::vector<WalkRecord>& steps, const std::string& title);

@@ -129,29 +129,40 @@ Json head_json(const Model& model, const std::string& scene, const StaticsOption
   return json;
 }
 
+/// null where a component does not count.
+Json counted_json(const Vec3& vector, const std::array<bool, 3>& axes) {
+  Json json = Json::array();
+  for (int axis = 0; axis < 3; ++axis)
+    json.push_back(axes[static_cast<std::size_t>(axis)] ? Json(vector[axis]) : Json());
+  return json;
+}
+
 Json asked_json(const Goal& goal) {
-  if (const auto* position = std::get_if<PositionGoal>(&goal.what)) {
-    Json target = Json::array();
-    for (int axis = 0; axis < 3; ++axis)
-      target.push_back(position->axes[static_cast<std::size_t>(axis)] ? Json(position->target[axis]) : Json());
-    return {{"kind", "target"}, {"target_mm", target}};
-  }
+  if (const auto* position = std::get_if<PositionGoal>(&goal.what))
+    return {{"kind", "target"}, {"target_mm", counted_json(position->target, position->axes)}};
+  if (const auto* force = std::get_if<ForceGoal>(&goal.what))
+    return {{"kind", "force"}, {"force_N", counted_json(force->force, force->axes)}, {"mm_per_N", force->mm_per_N}};
   if (const auto* plane = std::get_if<PlaneGoal>(&goal.what))
     return {{"kind", "plane"}, {"point_mm", json_of(plane->point)}, {"normal", json_of(plane->normal)}};
   const auto& direction = std::get<DirectionGoal>(goal.what);
   return {{"kind", "direction"}, {"direction", json_of(direction.direction)}, {"lever_mm", direction.lever_mm}};
 }
 
-Json goals_json(const Model& model, const std::vector<NamedGoal>& goals, const InverseResult& found) {
+Json goals_json(const Model& model, const std::vector<NamedGoal>& goals, const InverseResult& found,
+                const InverseRecord& record) {
   Json all = Json::array();
   for (std::size_t i = 0; i < goals.size(); ++i) {
     const Goal& goal = goals[i].goal;
     Json json = {{"of", goals[i].name}};
     json.update(asked_json(goal));
     const bool direction = std::holds_alternative<DirectionGoal>(goal.what);
-    json[direction ? "found" : "found_mm"] = json_of(place_of(model, goal, found.equilibrium.state.positions));
+    const auto* force = std::get_if<ForceGoal>(&goal.what);
+    const double error = found.errors_mm[static_cast<Index>(i)];
+    json[force != nullptr ? "found_N"
+         : direction      ? "found"
+                          : "found_mm"] = json_of(found_of(model, goal, found.equilibrium.state.positions, record));
     json["weight"] = goal.weight;
-    json["error_mm"] = found.errors_mm[static_cast<Index>(i)];
+    json[force != nullptr ? "error_N" : "error_mm"] = force != nullptr ? error / force->mm_per_N : error;
     all.push_back(json);
   }
   return all;
@@ -202,12 +213,13 @@ Json inverse_json(const Model& model, const InverseOptions& options, const std::
                {"status", name_of(found.status)},
                {"reached", found.status == InverseStatus::reached},
                {"remark", found.remark},
-               {"error_mm", found.errors_mm.maxCoeff()},
-               {"goals", goals_json(model, goals, found)},
+               {"goals", goals_json(model, goals, found, record)},
                {"at_end_of_range", Json::object()},
                {"iterations", found.iterations},
                {"equilibria", found.equilibria},
                {"seconds", found.seconds}};
+  if (record.misses.mm) json["error_mm"] = *record.misses.mm;
+  if (record.misses.N) json["error_N"] = *record.misses.N;
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     if (found.active[a] != 0) json["at_end_of_range"][model.actuators[a].name] = found.active[a] < 0 ? "low" : "high";
   if (newton && found.status != InverseStatus::reached) json["slope_mm_per_range"] = found.slope;
@@ -318,7 +330,9 @@ RecordLog step_report(const Model& model, const std::string& scene, const std::f
   return log;
 }
 
-Vec3 place_of(const Model& model, const Goal& goal, const Points& positions) {
+Vec3 found_of(const Model& model, const Goal& goal, const Points& positions, const StepRecord& record) {
+  if (const auto* force = std::get_if<ForceGoal>(&goal.what))
+    return exerted_force(*force, record.reactions, record.contacts);
   const auto at = [&](Index marker) { return model.markers[static_cast<std::size_t>(marker)].at(positions); };
   if (const auto* position = std::get_if<PositionGoal>(&goal.what)) return at(position->marker);
   if (const auto* plane = std::get_if<PlaneGoal>(&goal.what)) return at(plane->marker);
@@ -326,12 +340,13 @@ Vec3 place_of(const Model& model, const Goal& goal, const Points& positions) {
   return (at(direction.to) - at(direction.from)).stableNormalized();
 }
 
-InverseRecord inverse_record(const Model& model, const InverseResult& found, const ElementDeformation& deformation) {
+InverseRecord inverse_record(const Model& model, const std::vector<Goal>& goals, const InverseResult& found,
+                             const ElementDeformation& deformation) {
   InverseRecord record;
   static_cast<StepRecord&>(record) = step_record(model, found.equilibrium, deformation);
   record.self_overlap = OverlapSearch(model).in(found.equilibrium.state.positions);
   record.seconds = found.seconds;
-  record.error_mm = found.errors_mm.maxCoeff();
+  record.misses = misses_of(goals, found);
   return record;
 }
 
@@ -341,7 +356,8 @@ RecordLog inverse_report(const Model& model, const std::string& scene, const std
   Json head = Json::parse(report_head(model, scene, options.statics, map));
   head["ik"] = inverse_json(model, options, goals, found, record);
   Json step = to_json(model, record);
-  step["error_mm"] = record.error_mm;
+  if (record.misses.mm) step["error_mm"] = *record.misses.mm;
+  if (record.misses.N) step["error_N"] = *record.misses.N;
   RecordLog log(model, {file}, line_of(head), {});
   log.add(line_of(step), record.seconds);
   return log;

@@ -8,6 +8,7 @@
 #include <softkin/model/model.hpp>
 #include <softkin/runs/record_log.hpp>
 #include <softkin/runs/records.hpp>
+#include <softkin/runs/shortfall_text.hpp>
 #include <string>
 
 namespace softkin::runs {
@@ -43,14 +44,14 @@ struct NamedGoal {
 
 /// The equilibrium that inverse kinematics came to.
 struct InverseRecord : StepRecord {
-  double error_mm = 0;  // of the farthest goal
+  Misses misses;  // of its goals
 };
 
-[[nodiscard]] InverseRecord inverse_record(const Model& model, const InverseResult& found,
-                                           const ElementDeformation& deformation);
+[[nodiscard]] InverseRecord inverse_record(const Model& model, const std::vector<Goal>& goals,
+                                           const InverseResult& found, const ElementDeformation& deformation);
 
-/// Where the marker of a goal, or the unit vector between its markers, is [mm, -].
-[[nodiscard]] Vec3 place_of(const Model& model, const Goal& goal, const Points& positions);
+/// Where the marker of a goal is, the unit vector between its markers, or the force that is exerted [mm, -, N].
+[[nodiscard]] Vec3 found_of(const Model& model, const Goal& goal, const Points& positions, const StepRecord& record);
 
 /// The report of it: what was asked and what came of it, and the record; to be written to file at its finish().
 [[nodiscard]] RecordLog inverse_report(const Model& model, const std::string& scene, const std::filesystem::path& file,

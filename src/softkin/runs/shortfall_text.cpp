@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <softkin/core/text.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/shortfall_text.hpp>
@@ -31,8 +32,26 @@ std::string ends_text(const Model& model, const InverseResult& found) {
 
 }  // namespace
 
-std::string shortfall_text(const Model& model, const InverseResult& found) {
-  const std::string off = number(found.errors_mm.maxCoeff(), 4) + " mm off";
+Misses misses_of(const std::vector<Goal>& goals, const InverseResult& found) {
+  Misses misses;
+  for (std::size_t i = 0; i < goals.size(); ++i) {
+    const double error = found.errors_mm[static_cast<Index>(i)];
+    const auto* force = std::get_if<ForceGoal>(&goals[i].what);
+    std::optional<double>& most = force != nullptr ? misses.N : misses.mm;
+    most = std::max(most.value_or(0), force != nullptr ? error / force->mm_per_N : error);
+  }
+  return misses;
+}
+
+std::string misses_text(const Misses& misses, int digits) {
+  std::string text;
+  if (misses.mm) text += number(*misses.mm, digits) + " mm";
+  if (misses.N) text += (text.empty() ? "" : " and ") + number(*misses.N, digits) + " N";
+  return text;
+}
+
+std::string shortfall_text(const Model& model, const std::vector<Goal>& goals, const InverseResult& found) {
+  const std::string off = misses_text(misses_of(goals, found), 4) + " off";
   if (found.status == InverseStatus::unreachable)
     return "not reached: " + off + " at the nearest point; " + found.remark + ends_text(model, found);
   if (found.status == InverseStatus::interrupted) return "interrupted: the best so far is " + off;

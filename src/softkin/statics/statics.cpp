@@ -370,6 +370,16 @@ ElementDeformation Statics::measured(const State& at) const {
   return deformation;
 }
 
+std::vector<std::vector<Vec3>> Statics::pressing_changes(const State& at, const std::vector<Points>& moves) const {
+  const StaticsOptions options;
+  parts_->check_known(at, options, "what presses in a shape");
+  if (!parts_->physical) throw InvalidInput("what presses on obstacles is known in the physical formulation alone");
+  for (const Points& move : moves)
+    if (move.rows() != at.positions.rows() || !move.allFinite())
+      throw InvalidInput("moves must be of three finite values for each of the robot's vertices");
+  return parts_->physical->pressing_changes(at, moves, *parts_->team(options));
+}
+
 bool Statics::viscous() const {
   return parts_->physical && parts_->physical->system().viscous();
 }

@@ -161,6 +161,16 @@ class Statics {
   /// throws   InvalidInput as sensitivity() does
   [[nodiscard]] ElementDeformation measured(const State& at) const;
 
+  /// How what presses on obstacles and bodies changes along moves of the vertices.
+  ///
+  /// at       an equilibrium that solve() returned
+  /// moves    k, each #V by 3 [mm]
+  /// returns  k, each of model.contact.parts: change of the force that all that touches a part exerts on it, friction
+  ///          for sliding on included [N]; zero of parts of the robot and where nothing can touch
+  /// throws   InvalidInput as sensitivity() does, of target shapes, and on moves of another size or that are not finite
+  [[nodiscard]] std::vector<std::vector<Vec3>> pressing_changes(const State& at,
+                                                                const std::vector<Points>& moves) const;
+
   /// Has the robot Maxwell branches? Then solve() takes a history and a time.
   [[nodiscard]] bool viscous() const;
 

@@ -230,6 +230,29 @@ PairForces finished(const PairSum& sum, const PressedSurface& surface) {
 
 }  // namespace
 
+Points contact_changes(const ContactPotential& potential, const Points& positions,
+                       const std::vector<ContactPotential::Term>& terms, const Friction& friction,
+                       const Friction::Holds& holds, const Points& moves) {
+  Points change = Points::Zero(positions.rows(), 3);
+  contact::Hessian block;
+  const auto add = [&](const contact::Nodes& nodes) {
+    contact::Gradient way;
+    for (int i = 0; i < 4; ++i) way.segment<3>(3 * i) = moves.row(nodes[static_cast<std::size_t>(i)]).transpose();
+    const contact::Gradient pull = block * way;
+    for (int i = 0; i < 4; ++i) change.row(nodes[static_cast<std::size_t>(i)]) += pull.segment<3>(3 * i).transpose();
+  };
+  for (const ContactPotential::Term& term : terms) {
+    potential.stiffness(positions, term, false, block);
+    add(term.nodes);
+  }
+  for (const Friction::Hold& hold : holds) {
+    friction.stiffness(positions, hold, block);
+    add(hold.nodes);
+  }
+  if (friction.any()) friction.add_response(potential, positions, terms, holds, moves, change);
+  return change;
+}
+
 ContactForces contact_forces(const ContactSurfaces& surfaces, const ContactPotential& potential,
                              const Points& positions, const std::vector<ContactPotential::Term>& terms,
                              const Friction& friction, const Friction::Holds& holds,

@@ -20,4 +20,10 @@ namespace softkin::physical {
                                            const Friction& friction, const Friction::Holds& holds,
                                            const std::vector<Anchor>& anchors);
 
+/// How their gradient changes along moves of the points, with what friction's normal forces change of it [N]; arguments
+/// as above.
+[[nodiscard]] Points contact_changes(const ContactPotential& potential, const Points& positions,
+                                     const std::vector<ContactPotential::Term>& terms, const Friction& friction,
+                                     const Friction::Holds& holds, const Points& moves);
+
 }  // namespace softkin::physical

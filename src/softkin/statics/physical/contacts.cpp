@@ -238,6 +238,12 @@ void Contacts::tell(const Iterate& at, const Demand& /*demand*/, Term::Scratch& 
                                   own.holds, at.anchors);
 }
 
+Points Contacts::change_along(const Points& nodes, const Scratch& scratch, const Points& moves) const {
+  Points room, room_of_moves;
+  return contact_changes(*potential_, points_.of(nodes, room), scratch.terms, friction_, scratch.holds,
+                         points_.of(moves, room_of_moves));
+}
+
 void Contacts::follow_pushes(const Points& moves, double share, Scratch& scratch) const {
   Points room;
   potential_->follow(scratch.terms, points_.of(moves, room), share, scratch.pushes);

@@ -109,6 +109,10 @@ class Contacts : public Term {
   void tell(const Iterate& at, const Demand& demand, Term::Scratch& scratch, ElementDeformation& out,
             Team& team) const override;
 
+  /// How what pulls on the points changes along moves of the nodes, at a shape whose terms were found and whose
+  /// friction is held: the derivative of the gradient of all that touches and rubs [N].
+  [[nodiscard]] Points change_along(const Points& positions, const Scratch& scratch, const Points& moves) const;
+
   [[nodiscard]] const ContactSurfaces& surfaces() const { return surfaces_; }
   [[nodiscard]] const ContactPotential& potential() const { return *potential_; }
   [[nodiscard]] const ContactPoints& points() const { return points_; }

@@ -106,6 +106,29 @@ bool Equilibria::foretell(const State& at, State there) const {
   return true;
 }
 
+std::vector<std::vector<Vec3>> Equilibria::pressing_changes(const State& state, const std::vector<Points>& moves,
+                                                            Team& team) const {
+  const ContactModel& contact = system_.model().contact;
+  std::vector<std::vector<Vec3>> changes(moves.size(), std::vector<Vec3>(contact.parts.size(), Vec3::Zero()));
+  if (!system_.contact()) return changes;
+  const Inside at(*this, state, team);
+  Lease lease(*this, at->positions, true);
+  const Iterate shape = system_.iterate(*at);
+  system_.contacts()->find(shape.positions, *lease.work().contacts, team);
+  hold_friction(system_, shape, lease.work(), team);
+  Points own = Points::Zero(at->positions.rows(), 3);  // with those of pressures, which touch nothing
+  for (std::size_t k = 0; k < moves.size(); ++k) {
+    own.topRows(moves[k].rows()) = moves[k];
+    const Points change = system_.contacts()->change_along(shape.positions, *lease.work().contacts, own);
+    for (std::size_t p = 0; p < contact.parts.size(); ++p) {
+      if (contact.parts[p].rank == ContactRank::robot) continue;
+      const auto [begin, end] = system_.model().vertices_of_part(static_cast<Index>(p));
+      if (begin < end) changes[k][p] = -change.middleRows(begin, end - begin).colwise().sum().transpose();
+    }
+  }
+  return changes;
+}
+
 ViscousFlow Equilibria::flow(const State& state, Team& team) const {
   ViscousFlow flow;
   if (!system_.viscous()) return flow;

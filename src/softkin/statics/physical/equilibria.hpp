@@ -65,6 +65,10 @@ class Equilibria {
   /// Adds stress and reactions of an equilibrium; see Statics::measured.
   void measure(const State& at, ElementDeformation& out, Team& team) const;
 
+  /// See Statics::pressing_changes.
+  [[nodiscard]] std::vector<std::vector<Vec3>> pressing_changes(const State& at, const std::vector<Points>& moves,
+                                                                Team& team) const;
+
   /// See Statics::flow.
   [[nodiscard]] ViscousFlow flow(const State& at, Team& team) const;
 
