@@ -29,7 +29,8 @@ struct MapEstimate {
 /// Microseconds; a wrong reading is not looked for, but its misfit says that there is one.
 ///
 /// minimises   sum over readings of ((output - read) / deviation)^2 + sum over unknowns of
-///             ((command - mean) / deviation)^2, by Gauss' and Newton's method, damped in units of what was known before
+///             ((command - mean) / deviation)^2, by Gauss' and Newton's method, damped in units of what was known
+///             before
 /// commands    inputs of the map; of the unknowns where the search begins
 /// values      of the outputs; NaN: not read
 /// deviations  of the outputs that were read, > 0

@@ -25,13 +25,8 @@ SurfaceOfSide surface_of(const ContactModel& contact, const auto& counts) {
     side.triangles.push_back(contact.triangles[t]);
     side.vertices.insert(side.vertices.end(), contact.triangles[t].begin(), contact.triangles[t].end());
   }
-  std::sort(side.vertices.begin(), side.vertices.end());
-  side.vertices.erase(std::unique(side.vertices.begin(), side.vertices.end()), side.vertices.end());
+  sort_unique(side.vertices);
   return side;
-}
-
-Vec3 place(const Points& points, Index v) {
-  return points.row(v).transpose();
 }
 
 /// Keeps the nearest pair of a vertex of one side and a triangle of the other in `gap`.
@@ -41,17 +36,17 @@ void look(const Points& points, const SurfaceOfSide& vertices, const SurfaceOfSi
   Box all;
   for (const std::array<Index, 3>& t : triangles.triangles) {
     Box& box = boxes.emplace_back();
-    for (const Index v : t) box.extend(place(points, v));
+    for (const Index v : t) box.extend(vertex_at(points, v));
     all.extend(box);
   }
   contact::FourPoints x;
   for (const Index v : vertices.vertices) {
-    x.col(0) = place(points, v);
+    x.col(0) = vertex_at(points, v);
     if (all.exteriorDistance(x.col(0).eval()) >= gap.width_mm) continue;
     for (std::size_t t = 0; t < boxes.size(); ++t) {
       if (boxes[t].exteriorDistance(x.col(0).eval()) >= gap.width_mm) continue;
       const std::array<Index, 3>& corners = triangles.triangles[t];
-      for (int i = 0; i < 3; ++i) x.col(i + 1) = place(points, corners[static_cast<std::size_t>(i)]);
+      for (int i = 0; i < 3; ++i) x.col(i + 1) = vertex_at(points, corners[static_cast<std::size_t>(i)]);
       const contact::Separation apart = contact::vertex_triangle(x);
       const double width = std::sqrt(apart.squared);
       if (!(width < gap.width_mm)) continue;
@@ -85,9 +80,9 @@ std::optional<Gap> gap_before(const Model& model, Index part, const Points& posi
 
 double change_of(const Gap& gap, const Model& model, const Points& moves) {
   const Points points = physical::ContactPoints::in(model, moves);
-  const Vec3 vertex = place(points, gap.points[0]);
+  const Vec3 vertex = vertex_at(points, gap.points[0]);
   Vec3 other = Vec3::Zero();
-  for (int i = 0; i < 3; ++i) other += gap.corners[i] * place(points, gap.points[static_cast<std::size_t>(i + 1)]);
+  for (int i = 0; i < 3; ++i) other += gap.corners[i] * vertex_at(points, gap.points[static_cast<std::size_t>(i + 1)]);
   return gap.towards.dot(gap.vertex_of_robot ? Vec3(other - vertex) : Vec3(vertex - other));
 }
 
