@@ -97,21 +97,15 @@ class MapProblem {
     return commands;
   }
 
-  /// Of the unknowns in their units.
-  [[nodiscard]] Eigen::MatrixXd covariance(const Point& at) const {
+  /// Sets covariance and freedoms: readings less what they had to tell, the trace of what they took of what was known.
+  void tell(const Point& at, MapEstimate& told) const {
+    const Eigen::MatrixXd left =
+        CholeskyFactor(at.matrix).solve(Eigen::MatrixXd(Eigen::MatrixXd::Identity(count(), count())));
     Eigen::VectorXd units(count());
     for (Index i = 0; i < count(); ++i) units[i] = unknown(i).deviation;
-    const Eigen::MatrixXd scaled =
-        CholeskyFactor(at.matrix).solve(Eigen::MatrixXd(Eigen::MatrixXd::Identity(count(), count())));
-    return units.asDiagonal() * scaled * units.asDiagonal();
-  }
-
-  /// Readings less what they had to tell: of the hat matrix, whose trace is that of 1 less the inverse.
-  [[nodiscard]] double freedoms(const Point& at) const {
-    const auto read = static_cast<double>((!values_.array().isNaN()).count());
-    const Eigen::MatrixXd inverse =
-        CholeskyFactor(at.matrix).solve(Eigen::MatrixXd(Eigen::MatrixXd::Identity(count(), count())));
-    return read - (static_cast<double>(count()) - inverse.trace());
+    told.covariance = units.asDiagonal() * left * units.asDiagonal();
+    told.freedoms =
+        static_cast<double>((!values_.array().isNaN()).count()) - (static_cast<double>(count()) - left.trace());
   }
 
  private:
@@ -160,9 +154,8 @@ std::optional<MapEstimate> estimate_by_map(const KinematicMap& map, const std::v
   }
   told.commands = at.commands;
   told.computed = at.outputs;
-  told.covariance = problem.covariance(at);
   told.chi_square = at.chi_square;
-  told.freedoms = problem.freedoms(at);
+  problem.tell(at, told);
   return told;
 }
 
