@@ -221,8 +221,7 @@ std::vector<std::string> doubts_about(const Model& model, const std::vector<Goal
   if (any_force(goals) && rubs(model))
     doubts.emplace_back(
         "what rubs remembers its way: the force is that on the way of the search, and forward kinematics along the "
-        "same "
-        "commands may come to another one");
+        "same commands may come to another one");
   return doubts;
 }
 

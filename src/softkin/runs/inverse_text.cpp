@@ -88,12 +88,10 @@ InverseTables inverse_tables(const Model& model, const std::vector<NamedGoal>& g
   exerted.columns.front().title = "force on";
   exerted.columns.back().unit = "N";
   for (std::size_t i = 0; i < goals.size(); ++i) {
-    const auto* force = std::get_if<ForceGoal>(&goals[i].goal.what);
-    const double error = found.errors_mm[static_cast<Index>(i)];
-    (force != nullptr ? exerted : reached)
+    (std::holds_alternative<ForceGoal>(goals[i].goal.what) ? exerted : reached)
         .rows.push_back({goals[i].name, asked_text(goals[i].goal),
                          found_text(model, goals[i].goal, found.equilibrium.state.positions, step),
-                         force != nullptr ? error / force->mm_per_N : error});
+                         own_error(goals[i].goal, found.errors_mm[static_cast<Index>(i)])});
   }
   return {std::move(actuators), std::move(reached), std::move(exerted)};
 }

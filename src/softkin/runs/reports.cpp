@@ -156,13 +156,12 @@ Json goals_json(const Model& model, const std::vector<NamedGoal>& goals, const I
     Json json = {{"of", goals[i].name}};
     json.update(asked_json(goal));
     const bool direction = std::holds_alternative<DirectionGoal>(goal.what);
-    const auto* force = std::get_if<ForceGoal>(&goal.what);
-    const double error = found.errors_mm[static_cast<Index>(i)];
-    json[force != nullptr ? "found_N"
-         : direction      ? "found"
-                          : "found_mm"] = json_of(found_of(model, goal, found.equilibrium.state.positions, record));
+    const bool force = std::holds_alternative<ForceGoal>(goal.what);
+    json[force       ? "found_N"
+         : direction ? "found"
+                     : "found_mm"] = json_of(found_of(model, goal, found.equilibrium.state.positions, record));
     json["weight"] = goal.weight;
-    json[force != nullptr ? "error_N" : "error_mm"] = force != nullptr ? error / force->mm_per_N : error;
+    json[force ? "error_N" : "error_mm"] = own_error(goal, found.errors_mm[static_cast<Index>(i)]);
     all.push_back(json);
   }
   return all;

@@ -32,13 +32,16 @@ std::string ends_text(const Model& model, const InverseResult& found) {
 
 }  // namespace
 
+double own_error(const Goal& goal, double error_mm) {
+  const auto* force = std::get_if<ForceGoal>(&goal.what);
+  return force != nullptr ? error_mm / force->mm_per_N : error_mm;
+}
+
 Misses misses_of(const std::vector<Goal>& goals, const InverseResult& found) {
   Misses misses;
   for (std::size_t i = 0; i < goals.size(); ++i) {
-    const double error = found.errors_mm[static_cast<Index>(i)];
-    const auto* force = std::get_if<ForceGoal>(&goals[i].what);
-    std::optional<double>& most = force != nullptr ? misses.N : misses.mm;
-    most = std::max(most.value_or(0), force != nullptr ? error / force->mm_per_N : error);
+    std::optional<double>& most = std::holds_alternative<ForceGoal>(goals[i].what) ? misses.N : misses.mm;
+    most = std::max(most.value_or(0), own_error(goals[i], found.errors_mm[static_cast<Index>(i)]));
   }
   return misses;
 }

@@ -14,6 +14,9 @@ struct Misses {
   std::optional<double> mm, N;  // none: no such goal
 };
 
+/// An error as a search has it, in the goal's own unit: of a force [N], else [mm].
+[[nodiscard]] double own_error(const Goal& goal, double error_mm);
+
 /// found: has errors, one for each goal
 [[nodiscard]] Misses misses_of(const std::vector<Goal>& goals, const InverseResult& found);
 
