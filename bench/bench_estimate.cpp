@@ -28,6 +28,8 @@ using softkin::bench::finger_length;
 constexpr double ninety_of_2 = 4.6052, ninety_of_3 = 6.2514;
 /// Of the largest force along each axis that maps are made for: under the whole one the finger has no equilibrium.
 constexpr double map_force_share = 0.2;
+/// An update of so many is told by itself.
+constexpr int many_equilibria = 4;
 
 struct Options {
   int draws = 100, swaps = 100, updates = 300, map_draws = 0;
@@ -228,7 +230,7 @@ void run_draws(const Model& model, const Options& options) {
 }
 
 /// A line of what was drawn and told.
-void tell_swap(int draw, const Truth& truth, const std::vector<std::size_t>& wrong, const Estimate& told) {
+void tell_each(int draw, const Truth& truth, const std::vector<std::size_t>& wrong, const Estimate& told) {
   const auto list = [](const std::vector<std::size_t>& groups) {
     std::string text;
     for (const std::size_t g : groups) text += std::to_string(g + 1);
@@ -272,7 +274,7 @@ void run_swaps(const Model& model, const Options& options) {
       const Estimate& told = estimator.update(truth.commands, values);
       named += std::includes(told.left_out.begin(), told.left_out.end(), wrong.begin(), wrong.end());
       exact += told.left_out == wrong;
-      if (options.verbose) tell_swap(d, truth, wrong, told);
+      if (options.verbose) tell_each(d, truth, wrong, told);
       seconds.push_back(told.seconds);
       if (told.status == Status::converged)
         force_N.push_back(
@@ -330,6 +332,7 @@ void run_updates(const Model& model, const Options& options) {
     if (u > 0) processor.push_back(processor_seconds() - begin);
     failed += told.status != Status::converged;
     truth.positions = guess.equilibrium.state.positions;
+    if (options.verbose && told.equilibria > many_equilibria) tell_each(u, truth, {}, told);
     if (u == 0) continue;
     errors.add(truth, told);
     seconds.push_back(told.seconds);
@@ -427,7 +430,7 @@ int main(int argc, char** argv) {
   app.add_option("--places", options.places, "Where a search begins to look");
   app.add_option("--starts", options.starts, "Of these that it follows");
   app.add_flag("--quadratic", options.quadratic, "Elements of order 2");
-  app.add_flag("--verbose", options.verbose, "A line for each of the swaps");
+  app.add_flag("--verbose", options.verbose, "A line for each of the swaps, and for updates that took long");
   app.add_flag("--volume-only", options.volume_only, "Read the chamber's volume at a pressure instead of markers");
   CLI11_PARSE(app, argc, argv);
   const Model model = compile(softkin::bench::touched_finger(options.quadratic));

@@ -112,11 +112,11 @@ void add_options(CLI::App& command, RobotOptions& options) {
   constexpr const char* given[][2] = {{"--deviation", "MM"},          {"--deviation-pressure", "KPA"},
                                       {"--deviation-tension", "N"},   {"--deviation-length", "MM"},
                                       {"--deviation-volume", "MM^3"}, {"--deviation-force", "N"},
-                                      {"--deviation-angle", "DEG"}};
+                                      {"--deviation-angle", "DEG"},    {"--deviation-direction", "D"}};
   for (std::size_t k = 0; k < readings; ++k)
     add_value(command, given[k][0], options.deviations[k], given[k][1],
               std::string("Of a ") + reading_names[k] + " that was read (default: by what is left)",
-              positive(std::string("a number > 0 in ") + reading_units[k]));
+              positive("a number > 0" + in_unit(static_cast<Reading>(k))));
   add_value(command, "--keep", options.keep, "N", "Poses that are not fitted to but foretold, spread evenly",
             CLI::Range(0, 100000).description(""));
   command.add_flag(

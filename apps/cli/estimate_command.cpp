@@ -1,7 +1,9 @@
 #include <cstdio>
 #include <softkin/core/error.hpp>
 #include <softkin/io/table/measured_poses.hpp>
+#include <softkin/runs/answers.hpp>
 #include <softkin/runs/estimate_plan.hpp>
+#include <softkin/runs/map_estimates.hpp>
 
 #include "command.hpp"
 #include "run_text.hpp"
@@ -18,11 +20,11 @@ namespace {
 constexpr const char* deviation_options[][2] = {{"--deviation", "MM"},          {"--deviation-pressure", "KPA"},
                                                 {"--deviation-tension", "N"},   {"--deviation-length", "MM"},
                                                 {"--deviation-volume", "MM^3"}, {"--deviation-force", "N"},
-                                                {"--deviation-angle", "DEG"}};
+                                                {"--deviation-angle", "DEG"},    {"--deviation-direction", "D"}};
 
 /// What the user asks of `softkin estimate`.
 struct EstimateAsked : SolveOptions {
-  std::string readings_file, report, table;
+  std::string readings_file, report, table, map;
   std::vector<std::string> unknowns;
   std::array<std::optional<double>, readings> deviations{};
   EstimatorOptions how;
@@ -30,13 +32,26 @@ struct EstimateAsked : SolveOptions {
   bool keep_all = false, json = false, may_replace = false;
 };
 
+void check_map(const EstimateAsked& asked) {
+  if (asked.map.empty()) return;
+  const SolveOptions usual;
+  const bool changed = asked.solver_name != usual.solver_name || asked.tolerance_mm != usual.tolerance_mm ||
+                       asked.max_iterations != usual.max_iterations || asked.stable || asked.instant;
+  if (asked.plan || asked.how.fade_s > 0 || asked.keep_all || changed)
+    throw InvalidInput(
+        "a map tells each row by itself, leaves no reading out and plans none: --map goes without --plan, --fade, "
+        "--keep-all and the solver's options");
+}
+
 int run_estimate(const EstimateAsked& asked) {
   check_extension("--report", asked.report, {{".json", ""}});
   check_extension("--table", asked.table, {{".csv", ""}});
   check_solver(asked);
+  check_map(asked);
   std::vector<EstimatedUnknown> unknowns;
   for (const std::string& text : asked.unknowns) unknowns.push_back(parse_unknown("--unknown", text));
   std::vector<fs::path> inputs{asked.scene, asked.readings_file};
+  if (!asked.map.empty()) inputs.emplace_back(asked.map);
   const Model model = asked_robot(asked, inputs);
   const std::vector<Output> outputs = asked_outputs({{"--report", asked.report}, {"--table", asked.table}});
   check_outputs(outputs, inputs, asked.may_replace);
@@ -59,12 +74,17 @@ int run_estimate(const EstimateAsked& asked) {
     done_rows = number + 1;
     if (asked.plan) planner.add(told);
   };
+  const runs::AskedEstimates what{model, poses, unknowns, deviations, names};
   runs::EstimateReport report =
-      runs::estimate_poses(model, poses, unknowns, deviations, names, how, row, [&](const Progress&) {
-        line.show(static_cast<double>(done_rows) / static_cast<double>(poses.commands.size()),
-                  "row " + std::to_string(done_rows + 1) + " of " + std::to_string(poses.commands.size()));
-        return !interrupted();
-      });
+      asked.map.empty() ? runs::estimate_poses(what, how, row,
+                                               [&](const Progress&) {
+                                                 line.show(static_cast<double>(done_rows) /
+                                                               static_cast<double>(poses.commands.size()),
+                                                           "row " + std::to_string(done_rows + 1) + " of " +
+                                                               std::to_string(poses.commands.size()));
+                                                 return !interrupted();
+                                               })
+                        : runs::estimate_poses_by_map(runs::read_map_of(model, asked.map), what, row);
   line.clear();
   report.planned = asked.plan.has_value();
   if (report.planned) report.plan = planner.plan();
@@ -91,11 +111,14 @@ void add_options(CLI::App& command, EstimateAsked& asked) {
   for (std::size_t k = 0; k < readings; ++k)
     add_value(command, deviation_options[k][0], asked.deviations[k], deviation_options[k][1],
               std::string("Standard deviation of a ") + reading_names[k] + " that was read",
-              positive(std::string("a number > 0 in ") + reading_units[k]));
+              positive("a number > 0" + in_unit(static_cast<Reading>(k))));
   add_value(command, "--fade", asked.how.fade_s, "S",
             "Time in which what pushes may become anything else: rows go on\nfrom each other (default: each by itself)",
             positive_time());
   command.add_flag("--keep-all", asked.keep_all, "Leave no reading out that contradicts the others");
+  add_value(command, "--map", asked.map, "F.skmap",
+            "Kinematic map of the robot (softkin map) whose inputs are the\nunknowns: tells in its place, in "
+            "microseconds a row");
   add_value(command, "--plan", asked.plan, "N",
             "Say which N further markers on the surface, or markers, sensors,\nlengths and volumes of the scene whose "
             "deviation is given, would\ntell most, one after the other, over all rows",

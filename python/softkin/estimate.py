@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 
 __all__ = ["Estimate", "Estimator", "PlannedReading", "ToldNumber", "ToldPlace"]
 
-_KINDS = ("marker_mm", "pressure_kPa", "tension_N", "length_mm", "volume_mm3", "force_N", "angle_deg")
-_PLANNED = ("marker_mm", "length_mm", "volume_mm3", "angle_deg")
+_KINDS = ("marker_mm", "pressure_kPa", "tension_N", "length_mm", "volume_mm3", "force_N", "angle_deg", "direction")
+_PLANNED = ("marker_mm", "length_mm", "volume_mm3", "angle_deg", "direction")
 
 
 @dataclass(frozen=True)
@@ -228,7 +228,7 @@ class Estimator:
 
         estimates   of this estimator, over which information is averaged
         deviations  of what may be read: marker_mm (of further markers on the surface, too), length_mm, volume_mm3,
-                    angle_deg; a kind that is left out is not looked at
+                    angle_deg, direction; a kind that is left out is not looked at
         count       1 or more; fewer are told where no more would tell anything
         """
         unknown = set(deviations) - set(_PLANNED)

@@ -187,6 +187,24 @@ TEST(RobotFit, ForcesOfSupportsTellTheDensity) {
   EXPECT_NEAR(fit.values[0], 1000, 1e-3);
 }
 
+/// A tracker at the tip tells how it bends, and how the base stands; its slopes end where the truth is.
+TEST(RobotFit, DirectionsTellTheModulusAndTheBase) {
+  const Arm arm(std::string(scene) + "sensors: [{name: tracker, kind: direction, region: x_high, axis: [1, 0, 0.5]}]\n");
+  const NumberedRobot made = arm.robot({"materials.body.youngs_modulus=0.2", "base.ry=4", "base.z=7"}),
+                      robot = arm.robot({"materials.body.youngs_modulus=0.3,0.05,2", "base.ry"});
+  MeasuredPoses poses = arm.poses({});
+  poses.columns.clear();
+  for (int axis = 0; axis < 3; ++axis) poses.columns.push_back({"d", -1, axis, -1, Reading::direction, -1, 0});
+  poses.values.setZero(static_cast<Index>(poses.commands.size()), 3);
+  poses.values = predict_poses(made, poses, made.start(), {}).computed.values;
+  EXPECT_NEAR(poses.values.row(0).norm(), 1, 1e-9);
+  const RobotFit fit = fit_robot(robot, poses, {});
+  EXPECT_EQ(fit.status, Status::converged) << fit.remark;
+  EXPECT_NEAR(fit.values[0], 0.2, 1e-5);
+  EXPECT_NEAR(fit.values[1], 4, 1e-3);
+  EXPECT_LT(fit.iterations, 10);
+}
+
 /// Nine of ten intervals of 1.645 deviations hold the truth.
 TEST(RobotFit, DeviationsAreThoseOfTheNoise) {
   const Arm arm;
@@ -285,7 +303,7 @@ TEST(RobotFit, RefusesWithAReason) {
 }
 
 TEST(MeasuredPoses, AreReadWithGaps) {
-  const Arm arm;
+  const Arm arm(std::string(scene) + "sensors: [{name: imu, kind: direction, region: x_high, axis: [1, 0, 0]}]\n");
   const Model model = arm.robot({}).model(Eigen::VectorXd(0));
   const TemporaryFolder folder;
   const auto read = [&](const std::string& text) {
@@ -300,6 +318,10 @@ TEST(MeasuredPoses, AreReadWithGaps) {
   EXPECT_EQ(poses.values(1, 1), 4.5);
   EXPECT_EQ(poses.columns[1].marker, 1);
   EXPECT_EQ(poses.columns[1].axis, 2);
+  const PoseColumn direction = read("t1,imu_direction_y\n0,0.3\n").columns[0];
+  EXPECT_EQ(direction.kind, Reading::direction);
+  EXPECT_EQ(direction.axis, 1);
+  EXPECT_EQ(direction.sensor, 0);
   for (const auto& [text, why] :
        std::vector<std::pair<std::string, std::string>>{{"t1,tap_x_mm\n0,1\n", "no marker 'tap'"},
                                                         {"t1,tip_x\n0,1\n", "tip_x"},

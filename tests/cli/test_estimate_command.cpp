@@ -102,6 +102,43 @@ TEST(EstimateCommand, PlansWhatToReadFurther) {
   expect_words(none.errors, {"--plan: Value 0 not in range 1 to 100"});
 }
 
+/// A map of the block tells the same as the block, to the map's accuracy.
+TEST(EstimateCommand, ByAMapTellsTheSame) {
+  const PushedBlock folder;
+  const std::string map = folder / "block.skmap";
+  const ProgramResult made = run_program({"map", folder.scene, "-o", map, "--accuracy", "0.0005"});
+  ASSERT_EQ(made.exit_code, 0) << made.errors;
+  const std::vector<std::string> asked{"--unknown", "push", "--deviation", "0.002", "--json"};
+  std::vector<std::string> by_map = asked;
+  by_map.insert(by_map.end(), {"--map", map});
+  const ProgramResult told = folder.estimate(by_map), expected = folder.estimate(asked);
+  ASSERT_EQ(told.exit_code, 0) << told.errors << told.output;
+  ASSERT_EQ(expected.exit_code, 0) << expected.errors;
+  const json rows = json::parse(told.output)["rows"], others = json::parse(expected.output)["rows"];
+  ASSERT_EQ(rows.size(), 3u);
+  for (std::size_t r = 0; r < 3; ++r) {
+    EXPECT_EQ(rows[r]["equilibria"], 0);
+    for (std::size_t n = 0; n < 2; ++n) {
+      const json &one = rows[r]["numbers"][n], &other = others[r]["numbers"][n];
+      EXPECT_EQ(one["name"], other["name"]);
+      const double deviation = other["deviation"];
+      EXPECT_NEAR(one["value"].get<double>(), other["value"].get<double>(), 0.3 * deviation);
+      EXPECT_NEAR(one["deviation"].get<double>(), deviation, 0.05 * deviation);
+    }
+    EXPECT_EQ(rows[r]["readings"].size(), others[r]["readings"].size());
+  }
+  for (const auto& [more, why] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+           {{"--unknown", "push:place", "--deviation", "1"}, "a map knows forces at known places"},
+           {{"--unknown", "push", "--deviation", "1", "--fade", "2"}, "a map tells each row by itself"},
+           {{"--unknown", "materials.body.stiffness=1+-0.1", "--deviation", "1"}, "is no input of the map"}}) {
+    std::vector<std::string> words = more;
+    words.insert(words.end(), {"--map", map});
+    const ProgramResult refused = folder.estimate(words);
+    EXPECT_EQ(refused.exit_code, 2);
+    expect_words(refused.errors, {why});
+  }
+}
+
 TEST(EstimateCommand, Refusals) {
   const PushedBlock folder;
   const auto refused = [&](const std::vector<std::string>& more, const std::string& why) {

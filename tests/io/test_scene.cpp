@@ -226,8 +226,15 @@ TEST(Scene, Tractions) {
       "softkin: 1\nmesh: {file: a.msh}\ntractions:\n"
       "  - {name: wind, region: side, traction: [1, -2, 3]}\n"
       "  - {name: skin, region: side, traction: [0, 0, 4], follows: true}\n"
-      "  - {name: water, box: [[0, 0, 0], [1, 2, 3]], pressure: 5}\n");
-  ASSERT_EQ(spec.tractions.size(), 3u);
+      "  - {name: water, box: [[0, 0, 0], [1, 2, 3]], pressure: 5}\n"
+      "  - {name: palm, region: side, pressure: 2, range: [0, 9]}\n"
+      "  - {name: hand, region: side, range: [-1, 9]}\n");
+  ASSERT_EQ(spec.tractions.size(), 5u);
+  EXPECT_EQ(spec.tractions[3].pressure_kPa, 2);
+  EXPECT_EQ(spec.tractions[3].range_kPa, (std::array<double, 2>{0, 9}));
+  EXPECT_TRUE(spec.tractions[4].follows);
+  EXPECT_EQ(spec.tractions[4].range_kPa, (std::array<double, 2>{-1, 9}));
+  EXPECT_FALSE(spec.tractions[2].range_kPa);
   const TractionSpec &wind = spec.tractions[0], &skin = spec.tractions[1], &water = spec.tractions[2];
   EXPECT_EQ(wind.name, "wind");
   EXPECT_EQ(wind.kilopascals, Vec3(1, -2, 3));
@@ -239,6 +246,21 @@ TEST(Scene, Tractions) {
   EXPECT_TRUE(water.follows);
   EXPECT_EQ(water.pressure_kPa, 5);
   EXPECT_EQ(water.kilopascals, Vec3(0, 0, 0));
+}
+
+TEST(Scene, Wrenches) {
+  const RobotSpec spec = parse(
+      "softkin: 1\nmesh: {file: a.msh}\nforces:\n"
+      "  - {name: twist, region: tip, moment: [1, -2, 3]}\n"
+      "  - {name: tool, region: tip, range: [[-1, 1], [0, 0], [0, 2]], moment_range: [[0, 0], [-5, 5], [0, 0]]}\n");
+  ASSERT_EQ(spec.forces.size(), 2u);
+  EXPECT_EQ(spec.forces[0].moment, Vec3(1, -2, 3));
+  EXPECT_EQ(spec.forces[0].force, Vec3(0, 0, 0));
+  EXPECT_FALSE(spec.forces[0].moment_range);
+  ASSERT_TRUE(spec.forces[1].moment_range && spec.forces[1].range);
+  EXPECT_EQ((*spec.forces[1].moment_range)[0], Vec3(0, -5, 0));
+  EXPECT_EQ((*spec.forces[1].moment_range)[1], Vec3(0, 5, 0));
+  EXPECT_EQ((*spec.forces[1].range)[1], Vec3(1, 0, 2));
 }
 
 TEST(Scene, Fibres) {
@@ -472,7 +494,7 @@ TEST(Scene, ExamplesOfTheManualAreScenes) {
     const std::string text = manual.substr(begin, manual.find("```", begin) - begin);
     specs.push_back(parse_scene(text, "robots/scene.yaml", files));
   }
-  ASSERT_EQ(specs.size(), 15u);
+  ASSERT_EQ(specs.size(), 16u);
   EXPECT_EQ(specs[0].actuators.size(), 3u);
   EXPECT_EQ(specs[0].markers.size(), 2u);
   EXPECT_EQ(specs[0].formulation, Formulation::target_shape);
@@ -490,13 +512,15 @@ TEST(Scene, ExamplesOfTheManualAreScenes) {
   EXPECT_EQ(specs[8].actuators[0].sheath_friction, 0.05);
   EXPECT_EQ(specs[8].actuators[0].sheath_turns_degrees, 270);
   EXPECT_EQ(specs[9].actuators.at(0).kind, ActuatorKind::growth);
-  EXPECT_EQ(specs[10].fibres.size(), 2u);
-  ASSERT_EQ(specs[11].layers.size(), 2u);
-  EXPECT_TRUE(specs[11].layers[0]->bending);
-  EXPECT_TRUE(specs[12].materials.empty()) << "of film alone";
-  EXPECT_EQ(specs[12].actuators.at(0).wall, "pouch");
-  EXPECT_EQ(specs[13].sensors.size(), 2u);
-  EXPECT_EQ(specs[14].contact.value().obstacles.size(), 2u);
+  EXPECT_TRUE(specs[10].forces.at(0).moment_range);
+  EXPECT_TRUE(specs[10].tractions.at(0).range_kPa);
+  EXPECT_EQ(specs[11].fibres.size(), 2u);
+  ASSERT_EQ(specs[12].layers.size(), 2u);
+  EXPECT_TRUE(specs[12].layers[0]->bending);
+  EXPECT_TRUE(specs[13].materials.empty()) << "of film alone";
+  EXPECT_EQ(specs[13].actuators.at(0).wall, "pouch");
+  EXPECT_EQ(specs[14].sensors.size(), 3u);
+  EXPECT_EQ(specs[15].contact.value().obstacles.size(), 2u);
 }
 
 TEST(Scene, Layers) {

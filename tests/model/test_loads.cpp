@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <softkin/model/names.hpp>
 
 #include "model/compile_testing.hpp"
 #include "model/physical_robots.hpp"
@@ -144,6 +145,53 @@ TEST(CommandedForce, Refusals) {
                            {"held", [](RobotSpec& s) { s.forces[0].force[1] = 1; },
                             "force 'push' is 1 N along y, outside its range [0, 0] N"},
                        });
+}
+
+RobotSpec wrench_block() {
+  RobotSpec good = heavy_block(Split::six);
+  const std::array<Vec3, 2> range{Vec3(-2, 0, -2), Vec3(2, 0, 2)};
+  good.rigid = {{{std::string("x_high"), {}}, "end"}};
+  good.forces = {{"tool", mean("x_high"), {1, 0, 0}, range, {0, 0, 1}, range}};
+  good.tractions = {{"water", {std::string("z_low"), {}}, true, {0, 0, 0}, 1, std::array<double, 2>{-3, 3}}};
+  return good;
+}
+
+/// Forces first, then the moment of each, then pressures.
+TEST(CommandedWrench, HasAMomentToo) {
+  const Model model = compile(wrench_block());
+  std::vector<std::string> names;
+  for (const Actuator& command : model.actuators) {
+    names.push_back(command_column(command));
+    EXPECT_TRUE(loads_robot(command));
+    EXPECT_FALSE(drives(command));
+  }
+  EXPECT_EQ(names, (std::vector<std::string>{"tool_fx_N", "tool_fz_N", "tool_mx_Nmm", "tool_mz_Nmm", "water_kPa"}));
+  EXPECT_EQ(model.rest_actuation(), (Eigen::VectorXd(5) << 1, 0, 0, 1, 1).finished());
+  ASSERT_EQ(model.moments.size(), 1u);
+  EXPECT_EQ(model.moments[0].vertices.size(), 3u) << "in a plane";
+  EXPECT_TRUE(model.moments[0].moment_Nmm.isZero(0));
+  EXPECT_NE(fingerprint_of(model), fingerprint_of(compile(heavy_block(Split::six))));
+}
+
+TEST(CommandedWrench, Refusals) {
+  expect_refused(
+      wrench_block(),
+      {
+          {"soft", [](RobotSpec& s) { s.rigid.clear(); },
+           "the moment of force 'tool' acts on a rigid region, which 'x_high' is not: list it under 'rigid'"},
+          {"elsewhere", [](RobotSpec& s) { s.forces[0].at = mean("y_high"); }, "which 'y_high' is not"},
+          {"point", [](RobotSpec& s) { s.forces[0].at = at(30, 3, 4); },
+           "the moment of force 'tool' acts on a rigid region: give 'region' in place of 'point'"},
+          {"infinite", [](RobotSpec& s) { s.forces[0].moment[1] = INFINITY; }, "the moment of force 'tool' is not finite"},
+          {"outside", [](RobotSpec& s) { s.forces[0].moment[0] = 5; },
+           "the moment of force 'tool' is 5 N mm along x, outside its range [-2, 2] N mm"},
+          {"order", [](RobotSpec& s) { s.tractions[0].range_kPa = {4, -4}; },
+           "traction 'water' has the range [4, -4] kPa: the low end comes first"},
+          {"pressure", [](RobotSpec& s) { s.tractions[0].pressure_kPa = 4; },
+           "traction 'water' is 4 kPa, outside its range [-3, 3] kPa"},
+          {"name", [](RobotSpec& s) { s.tractions[0].name = "tool_fx"; },
+           "the command 'tool_fx' of a load has the name of an actuator"},
+      });
 }
 
 }  // namespace

@@ -27,7 +27,13 @@ RobotSpec sensed_block(bool quadratic) {
   const SensorSpec strain{.name = "strain", .kind = SensorKind::length, .points = {{2, 4, 1}, {28, 4, 1}}};
   const SensorSpec bend{
       .name = "bend", .kind = SensorKind::angle, .points = {}, .sections = {"x_low", "x_high"}, .axis = Vec3(0, 2, 0)};
-  spec.sensors = {std::make_shared<const SensorSpec>(strain), std::make_shared<const SensorSpec>(bend)};
+  const SensorSpec tracker{.name = "tracker",
+                           .kind = SensorKind::direction,
+                           .points = {},
+                           .sections = {"x_high"},
+                           .axis = Vec3(3, 0, 4)};
+  spec.sensors = {std::make_shared<const SensorSpec>(strain), std::make_shared<const SensorSpec>(bend),
+                  std::make_shared<const SensorSpec>(tracker)};
   return spec;
 }
 
@@ -68,7 +74,25 @@ TEST(Sensor, IsOfTheShapeAlone) {
   const Mat3 turn = Eigen::AngleAxisd(1.1, Vec3(1, 2, 3).normalized()).toRotationMatrix();
   const Points shape = bent(model.rest, 0.7);
   const Points moved = (shape * turn.transpose()).rowwise() + Vec3(5, -7, 40).transpose();
-  for (const auto& sensor : model.sensors) EXPECT_NEAR(sensor->at(moved), sensor->at(shape), 1e-9);
+  for (std::size_t s = 0; s < 2; ++s) EXPECT_NEAR(model.sensors[s]->at(moved), model.sensors[s]->at(shape), 1e-9);
+}
+
+/// Of a direction that turns with the end of the block, and with the block as a whole.
+TEST(Sensor, DirectionTurnsWithItsRegion) {
+  for (const bool quadratic : {false, true}) {
+    const Model model = compile(sensed_block(quadratic));
+    const Sensor& tracker = *model.sensors.at(2);
+    const auto direction = [&](const Points& at) {
+      return Vec3(tracker.at(at, 0), tracker.at(at, 1), tracker.at(at, 2));
+    };
+    EXPECT_LT((direction(model.rest) - Vec3(0.6, 0, 0.8)).norm(), 1e-9);
+    const Points shape = bent(model.rest, 0.9);  // about y
+    const Vec3 turned = Eigen::AngleAxisd(0.9, Vec3::UnitY()) * Vec3(0.6, 0, 0.8);
+    EXPECT_LT((direction(shape) - turned).norm(), 1e-9);
+    const Mat3 turn = Eigen::AngleAxisd(1.1, Vec3(1, 2, 3).normalized()).toRotationMatrix();
+    const Points moved = (shape * turn.transpose()).rowwise() + Vec3(5, -7, 40).transpose();
+    EXPECT_LT((direction(moved) - turn * turned).norm(), 1e-9);
+  }
 }
 
 TEST(Sensor, VelocityIsItsDerivative) {
@@ -78,12 +102,14 @@ TEST(Sensor, VelocityIsItsDerivative) {
     Points moves = model.rest;
     for (Index v = 0; v < moves.rows(); ++v)
       moves.row(v) << std::sin(0.3 * v), std::cos(1.1 * v), std::sin(0.7 * v + 1) + 0.05 * model.rest(v, 0);
-    for (const auto& sensor : model.sensors) {
-      const double h = 1e-4;
-      const auto at = [&](double times) { return sensor->at(shape + times * h * moves); };
-      const double difference = (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * h);
-      EXPECT_NEAR(sensor->velocity(shape, moves), difference, 1e-8 * std::abs(difference) + 1e-9) << sensor->name;
-    }
+    for (const auto& sensor : model.sensors)
+      for (int component = 0; component < 3; ++component) {
+        const double h = 1e-4;
+        const auto at = [&](double times) { return sensor->at(shape + times * h * moves, component); };
+        const double difference = (8 * (at(1) - at(-1)) - (at(2) - at(-2))) / (12 * h);
+        EXPECT_NEAR(sensor->velocity(shape, moves, component), difference, 1e-8 * std::abs(difference) + 1e-9)
+            << sensor->name;
+      }
   }
 }
 

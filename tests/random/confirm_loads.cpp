@@ -11,8 +11,13 @@ namespace softkin::random_robots {
 void add_tractions(const Model& model, const State& state, Forces& forces) {
   using Real2 = Eigen::Matrix<Real, 3, 2>;
   using Real3 = Eigen::Matrix<Real, 3, 3>;
-  for (const FollowingTraction& traction : model.tractions) {
+  for (std::size_t t = 0; t < model.tractions.size(); ++t) {
+    const FollowingTraction& traction = model.tractions[t];
     if (!traction.deeper_MPa_mm.isZero(0)) continue;
+    Real pressure = static_cast<Real>(state.share) * static_cast<Real>(traction.pressure_MPa);
+    for (std::size_t a = 0; a < model.actuators.size(); ++a)
+      if (model.actuators[a].kind == ActuatorKind::pressure && model.actuators[a].other == static_cast<Index>(t))
+        pressure += 1e-3L * static_cast<Real>(state.actuation[static_cast<Index>(a)]);
     for (const LoadedFace& loaded : traction.faces) {
       const std::vector<Index> nodes = nodes_of(loaded.face);
       for (const TrianglePoint& point : triangle_points(nodes.size())) {
@@ -29,9 +34,10 @@ void add_tractions(const Model& model, const State& state, Forces& forces) {
         to << now, normal.normalized();
         const Eigen::JacobiSVD<Real3> parts(to * from.inverse(), Eigen::ComputeFullU | Eigen::ComputeFullV);
         const Real3 turn = parts.matrixU() * parts.matrixV().transpose();
-        const RealVec3 force = static_cast<Real>(state.share * loaded.share * point.weight) *
-                               (normal.norm() * (turn * traction.traction_MPa.cast<Real>()) -
-                                static_cast<Real>(traction.pressure_MPa) * normal);
+        const RealVec3 force =
+            static_cast<Real>(loaded.share * point.weight) *
+            (static_cast<Real>(state.share) * normal.norm() * (turn * traction.traction_MPa.cast<Real>()) -
+             pressure * normal);
         for (std::size_t i = 0; i < nodes.size(); ++i)
           forces.add(nodes[i], -static_cast<Real>(point.shape[static_cast<Eigen::Index>(i)]) * force,
                      sums * rounding_unit * force.norm());

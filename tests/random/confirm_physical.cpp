@@ -355,7 +355,8 @@ void add_actuators(const Model& model, const Equilibrium& found, Forces& forces,
     const auto index = static_cast<Index>(a);
     const double multiplier = state.multipliers[index];
     if (actuator.kind == ActuatorKind::dea || actuator.kind == ActuatorKind::magnetic ||
-        actuator.kind == ActuatorKind::turn || actuator.kind == ActuatorKind::growth) {
+        actuator.kind == ActuatorKind::turn || actuator.kind == ActuatorKind::growth ||
+        actuator.kind == ActuatorKind::moment || actuator.kind == ActuatorKind::pressure) {
       const bool charged = actuator.kind == ActuatorKind::dea && actuator.control == Control::load;
       const double expected = charged ? state.actuation[index] : 0;
       if (!(std::abs(multiplier - expected) <= 4 * rounding_unit * std::abs(expected)))
@@ -497,8 +498,22 @@ struct Balance {
 };
 
 /// floor: near it, what pushes the region up and tilts it is not known
-void enter_rigid(const Model& model, const RigidRegion& region, const Points& positions, const Forces& forces,
+/// What moments add up to on a rigid region.
+RealVec3 moment_on(const Model& model, const RigidRegion& region, const State& state) {
+  RealVec3 sum = RealVec3::Zero();
+  for (std::size_t m = 0; m < model.moments.size(); ++m) {
+    if (!std::binary_search(region.vertices.begin(), region.vertices.end(), model.moments[m].vertices[0])) continue;
+    sum += static_cast<Real>(state.share) * model.moments[m].moment_Nmm.cast<Real>();
+    for (std::size_t a = 0; a < model.actuators.size(); ++a)
+      if (model.actuators[a].kind == ActuatorKind::moment && model.actuators[a].other == static_cast<Index>(m))
+        sum[model.actuators[a].axis] += static_cast<Real>(state.actuation[static_cast<Index>(a)]);
+  }
+  return sum;
+}
+
+void enter_rigid(const Model& model, const RigidRegion& region, const State& state, const Forces& forces,
                  const ConfirmedFloor* floor, Balance& balance) {
+  const Points& positions = state.positions;
   RigidMoves moves = moves_of(model, region);
   const auto near = [&](Index v) { return floor && floor->near(v); };
   if (std::any_of(region.vertices.begin(), region.vertices.end(), near))
@@ -516,6 +531,7 @@ void enter_rigid(const Model& model, const RigidRegion& region, const Points& po
     stiffness += forces.stiffness[v];
     rounding += forces.rounding[v];
   }
+  moment -= moment_on(model, region, state);
   for (int axis = 0; axis < 3; ++axis) {
     const std::string name = "rigid region '" + region.name + "'";
     if (moves.slides[axis]) balance.enter(std::abs(force[axis]), size, stiffness, rounding, name + " pulled");
@@ -559,7 +575,7 @@ void confirm_physical(const Model& model, const Equilibrium& found, const State&
   }
   for (const RigidRegion& region : model.rigid) {
     check_shape(model, region, state.positions, out);
-    enter_rigid(model, region, state.positions, forces, floor ? &*floor : nullptr, balance);
+    enter_rigid(model, region, state, forces, floor ? &*floor : nullptr, balance);
   }
   for (Index v = 0; v < model.rest.rows(); ++v) {
     Real square = 0;

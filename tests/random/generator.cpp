@@ -85,6 +85,7 @@ RandomCase make_case(std::uint64_t seed) {
   make_sealed(m);
   make_fibres(m);
   make_layers(m);
+  make_wrenches(m);
   spoil_number(m);
   return std::move(m.made);
 }

@@ -76,6 +76,8 @@ void make_weights(Making& m);
 /// Some supports turn, by angles that the commands say.
 void make_turns(Making& m);
 void make_tractions(Making& m);
+/// Moments on rigid ends; they and some pressures are commanded. After all that commands but loads.
+void make_wrenches(Making& m);
 /// Threads through some robots and around them, before what is spoilt.
 void make_fibres(Making& m);
 /// Sheets on faces of the body.

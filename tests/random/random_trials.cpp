@@ -12,7 +12,7 @@ constexpr std::uint64_t draws_of_stiffness = 0x7374696666, draws_of_floor = 0x66
                         draws_of_weights = 0x77656967687473, draws_of_turns = 0x7475726E73,
                         draws_of_tractions = 0x7472616374, draws_of_fibres = 0x666962726573,
                         draws_of_mixed = 0x6D69786564, draws_of_sealed = 0x7365616C6564,
-                        draws_of_layers = 0x6C6179657273;
+                        draws_of_layers = 0x6C6179657273, draws_of_wrenches = 0x7772656E6368;
 
 void scale(ElasticSpec& elastic, double by) {
   for (std::optional<double>* modulus : {&elastic.youngs_modulus, &elastic.shear_modulus, &elastic.bulk_modulus,
@@ -76,6 +76,41 @@ void make_tractions(Making& m) {
     else
       spec.kilopascals = kilopascals * draw.offset();
     m.made.spec.tractions.push_back(std::move(spec));
+  }
+}
+
+void make_wrenches(Making& m) {
+  Draw draw(m.made.seed ^ draws_of_wrenches);
+  const auto command = [&](double value) {
+    for (Actuation& actuation : m.made.commands) {
+      actuation.conservativeResize(actuation.size() + 1);
+      actuation[actuation.size() - 1] = value * draw.between(-1, 1);
+    }
+  };
+  if (!m.physical) return;
+  const double slender = std::min(1.0, std::min(m.size[1], m.size[2]) / m.size[0]);
+  for (const RigidSpec& rigid : m.made.spec.rigid) {
+    const auto* region = std::get_if<std::string>(&rigid.where.region);
+    if (region == nullptr || !draw.chance(0.4)) continue;
+    const double most = draw.log_between(1e-6, 0.1) * m.modulus * slender * m.size[1] * m.size[2] * m.size[2];
+    ForceSpec wrench{"wrench", {*region, {}}};
+    wrench.moment = most * draw.offset();
+    if (draw.chance(0.5)) {
+      Vec3 low = wrench.moment, high = wrench.moment;
+      low[1] = -most;
+      high[1] = most;
+      wrench.moment[1] = 0;
+      wrench.moment_range = std::array<Vec3, 2>{low, high};
+      command(most);
+    }
+    m.made.spec.forces.push_back(wrench);
+    break;
+  }
+  for (TractionSpec& traction : m.made.spec.tractions) {
+    if (traction.pressure_kPa == 0 || !draw.chance(0.5)) continue;
+    const double most = std::abs(traction.pressure_kPa);
+    traction.range_kPa = {-most, most};
+    command(most);
   }
 }
 

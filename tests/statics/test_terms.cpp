@@ -19,7 +19,7 @@ namespace {
 using namespace testing;
 using physical::Term;
 
-constexpr int all_terms = 11;
+constexpr int all_terms = 12;
 
 /// Tetrahedra and prisms of two materials, a layer that is stretched, another one under voltage.
 RobotSpec layered_robot() {
@@ -63,7 +63,18 @@ RobotSpec loaded_robot(bool quadratic) {
   spec.quadratic = quadratic;
   spec.tractions = {{"wind", {std::string("x_high"), {}}, true, {30, -20, 10}, 0},
                     {"water", {std::string("z_low"), {}}, true, {0, 0, 0}, 25},
-                    {"air", {std::string("z_high"), {}}, true, {0, 0, 0}, -15}};
+                    {"air", {std::string("z_high"), {}}, true, {0, 0, 0}, -15},
+                    {"more", {std::string("z_low"), {}}, true, {0, 0, 0}, 5, std::array<double, 2>{-20, 20}}};
+  return spec;
+}
+
+/// A moment on a rigid end, one component of it commanded.
+RobotSpec turned_robot(bool quadratic) {
+  RobotSpec spec = physical_robot(block_mesh({2, 1, 1}, {20, 8, 6}));
+  spec.quadratic = quadratic;
+  spec.rigid = {{{std::string("x_high"), {}}, "end"}};
+  spec.forces = {{"tool", {std::string("x_high"), {}}, {0, 0, 0}, std::nullopt, {300, -200, 50},
+                  std::array<Vec3, 2>{Vec3(300, -900, 50), Vec3(300, 900, 50)}}};
   return spec;
 }
 
@@ -270,8 +281,10 @@ void expect_derivatives(const RobotSpec& spec, double shake, const Vec3& move, d
     const bool fibres = t == 4 && !sample.model.fibres.empty();
     const bool liquid = dynamic_cast<const physical::Hydrostatics*>(&term) != nullptr,
                families = dynamic_cast<const physical::FibreFamilies*>(&term) != nullptr,
-               layers = dynamic_cast<const physical::Layers*>(&term) != nullptr;
-    auto& of_term = seen[layers                 ? 10
+               layers = dynamic_cast<const physical::Layers*>(&term) != nullptr,
+               moments = dynamic_cast<const physical::Moments*>(&term) != nullptr;
+    auto& of_term = seen[moments                ? 11
+                         : layers               ? 10
                          : families             ? 9
                          : liquid               ? 8
                          : contact              ? 7
@@ -294,7 +307,10 @@ TEST(Terms, DerivativesAreThoseOfTheEnergies) {
   for (const Magnetisation magnetisation : both_magnetisations)
     for (const bool quadratic : {false, true})
       expect_derivatives(magnetic_robot(magnetisation, quadratic), 0.1, Vec3::Zero(), 1e-4, seen);
-  for (const bool quadratic : {false, true}) expect_derivatives(loaded_robot(quadratic), 0.1, Vec3::Zero(), 1e-4, seen);
+  for (const bool quadratic : {false, true}) {
+    expect_derivatives(loaded_robot(quadratic), 0.1, Vec3::Zero(), 1e-4, seen);
+    expect_derivatives(turned_robot(quadratic), 0.1, Vec3::Zero(), 1e-4, seen);
+  }
   for (const bool quadratic : {false, true})
     expect_derivatives(threaded_robot(quadratic), 0.1, Vec3::Zero(), 1e-5, seen);
   for (const bool quadratic : {false, true})
@@ -313,18 +329,19 @@ TEST(Terms, DerivativesAreThoseOfTheEnergies) {
     expect_derivatives(fibrous_robot(split, quadratic), 0.1, Vec3::Zero(), 1e-5, seen);
   }
   // body, dead and fading loads, what is done to bodies, magnets, fibres, tractions, contact, liquids, families of
-  // fibres, layers: gradient, stiffness, by commands, by shares
+  // fibres, layers, moments: gradient, stiffness, by commands, by shares
   const std::array<std::array<bool, 4>, all_terms> has{{{true, true, true, true},
                                                         {true, false, false, true},
                                                         {true, false, false, true},
                                                         {true, true, true, true},
                                                         {true, true, true, true},
                                                         {true, true, false, false},
-                                                        {true, true, false, true},
+                                                        {true, true, true, true},
                                                         {true, true, false, false},
                                                         {true, true, false, true},
                                                         {true, true, false, false},
-                                                        {true, true, false, false}}};
+                                                        {true, true, false, false},
+                                                        {true, true, true, true}}};
   for (std::size_t t = 0; t < has.size(); ++t)
     for (std::size_t i = 0; i < has[t].size(); ++i) EXPECT_EQ(seen[t][i] > 1e-12, has[t][i]) << t << " " << i;
 }

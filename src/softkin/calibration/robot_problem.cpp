@@ -7,6 +7,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/kinematics/estimate/readings.hpp>
 #include <softkin/kinematics/jacobian.hpp>
+#include <softkin/model/sensor.hpp>
 #include <softkin/statics/deformation.hpp>
 #include <thread>
 
@@ -23,9 +24,30 @@ constexpr double medians[3] = {0.6745, 1.1774, 1.5382};
 /// source  Huber 1981; Rey 1983
 constexpr double huber_at = 1.345, cauchy_at = 2.385;
 
+/// Is it a component of a sensor's direction?
+bool points_along(const PoseColumn& column) {
+  return column.kind == Reading::direction;
+}
+
+/// The direction, in the frame of the scene.
+Vec3 direction_of(const Model& model, const PoseColumn& column, const Points& positions) {
+  const Sensor& sensor = *model.sensors[static_cast<std::size_t>(column.sensor)];
+  return {sensor.at(positions, 0), sensor.at(positions, 1), sensor.at(positions, 2)};
+}
+
+/// By a number of the robots, and by its moves.
+Vec3 direction_slope(const Perturbed& number, const Model& model, const PoseColumn& column, const Points& positions,
+                     const Points& moves) {
+  const Sensor& sensor = *model.sensors[static_cast<std::size_t>(column.sensor)];
+  const Vec3 own =
+      (direction_of(number.more, column, positions) - direction_of(number.less, column, positions)) / number.difference;
+  return own + Vec3(sensor.velocity(positions, moves, 0), sensor.velocity(positions, moves, 1),
+                    sensor.velocity(positions, moves, 2));
+}
+
 /// Is it a length, a volume or an angle, which turns with no frame?
 bool measures(const PoseColumn& column) {
-  return column.marker < 0 && estimate::is_of_shape(column);
+  return column.marker < 0 && !points_along(column) && estimate::is_of_shape(column);
 }
 
 /// On the robot, of a support.
@@ -284,6 +306,8 @@ void RobotProblem::compute(RobotPoint& point, const Changes* changes, Index pose
       value = (point.frame.rotation *
                    point.model->markers[static_cast<std::size_t>(column.marker)].at(found.state.positions) +
                point.frame.place)[column.axis];
+    else if (points_along(column))
+      value = (point.frame.rotation * direction_of(*point.model, column, found.state.positions))[column.axis];
     else if (measures(column))
       value = measure_of(*point.model, column, found.state);
     else if (column.support >= 0)
@@ -306,10 +330,11 @@ void RobotProblem::add_slopes(RobotPoint& point, const Changes& changes, Index p
   slopes.setZero(static_cast<Index>(poses_.columns.size()), count);
   for (Index c = 0; c < static_cast<Index>(slopes.rows()); ++c) {
     const PoseColumn& column = poses_.columns[static_cast<std::size_t>(c)];
-    if (column.marker < 0 && column.support < 0) continue;
+    if (column.marker < 0 && column.support < 0 && !points_along(column)) continue;
     const bool marker = column.marker >= 0;
     const Vec3 place = marker ? point.model->markers[static_cast<std::size_t>(column.marker)].at(state.positions)
-                              : force_of(*point.model, column, state.positions, reactions);
+                       : points_along(column) ? direction_of(*point.model, column, state.positions)
+                                              : force_of(*point.model, column, state.positions, reactions);
     for (Index i = 0; i < count; ++i) {
       const MeasuringFrame &more = changes.more[static_cast<std::size_t>(i)],
                            &less = changes.less[static_cast<std::size_t>(i)];
@@ -330,6 +355,12 @@ void RobotProblem::add_slopes(RobotPoint& point, const Changes& changes, Index p
             (measure_of(number.more, column, state) - measure_of(number.less, column, state)) / number.difference;
         const Eigen::VectorXd none;
         slopes(c, i) += own + estimate::reading_change(*point.model, column, state, {found.positions[k], none, {}});
+        continue;
+      }
+      if (points_along(column)) {
+        const Vec3 turned =
+            direction_slope(changes.perturbed[k], *point.model, column, state.positions, found.positions[k]);
+        slopes(c, i) += (point.frame.rotation * turned)[column.axis];
         continue;
       }
       if (column.support >= 0) {

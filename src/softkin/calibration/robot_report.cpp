@@ -139,7 +139,7 @@ std::string scene_text(const RobotFitReport& r) {
 
 std::string scale_text(const char* what, double scale, double given, const char* unit) {
   if (scale == 0) return "";
-  return std::string("deviation of a ") + what + " as read: " + number(scale, 3) + " " + unit +
+  return std::string("deviation of a ") + what + " as read: " + number(scale, 3) + (*unit == 0 ? "" : " ") + unit +
          (given > 0 ? " (given)" : " (by what is left)") + "\n";
 }
 

@@ -10,6 +10,7 @@
 #include <softkin/kinematics/estimate/search.hpp>
 #include <softkin/kinematics/estimator.hpp>
 #include <softkin/model/names.hpp>
+#include <softkin/model/sensor.hpp>
 
 namespace softkin {
 
@@ -53,6 +54,7 @@ struct Estimator::Parts {
   std::vector<ReadingGroup> groups;
   std::optional<Fit> last{};
   std::optional<Survey> survey{};  // of searches
+  Memory memory;                   // where what was told fades
   Actuation last_commands{};
   Estimate estimate{};
 
@@ -61,35 +63,18 @@ struct Estimator::Parts {
       : model(robot),
         options(std::move(asked)),
         deviations(std::move(given)),
-        problem(robot, unknowns, columns, exact_enough(options.statics, columns, deviations)) {
-    make_groups();
-  }
+        problem(robot, unknowns, columns, exact_enough(options.statics, columns, deviations)),
+        groups(reading_groups(robot, problem.columns())),
+        memory(problem.variables()) {}
 
-  void make_groups();
   void check(const Actuation& commands, const Eigen::VectorXd& values, double elapsed_s) const;
-  [[nodiscard]] Knowledge known(double elapsed_s) const;
+  [[nodiscard]] Knowledge known(double elapsed_s);
   [[nodiscard]] Fit fit(const Actuation& commands, const Eigen::VectorXd& values, const Knowledge& known,
                         Eigen::VectorXd& weights, const ProgressCallback& progress);
   void tell(const Fit& found, const Readings& read, const Actuation& commands);
   void tell_numbers(const Fit& found);
   void tell_places(const Fit& found);
 };
-
-void Estimator::Parts::make_groups() {
-  const std::vector<PoseColumn>& columns = problem.columns();
-  for (Index c = 0; c < static_cast<Index>(columns.size()); ++c) {
-    const PoseColumn& column = columns[static_cast<std::size_t>(c)];
-    std::string name = column.marker >= 0 ? "marker " + model.markers[static_cast<std::size_t>(column.marker)].name
-                       : column.support >= 0
-                           ? "force of " + model.supports[static_cast<std::size_t>(column.support)].name
-                           : column.name;
-    const auto same = std::find_if(groups.begin(), groups.end(), [&](const ReadingGroup& g) { return g.name == name; });
-    if (same == groups.end())
-      groups.push_back({std::move(name), {c}});
-    else
-      same->columns.push_back(c);
-  }
-}
 
 void Estimator::Parts::check(const Actuation& commands, const Eigen::VectorXd& values, double elapsed_s) const {
   if (values.size() != deviations.size())
@@ -102,13 +87,13 @@ void Estimator::Parts::check(const Actuation& commands, const Eigen::VectorXd& v
                        std::to_string(model.actuators.size()));
 }
 
-/// Readings tell from what the last estimate left of itself since then.
-Knowledge Estimator::Parts::known(double elapsed_s) const {
-  const Variables& variables = problem.variables();
-  if (!last || !(options.fade_s > 0)) return Knowledge(variables);
-  const Eigen::MatrixXd directions = directions_at(variables, last->told.places);
-  return {variables, coordinates_of(variables, last->told.values, last->told.places),
-          directions * estimate.covariance * directions.transpose(), std::exp(-elapsed_s / options.fade_s)};
+/// Readings tell from what earlier ones left since then.
+Knowledge Estimator::Parts::known(double elapsed_s) {
+  Knowledge known(problem.variables());
+  if (!(options.fade_s > 0)) return known;
+  memory.fade(std::exp(-elapsed_s / options.fade_s));
+  known.memory = &memory;
+  return known;
 }
 
 /// weights  those of readings that are left out become 0
@@ -121,11 +106,17 @@ Fit Estimator::Parts::fit(const Actuation& commands, const Eigen::VectorXd& valu
     return Readings{commands, values, some, anew ? nothing : known};
   };
   Fits fits;
-  fits.anew = [&](const Eigen::VectorXd& some) { return searcher.search(read(some, true)); };
+  fits.anew = [&](const Eigen::VectorXd& some) {
+    Fit fit = searcher.search(read(some, true));
+    fit.anew = true;
+    return fit;
+  };
   fits.forecast = [&](const Eigen::VectorXd& some) { return searcher.forecast(read(some, true)); };
   fits.exhausted = [&] { return fitter.exhausted(); };
   fits.near = [&](const Eigen::VectorXd& some, const Fit& near, bool anew) {
-    return fitter.refine(near.at, read(some, anew), near.nearby);
+    Fit fit = fitter.refine(near.at, read(some, anew), near.nearby);
+    fit.anew = anew;
+    return fit;
   };
   if (last) {
     fits.tracked = [&](const Eigen::VectorXd& some) {
@@ -146,16 +137,10 @@ void Estimator::Parts::tell_numbers(const Fit& found) {
   estimate.numbers.clear();
   for (std::size_t i = 0; i < variables.size(); ++i) {
     const Variable& v = variables[i];
-    const Actuator& actuator = model.actuators[static_cast<std::size_t>(v.actuator)];
     const auto at = static_cast<Index>(i);
     const double value = found.told.values[at];
-    estimate.numbers.push_back({actuator.name, command_unit(actuator), value,
-                                std::sqrt(std::max(0.0, estimate.covariance(at, at))), v.mean, v.deviation,
-                                value <= v.low    ? -1
-                                : value >= v.high ? 1
-                                                  : 0,
-                                v.actuator});
-    estimate.actuation[v.actuator] = value;
+    estimate.numbers.push_back(estimate::told_number(model, v, value, std::sqrt(std::max(0.0, estimate.covariance(at, at)))));
+    if (v.actuator >= 0) estimate.actuation[v.actuator] = value;
   }
 }
 
@@ -236,8 +221,12 @@ const Estimate& Estimator::update(const Actuation& commands, const Eigen::Vector
                         ? "its iterations were not enough"
                         : "the robot has no equilibrium where the search begins: " + found.at.equilibrium.report.remark;
   if (found.at.solved() && found.normal.matrix.size() > 0) {
-    parts.tell(found, {commands, values, weights, known}, commands);
+    const Knowledge nothing(parts.problem.variables());
+    const Readings read{commands, values, weights, found.anew ? nothing : known};
+    parts.tell(found, read, commands);
     if (found.converged) {
+      if (found.anew) parts.memory.forget();
+      if (parts.options.fade_s > 0) parts.problem.remember(*found.nearby, found.told, read, parts.memory);
       parts.last = std::move(found);
       parts.last_commands = commands;
     }
@@ -249,6 +238,7 @@ const Estimate& Estimator::update(const Actuation& commands, const Eigen::Vector
 
 void Estimator::forget() {
   parts_->last.reset();
+  parts_->memory.forget();
 }
 
 const std::vector<ReadingGroup>& Estimator::groups() const {
@@ -256,9 +246,26 @@ const std::vector<ReadingGroup>& Estimator::groups() const {
 }
 
 std::vector<Index> Estimator::told_actuators() const {
-  std::vector<Index> told;
-  for (const Variable& variable : parts_->problem.variables().all()) told.push_back(variable.actuator);
-  return told;
+  return parts_->problem.variables().told_actuators();
+}
+
+std::vector<ReadingGroup> reading_groups(const Model& model, const std::vector<PoseColumn>& columns) {
+  std::vector<ReadingGroup> groups;
+  for (Index c = 0; c < static_cast<Index>(columns.size()); ++c) {
+    const PoseColumn& column = columns[static_cast<std::size_t>(c)];
+    std::string name = column.marker >= 0 ? "marker " + model.markers[static_cast<std::size_t>(column.marker)].name
+                       : column.support >= 0
+                           ? "force of " + model.supports[static_cast<std::size_t>(column.support)].name
+                       : column.kind == Reading::direction
+                           ? "direction " + model.sensors[static_cast<std::size_t>(column.sensor)]->name
+                           : column.name;
+    const auto same = std::find_if(groups.begin(), groups.end(), [&](const ReadingGroup& g) { return g.name == name; });
+    if (same == groups.end())
+      groups.push_back({std::move(name), {c}});
+    else
+      same->columns.push_back(c);
+  }
+  return groups;
 }
 
 }  // namespace softkin

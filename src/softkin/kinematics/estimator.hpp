@@ -8,10 +8,10 @@
 
 namespace softkin {
 
-/// What is to be told: a command that was not measured, or a force that the scene gives a range, of up to three
-/// commands; and where on its region the force acts.
+/// What is to be told: a command that was not measured; a force or a wrench that the scene gives a range, of up to six
+/// commands; where on its region a force acts; or how stiff a material is, over what the scene says.
 struct EstimatedUnknown {
-  std::string name;                           // of the command, or of the force
+  std::string name;                           // of the command or of the force; materials.REGION.stiffness
   bool somewhere = false;                     // of a force on a region of faces: where on it is not known
   std::optional<double> mean{}, deviation{};  // known before; none: the value where no command says another, half of
                                               // the range
@@ -36,12 +36,12 @@ struct EstimatorOptions {
 
 /// A number that was told.
 struct ToldNumber {
-  std::string name;  // of the command
-  std::string unit;
+  std::string name;  // of the command; materials.REGION.stiffness
+  std::string unit;  // "": over what the scene says
   double value = 0, deviation = 0;
   double known_mean = 0, known_deviation = 0;  // before
   int at_bound = 0;                            // -1: low, 1: high end of its range
-  Index actuator = -1;                         // of the model
+  Index actuator = -1;                         // of the model; -1: it is no command
 };
 
 /// Where a force was told to act.
@@ -122,6 +122,9 @@ class Estimator {
   struct Parts;
   std::unique_ptr<Parts> parts_;
 };
+
+/// Columns by what they are of: a marker's coordinates, a support's force, a direction; else each by itself.
+[[nodiscard]] std::vector<ReadingGroup> reading_groups(const Model& model, const std::vector<PoseColumn>& columns);
 
 /// What an estimate says, in words: what readings hardly tell, what they contradict.
 [[nodiscard]] std::vector<std::string> estimate_words(const Estimate& estimate,

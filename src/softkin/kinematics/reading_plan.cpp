@@ -52,8 +52,12 @@ class Candidates {
     }
     for (Index s = 0; s < static_cast<Index>(model.sensors.size()); ++s) {
       const Sensor& sensor = *model.sensors[static_cast<std::size_t>(s)];
-      const Reading kind = sensor.kind == SensorKind::length ? Reading::length : Reading::angle;
-      add(sensor.name, {{"", -1, -1, -1, kind, -1, s}});
+      std::vector<PoseColumn> columns;
+      if (sensor.kind == SensorKind::direction)
+        for (int axis = 0; axis < 3; ++axis) columns.push_back({"", -1, axis, -1, Reading::direction, -1, s});
+      else
+        columns = {{"", -1, -1, -1, sensor.kind == SensorKind::length ? Reading::length : Reading::angle, -1, s}};
+      add(sensor.name, std::move(columns));
     }
     for (Index a = 0; a < static_cast<Index>(model.actuators.size()); ++a) add_measure(a);
   }

@@ -80,9 +80,9 @@ void check_fields(const Model& model) {
 }
 
 void check_loads(const Model& model, const Vec3& direction) {
-  if (!model.tractions.empty())
+  if (!model.tractions.empty() || !model.moments.empty())
     throw InvalidInput({.file = model.name},
-                       "a pressure or traction on the surface may pull along the direction "
+                       "a pressure, traction or moment may push along the direction "
                        "of travel as the robot bends: a walk has none");
   if (model.dead_load.size() == 0) return;
   const double along = (model.dead_load * direction).sum();

@@ -166,14 +166,15 @@ class Joiner {
     all.name = placed_.name + "." + sensor.name;
     all.robot = placed_.name;
     for (Vec3& point : all.points) point = placed_.place(point);
-    if (sensor.kind == SensorKind::angle)
-      for (std::string& section : all.sections) section = full(section);
+    for (std::string& section : all.sections)
+      if (!section.empty()) section = full(section);
     all.axis = placed_.place.rotation * sensor.axis;
     return std::make_shared<const SensorSpec>(std::move(all));
   }
   /// Forces are commanded along the common axes: a robot that is turned must have its own along these.
-  [[nodiscard]] std::optional<std::array<Vec3, 2>> turned_range(const ForceSpec& force) const {
-    if (!force.range) return std::nullopt;
+  [[nodiscard]] std::optional<std::array<Vec3, 2>> turned_range(
+      const ForceSpec& force, const std::optional<std::array<Vec3, 2>>& range) const {
+    if (!range) return std::nullopt;
     const Mat3& turn = placed_.place.rotation;
     const Mat3 whole = turn.array().round().matrix();
     constexpr double rounding = 1e-9;
@@ -181,7 +182,7 @@ class Joiner {
       throw InvalidInput(force.at.origin, "force '" + force.name + "' of " + robot_label(placed_) +
                                               " is commanded along x, y and z, but the robot is turned, and not by "
                                               "quarters: command the force in the scene of all robots");
-    const Vec3 a = whole * (*force.range)[0], b = whole * (*force.range)[1];
+    const Vec3 a = whole * (*range)[0], b = whole * (*range)[1];
     return std::array<Vec3, 2>{a.cwiseMin(b), a.cwiseMax(b)};
   }
   [[nodiscard]] PointRef full(const PointRef& point) const {
@@ -292,8 +293,9 @@ class Joiner {
 
   void add_points() {
     for (const ForceSpec& force : robot_.forces)
-      all_.forces.push_back(
-          {placed_.name + "." + force.name, full(force.at), placed_.place.rotation * force.force, turned_range(force)});
+      all_.forces.push_back({placed_.name + "." + force.name, full(force.at), placed_.place.rotation * force.force,
+                             turned_range(force, force.range), placed_.place.rotation * force.moment,
+                             turned_range(force, force.moment_range)});
     for (TractionSpec& traction : robot_.tractions) {
       traction.name = placed_.name + "." + traction.name;
       traction.where = full(traction.where);

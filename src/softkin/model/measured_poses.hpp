@@ -9,18 +9,23 @@ namespace softkin {
 
 /// A kind of reading, and its unit: coordinates of markers; pressures and tensions with which actuators answer; lengths
 /// of cables and volumes of chambers whose loads are commanded; what supports exert on the robot; lengths of curves on
-/// the body and angles between its sections, as sensors measure them.
-enum class Reading { coordinate, pressure, tension, length, volume, force, angle };
-constexpr int readings = 7;
+/// the body, angles between its sections and the components of directions of these, as sensors measure them.
+enum class Reading { coordinate, pressure, tension, length, volume, force, angle, direction };
+constexpr int readings = 8;
 constexpr std::array<const char*, readings> reading_names{"coordinate", "pressure", "tension", "length",
-                                                          "volume",     "force",    "angle"};
-constexpr std::array<const char*, readings> reading_units{"mm", "kPa", "N", "mm", "mm^3", "N", "deg"};
+                                                          "volume",     "force",    "angle",   "direction"};
+constexpr std::array<const char*, readings> reading_units{"mm", "kPa", "N", "mm", "mm^3", "N", "deg", ""};
+/// " in mm"; of a reading without unit "".
+[[nodiscard]] inline std::string in_unit(Reading kind) {
+  const char* unit = reading_units[static_cast<std::size_t>(kind)];
+  return *unit == 0 ? "" : std::string(" in ") + unit;
+}
 
 /// What a column of measured poses holds.
 struct PoseColumn {
   std::string name;     // as in the file
   Index marker = -1;    // of the model; -1: none
-  int axis = -1;        // of it, or of the support's force
+  int axis = -1;        // of it, of the support's force or of a direction
   Index actuator = -1;  // of the model; -1: none
   Reading kind = Reading::coordinate;
   Index support = -1;  // of the model; -1: none

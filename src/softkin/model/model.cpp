@@ -97,6 +97,7 @@ class Hash {
     add(t.traction_MPa, t.pressure_MPa, t.faces);
     if (!t.deeper_MPa_mm.isZero(0)) add(t.deeper_MPa_mm, t.level_mm);
   }
+  void put(const RegionMoment& m) { add(m.vertices, m.moment_Nmm); }
   void put(const Families::Family& f) { add(f.k1_MPa, f.k2, f.dispersion, f.directions); }
   void put(const EmbeddedPoint& p) { add(p.vertices, p.weights); }
   void put(const FibrePlace& p) { add(p.vertices, p.slopes, p.length_mm); }
@@ -255,6 +256,11 @@ bool drives(const Actuator& actuator) {
          actuator.kind == ActuatorKind::growth;
 }
 
+bool loads_robot(const Actuator& actuator) {
+  return actuator.kind == ActuatorKind::moment || actuator.kind == ActuatorKind::pressure ||
+         (actuator.kind == ActuatorKind::force && !actuator.points.empty());
+}
+
 bool rubs(const Actuator& actuator) {
   return actuator.friction > 0 || actuator.sheath > 0;
 }
@@ -280,6 +286,7 @@ std::string fingerprint_of(const Model& model) {
   if (model.weights != ElementWeights::printed) hash.add(model.weights);
   if (!model.turns.empty()) hash.add(model.turns);
   if (!model.tractions.empty()) hash.add(model.tractions);
+  if (!model.moments.empty()) hash.add(model.moments);
   if (!model.fibres.empty()) hash.add(model.fibres);
   if (!model.layers.empty()) hash.add(model.layers);
   if (!model.growths.empty()) hash.add(model.growths);

@@ -77,8 +77,9 @@ struct Actuator {
   std::optional<ActuatorCurve> curve;       // ratio by pressure or voltage
   Branch branch = Branch::loading;          // of the curve, where a command names none
   Index other = -1;                         // motion: part of ContactModel; force, hold: index into Model::bodies;
-                                            // magnetic: index into Magnetism::sources; growth, turn: of Model
-  int axis = -1;                            // motion, force; magnetic: which of the source's commands
+                                            // magnetic: index into Magnetism::sources; growth, turn, moment, pressure
+                                            // (of tractions): of Model
+  int axis = -1;                            // motion, force, moment; magnetic: which of the source's commands
   bool pushes = false;                      // cable: held to its length whatever that takes, as a rod would be
   double friction = 0, sheath = 0;  // cable, physical: where it turns; of its sheath, times the sheath's turns [-]
   double factor = 1, offset = 0;    // load control: what acts is factor times the command plus offset [N, kPa]
@@ -124,6 +125,12 @@ struct SupportTurn {
   Origin origin;
 };
 
+/// A moment on a rigid region, which keeps its direction: couples of forces on some of its vertices.
+struct RegionMoment {
+  std::vector<Index> vertices;  // three or four, not on a line
+  Vec3 moment_Nmm{0, 0, 0};     // beside what is commanded of it
+};
+
 /// A face of the body's surface with its normal outwards, under a load; a share of it.
 struct LoadedFace {
   CavityFace face;
@@ -133,7 +140,7 @@ struct LoadedFace {
 /// A load that turns with the surface and acts on its present area.
 struct FollowingTraction {
   Vec3 traction_MPa{0, 0, 0};  // as the surface stands at rest
-  double pressure_MPa = 0;     // onto it, along its normal
+  double pressure_MPa = 0;     // onto it, along its normal, beside what is commanded of it
   std::vector<LoadedFace> faces;
   Vec3 deeper_MPa_mm{0, 0, 0};  // by how much the pressure grows with the present place, from a level on; nothing
   Vec3 level_mm{0, 0, 0};       // above it: a liquid around the robot; a place of the level
@@ -193,6 +200,7 @@ struct Model {
                      // or -1; a rigid region that is held is borne as a whole
   Points dead_load;  // #V by 3 [N]: weight, forces, tractions that follow nothing; physical, else empty
   std::vector<FollowingTraction> tractions;
+  std::vector<RegionMoment> moments;
   std::vector<Fibre> fibres;
   std::vector<std::shared_ptr<const Layer>> layers;
   std::vector<std::shared_ptr<const Growth>> growths;  // by Actuator::other
@@ -207,7 +215,7 @@ struct Model {
   [[nodiscard]] Index robot_vertices() const { return static_cast<Index>(rest.rows()) - contact.other_vertices; }
 
   /// Is there anything that loads it but its actuators?
-  [[nodiscard]] bool loaded() const { return !dead_load.isZero(0) || !tractions.empty(); }
+  [[nodiscard]] bool loaded() const { return !dead_load.isZero(0) || !tractions.empty() || !moments.empty(); }
 
   /// Vertices of a bounded part of its surroundings, which follow each other.
   [[nodiscard]] std::array<Index, 2> vertices_of_part(Index part) const;
@@ -221,6 +229,8 @@ struct Model {
 
 /// Is it of the robot: does inverse kinematics choose it, and a workspace vary it.
 [[nodiscard]] bool drives(const Actuator& actuator);
+/// A force at a place of the robot, a moment or a pressure on it: commanded, but not by the robot.
+[[nodiscard]] bool loads_robot(const Actuator& actuator);
 /// A dea that is commanded by its voltage: the field in its layer is its load.
 [[nodiscard]] bool under_voltage(const Actuator& actuator);
 /// A cable whose tension falls or rises where it turns.

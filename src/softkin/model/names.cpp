@@ -27,7 +27,8 @@ const char* filling_quantity(const Filling& filling) {
 
 const char* kind_name(const Actuator& actuator) {
   constexpr const char* names[] = {"cable",  "dea",   "pneumatic", "magnetic", "growth",
-                                   "motion", "force", "hold",      "turn"};  // in the order of ActuatorKind
+                                   "motion", "force", "hold",      "turn",     "moment",
+                                   "pressure"};  // in the order of ActuatorKind
   return names[static_cast<std::size_t>(actuator.kind)];
 }
 
@@ -75,7 +76,8 @@ std::string command_unit(const Actuator& actuator) {
   if (actuator.kind == ActuatorKind::growth) return "degC";
   if (actuator.kind == ActuatorKind::dea) return "kV";
   if (actuator.kind == ActuatorKind::magnetic) return field_quantity(actuator).unit;
-  return actuator.kind == ActuatorKind::pneumatic ? "kPa" : "N";
+  if (actuator.kind == ActuatorKind::moment) return "N mm";
+  return actuator.kind == ActuatorKind::pneumatic || actuator.kind == ActuatorKind::pressure ? "kPa" : "N";
 }
 
 std::string bracketed_unit(const Actuator& actuator) {
@@ -84,8 +86,9 @@ std::string bracketed_unit(const Actuator& actuator) {
 }
 
 std::string command_column(const Actuator& actuator) {
-  const std::string unit =
-      actuator.kind == ActuatorKind::magnetic ? field_quantity(actuator).column : command_unit(actuator);
+  const std::string unit = actuator.kind == ActuatorKind::magnetic ? field_quantity(actuator).column
+                           : actuator.kind == ActuatorKind::moment ? "Nmm"
+                                                                   : command_unit(actuator);
   return unit.empty() ? actuator.name : actuator.name + "_" + unit;
 }
 

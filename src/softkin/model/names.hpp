@@ -7,7 +7,7 @@
 namespace softkin {
 
 /// "pneumatic", "cable", "dea", "magnetic" or "growth"; of what is done to it and its surroundings "motion", "force",
-/// "hold" or "turn".
+/// "hold", "turn", "moment" or "pressure".
 [[nodiscard]] const char* kind_name(const Actuator& actuator);
 /// What the user commands: "volume", "length", "area" (over that at rest), "pressure", "tension" or "voltage"; of a
 /// sealed chamber "amount of gas", "amount of liquid" or "pushed volume"; of a magnetic field "flux density",
@@ -25,7 +25,7 @@ namespace softkin {
 [[nodiscard]] bool answers_with_load(const Actuator& actuator);
 /// Is it commanded by its load, and no cable: its volume or area says more than the pressure or voltage again.
 [[nodiscard]] bool shows_measure(const Actuator& actuator);
-/// The unit of what the user commands, bare: "", "kPa", "N", "kV", "mL", "mm", "mT", "A", "A m^2" or "degC"; as a table
+/// The unit of what the user commands, bare: "", "kPa", "N", "kV", "mL", "mm", "mT", "A", "A m^2", "degC", "N mm"; as a table
 /// has it: "[-]", "[kPa]", ....
 [[nodiscard]] std::string command_unit(const Actuator& actuator);
 [[nodiscard]] std::string bracketed_unit(const Actuator& actuator);

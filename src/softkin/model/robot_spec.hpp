@@ -111,7 +111,7 @@ struct FixedSpec {
 /// The last four are no drives of the robot but what is done to it and its surroundings: the motion of an obstacle, a
 /// force on a body or at a place of the robot, how firmly a body is held, and the angle by which a support turns what
 /// it holds.
-enum class ActuatorKind { cable, dea, pneumatic, magnetic, growth, motion, force, hold, turn };
+enum class ActuatorKind { cable, dea, pneumatic, magnetic, growth, motion, force, hold, turn, moment, pressure };
 
 /// What the user commands: length, area or volume over that at rest [-]; or the load, tension [N] or gauge pressure
 /// [kPa], voltage of a dea [kV], or what a magnetic field is commanded by; or what fills a sealed chamber [mL].
@@ -194,12 +194,14 @@ struct RigidSpec {
   std::string name;
 };
 
-/// A dead load, spread over a region or at a point.
+/// A dead load, spread over a region or at a point; on a rigid region with a moment, which keeps its direction, too.
 struct ForceSpec {
   std::string name;
   PointRef at;
   Vec3 force{0, 0, 0};                         // [N]; where it is commanded: where no command says another
   std::optional<std::array<Vec3, 2>> range{};  // commanded, within these along each axis [N]; none: it is not
+  Vec3 moment{0, 0, 0};                        // [N mm]; the same
+  std::optional<std::array<Vec3, 2>> moment_range{};
 };
 
 /// A load on each piece of the body's surface in a region, over its area.
@@ -209,6 +211,7 @@ struct TractionSpec {
   bool follows = false;       // turns with the surface and acts on its present area; else neither, on its area at rest
   Vec3 kilopascals{0, 0, 0};  // as the surface stands at rest [kPa]
   double pressure_kPa = 0;    // where it follows: onto the surface, along its normal [kPa]
+  std::optional<std::array<double, 2>> range_kPa{};  // of a pressure that is commanded; pressure_kPa where none is
 };
 
 /// A liquid around the robot, at rest: it presses on the outer surface by its depth below a level.

@@ -35,7 +35,8 @@ Mat3 TurningSection::velocity(const Points& positions, const Points& moves) cons
   return velocity;
 }
 
-double Sensor::at(const Points& positions) const {
+double Sensor::at(const Points& positions, int component) const {
+  if (kind == SensorKind::direction) return sections[0].rotation(positions).row(component).dot(axis);
   if (kind == SensorKind::angle) {
     const Mat3 turn = sections[0].rotation(positions).transpose() * sections[1].rotation(positions);
     return 2 * degrees * std::atan2(axis.dot(axial(turn)), 1 + turn.trace());
@@ -45,7 +46,8 @@ double Sensor::at(const Points& positions) const {
   return length;
 }
 
-double Sensor::velocity(const Points& positions, const Points& moves) const {
+double Sensor::velocity(const Points& positions, const Points& moves, int component) const {
+  if (kind == SensorKind::direction) return sections[0].velocity(positions, moves).row(component).dot(axis);
   if (kind == SensorKind::angle) {
     const Mat3 first = sections[0].rotation(positions), second = sections[1].rotation(positions);
     const Mat3 turn = first.transpose() * second;
@@ -58,10 +60,6 @@ double Sensor::velocity(const Points& positions, const Points& moves) const {
   for (const FibrePlace& place : places)
     change += place.length_mm * tangent_at(place, positions).normalized().dot(tangent_at(place, moves));
   return change;
-}
-
-const char* unit_of(const Sensor& sensor) {
-  return sensor.kind == SensorKind::length ? "mm" : "deg";
 }
 
 }  // namespace softkin

@@ -6,15 +6,16 @@ namespace softkin {
 
 /// length: of a curve that is drawn on the body or runs in it, as a strain gauge or an optical fibre measures it.
 /// angle: by which one section is turned against another about an axis, as a bend sensor measures it.
-enum class SensorKind { length, angle };
+/// direction: of an axis that turns with a section, as an inertial or magnetic tracker measures it.
+enum class SensorKind { length, angle, direction };
 
 /// A sensor as the user describes it.
 struct SensorSpec {
   std::string name;
   SensorKind kind = SensorKind::length;
   std::vector<Vec3> points;               // length: corners of the curve at rest [mm], at least two
-  std::array<std::string, 2> sections{};  // angle: regions, from the first to the second
-  Vec3 axis{0, 0, 1};                     // angle: at rest, not 0; it turns with the first section
+  std::array<std::string, 2> sections{};  // angle: regions, from the first to the second; direction: the first alone
+  Vec3 axis{0, 0, 1};                     // both: at rest, not 0; it turns with the first section
   std::string robot{};                    // of several: whose elements carry it; empty: the nearest
   Origin origin{};
 };
@@ -29,25 +30,23 @@ struct TurningSection {
   [[nodiscard]] Mat3 velocity(const Points& positions, const Points& moves) const;
 };
 
-/// A compiled sensor: a number as a function of the shape.
+/// A compiled sensor: a number as a function of the shape, or three.
 struct Sensor {
   std::string name;
   SensorKind kind = SensorKind::length;
   std::vector<FibrePlace> places;            // length: along the curve
-  std::array<TurningSection, 2> sections{};  // angle
-  Vec3 axis{0, 0, 1};                        // angle: of length 1
+  std::array<TurningSection, 2> sections{};  // angle; direction: the first
+  Vec3 axis{0, 0, 1};                        // both: of length 1
 
   /// positions  #V by 3 [mm]
-  /// returns    length: sum of length_at_rest |sum of slope x| [mm]. angle: of R = R_1^T R_2, the turn about the axis,
+  /// component  of a direction: along which axis of space
+  /// returns    direction: of R axis, R the rotation of the section [-]. length: sum of length_at_rest |sum of slope x| [mm]. angle: of R = R_1^T R_2, the turn about the axis,
   ///            2 atan2(axis . (R_32 - R_23, R_13 - R_31, R_21 - R_12), 1 + tr R), in (-360, 360], 0 at rest [degrees]
   /// source     the twist of the unit quaternion of R, whose vector part is (R_32 - R_23, ...) / 4 over its scalar part
-  [[nodiscard]] double at(const Points& positions) const;
+  [[nodiscard]] double at(const Points& positions, int component = 0) const;
 
-  /// How it changes where the vertices move: its derivative along moves, #V by 3 [mm or degrees per unit of moves].
-  [[nodiscard]] double velocity(const Points& positions, const Points& moves) const;
+  /// How it changes where the vertices move: its derivative along moves, #V by 3 [its unit per unit of moves].
+  [[nodiscard]] double velocity(const Points& positions, const Points& moves, int component = 0) const;
 };
-
-/// "mm" or "deg".
-[[nodiscard]] const char* unit_of(const Sensor& sensor);
 
 }  // namespace softkin

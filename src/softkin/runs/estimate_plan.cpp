@@ -48,8 +48,8 @@ std::string plan_text(const EstimateReport& report) {
     }
     text += ": " + number(reading.bits, 3) + " bits;";
     for (std::size_t n = 0; n < told.numbers.size(); ++n)
-      text += " " + told.numbers[n].name + " +- " + number(reading.numbers[static_cast<Index>(n)], 2) + " " +
-              told.numbers[n].unit + ";";
+      text += " " + told.numbers[n].name + " +- " + number(reading.numbers[static_cast<Index>(n)], 2) +
+              (told.numbers[n].unit.empty() ? "" : " ") + told.numbers[n].unit + ";";
     for (std::size_t p = 0; p < told.places.size(); ++p)
       text += " place of " + told.places[p].force + " +- " + number(reading.places[static_cast<Index>(p)], 2) + " mm;";
     text.back() = '\n';

@@ -36,7 +36,8 @@ std::string plus_minus(double value, double deviation, const std::string& unit) 
   return decimal(value, decimals) + " +- " + decimal(deviation, decimals) + (unit.empty() ? "" : " " + unit);
 }
 
-std::string unit_key(const std::string& unit) {
+std::string unit_key(std::string unit) {
+  std::erase_if(unit, [](char c) { return c == ' ' || c == '^'; });
   return unit.empty() ? "" : "_" + unit;
 }
 
@@ -44,26 +45,6 @@ std::string left_out_text(const EstimateReport& report, const Estimate& told) {
   std::string text;
   for (const std::size_t g : told.left_out) text += (text.empty() ? "" : "; ") + report.groups[g].name;
   return text;
-}
-
-Eigen::VectorXd deviations_of(const MeasuredPoses& poses, const std::array<double, readings>& given,
-                              const std::array<std::string, readings>& options) {
-  Eigen::VectorXd deviations(static_cast<Index>(poses.columns.size()));
-  for (std::size_t c = 0; c < poses.columns.size(); ++c) {
-    const auto kind = static_cast<std::size_t>(poses.columns[c].kind);
-    if (!(given[kind] > 0))
-      throw InvalidInput({poses.file}, "column '" + poses.columns[c].name + "' needs the deviation of a " +
-                                           reading_names[kind] + ": " + options[kind] + " in " + reading_units[kind]);
-    deviations[static_cast<Index>(c)] = given[kind];
-  }
-  return deviations;
-}
-
-void refuse_commanded(const Model& model, const MeasuredPoses& poses, const std::vector<Index>& told) {
-  for (const Index a : poses.commanded)
-    if (std::find(told.begin(), told.end(), a) != told.end())
-      throw InvalidInput({poses.file}, "a column commands '" + model.actuators[static_cast<std::size_t>(a)].name +
-                                           "', which is to be told: leave out one of them");
 }
 
 Json plan_json(const EstimateReport& report) {
@@ -135,16 +116,33 @@ bool EstimateReport::good() const {
   });
 }
 
-EstimateReport estimate_poses(const Model& model, const MeasuredPoses& poses,
-                              const std::vector<EstimatedUnknown>& unknowns,
-                              const std::array<double, readings>& deviations,
-                              const std::array<std::string, readings>& options, const EstimatorOptions& how,
-                              const EstimateCallback& row, const ProgressCallback& progress) {
+Eigen::VectorXd AskedEstimates::deviations_of_columns() const {
+  Eigen::VectorXd all(static_cast<Index>(poses.columns.size()));
+  for (std::size_t c = 0; c < poses.columns.size(); ++c) {
+    const auto kind = static_cast<std::size_t>(poses.columns[c].kind);
+    if (!(deviations[kind] > 0))
+      throw InvalidInput({poses.file}, "column '" + poses.columns[c].name + "' needs the deviation of a " +
+                                           reading_names[kind] + ": " + options[kind] + in_unit(poses.columns[c].kind));
+    all[static_cast<Index>(c)] = deviations[kind];
+  }
+  return all;
+}
+
+void AskedEstimates::refuse_commanded(const std::vector<Index>& told) const {
+  for (const Index a : poses.commanded)
+    if (std::find(told.begin(), told.end(), a) != told.end())
+      throw InvalidInput({poses.file}, "a column commands '" + model.actuators[static_cast<std::size_t>(a)].name +
+                                           "', which is to be told: leave out one of them");
+}
+
+EstimateReport estimate_poses(const AskedEstimates& asked, const EstimatorOptions& how, const EstimateCallback& row,
+                              const ProgressCallback& progress) {
+  const MeasuredPoses& poses = asked.poses;
   if (how.fade_s > 0 && poses.times.empty())
     throw InvalidInput({poses.file}, "estimates that fade need the times of readings, column t_s [s]");
-  Estimator estimator(model, unknowns, poses.columns, deviations_of(poses, deviations, options), how);
-  refuse_commanded(model, poses, estimator.told_actuators());
-  EstimateReport report{model, poses, unknowns, deviations, how.fade_s};
+  Estimator estimator(asked.model, asked.unknowns, poses.columns, asked.deviations_of_columns(), how);
+  asked.refuse_commanded(estimator.told_actuators());
+  EstimateReport report{asked.model, poses, asked.unknowns, asked.deviations, how.fade_s};
   report.groups = estimator.groups();
   for (std::size_t r = 0; r < poses.commands.size(); ++r) {
     const double elapsed = r > 0 && !poses.times.empty() ? poses.times[r] - poses.times[r - 1] : 0;

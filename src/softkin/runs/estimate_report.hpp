@@ -25,20 +25,28 @@ struct EstimateReport {
   [[nodiscard]] bool good() const;
 };
 
+/// What is to be told by which readings.
+struct AskedEstimates {
+  const Model& model;
+  const MeasuredPoses& poses;
+  std::vector<EstimatedUnknown> unknowns;
+  std::array<double, readings> deviations{};    // of each kind of reading, in its unit; 0: none is given
+  std::array<std::string, readings> options{};  // that give these, for messages
+
+  /// Throws InvalidInput on a reading of a kind whose deviation is not given, naming its option.
+  [[nodiscard]] Eigen::VectorXd deviations_of_columns() const;
+  /// Throws InvalidInput where a column commands what is to be told.
+  void refuse_commanded(const std::vector<Index>& told) const;
+};
+
 /// Called after each row with its number, from 0, and what it told.
 using EstimateCallback = std::function<void(std::size_t row, const Estimate& told)>;
 
 /// Tells of every row, in order.
 ///
-/// deviations  of each kind of reading; 0: none is given
-/// throws      InvalidInput: what Estimator throws; a reading of a kind whose deviation is not given, naming its
-///             option; a column that commands what is to be told; fading without times
-[[nodiscard]] EstimateReport estimate_poses(const Model& model, const MeasuredPoses& poses,
-                                            const std::vector<EstimatedUnknown>& unknowns,
-                                            const std::array<double, readings>& deviations,
-                                            const std::array<std::string, readings>& options,
-                                            const EstimatorOptions& how, const EstimateCallback& row,
-                                            const ProgressCallback& progress);
+/// throws  InvalidInput: what Estimator and AskedEstimates throw; fading without times
+[[nodiscard]] EstimateReport estimate_poses(const AskedEstimates& asked, const EstimatorOptions& how,
+                                            const EstimateCallback& row, const ProgressCallback& progress);
 
 /// Of one row: numbers and places with their deviations, then words.
 [[nodiscard]] std::string estimate_row_text(const EstimateReport& report, std::size_t row);

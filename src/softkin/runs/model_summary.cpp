@@ -54,8 +54,9 @@ std::string model_summary(const Model& model, const std::string& solver) {
   for (const Actuator& a : model.actuators)
     if (a.kind == ActuatorKind::motion)
       text += "\nobstacle moved by " + a.name + " [mm]";
-    else if (a.kind == ActuatorKind::force && !a.points.empty())
-      text += "\nforce commanded by " + a.name + " [N], " + number(a.low) + " to " + number(a.high);
+    else if (loads_robot(a))
+      text += std::string("\n") + kind_name(a) + " commanded by " + a.name + " " + bracketed_unit(a) + ", " +
+              number(a.low) + " to " + number(a.high);
     else if (a.kind == ActuatorKind::turn)
       text +=
           "\nsupport '" + model.turns[static_cast<std::size_t>(a.other)].support + "' turned by " + a.name + " [deg]";

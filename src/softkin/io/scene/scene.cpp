@@ -95,7 +95,7 @@ MarkerSpec read_marker(const Context& context, const Node& node, Names& names) {
   return marker;
 }
 
-/// Of a commanded force along x, y and z: [low, high] each.
+/// Of a commanded force or moment along x, y and z: [low, high] each.
 std::array<Vec3, 2> read_force_range(const Node& node) {
   std::array<Vec3, 2> range{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -106,29 +106,37 @@ std::array<Vec3, 2> read_force_range(const Node& node) {
 }
 
 ForceSpec read_force(const Context& context, const Node& node, Names& names) {
-  const Map map(node, {"name", "point", "region", "force", "range"});
+  const Map map(node, {"name", "point", "region", "force", "range", "moment", "moment_range"});
   ForceSpec spec{names.add_label(map.at("name")), read_point_or_region(context, map)};
-  const Node* range = map.find("range");
+  const Node *range = map.find("range"), *moment = map.find("moment"), *moment_range = map.find("moment_range");
+  const bool turns = moment != nullptr || moment_range != nullptr;
   if (range != nullptr) spec.range = read_force_range(*range);
-  if (range == nullptr || map.find("force") != nullptr) spec.force = read_vector(map.at("force"));
+  if ((range == nullptr && !turns) || map.find("force") != nullptr) spec.force = read_vector(map.at("force"));
+  if (moment != nullptr) spec.moment = read_vector(*moment);
+  if (moment_range != nullptr) spec.moment_range = read_force_range(*moment_range);
   return spec;
 }
 
-/// A traction that keeps its direction or turns with the surface, or a pressure.
+/// A traction that keeps its direction or turns with the surface, or a pressure, which may be commanded.
 TractionSpec read_traction(const Context& context, const Node& node, Names& names) {
   Keys known = place_keys();
-  known.insert(known.end(), {"name", "traction", "pressure", "follows"});
+  known.insert(known.end(), {"name", "traction", "pressure", "follows", "range"});
   const Map map(node, known);
   TractionSpec spec{names.add_label(map.at("name")), read_place(context, map)};
-  const Node::Entry& load = map.one_of({"traction", "pressure"});
-  const Node* follows = map.find("follows");
-  if (load.key == "pressure") {
-    if (follows != nullptr) fail(*follows, "a pressure always follows the surface: leave 'follows' out");
-    spec.pressure_kPa = number(*load.value);
-    spec.follows = true;
-  } else {
-    spec.kilopascals = read_vector(*load.value);
+  const Node *traction = map.find("traction"), *follows = map.find("follows"), *range = map.find("range");
+  if (range == nullptr || traction != nullptr) (void)map.one_of({"traction", "pressure"});
+  if (traction != nullptr) {
+    if (range != nullptr) fail(*range, "a pressure can have a range, a traction cannot");
+    spec.kilopascals = read_vector(*traction);
     spec.follows = follows != nullptr && choice(*follows, {"false", "true"}) == 1;
+    return spec;
+  }
+  if (follows != nullptr) fail(*follows, "a pressure always follows the surface: leave 'follows' out");
+  spec.follows = true;
+  if (const Node* pressure = map.find("pressure")) spec.pressure_kPa = number(*pressure);
+  if (range != nullptr) {
+    const auto& ends = list_of(2, *range);
+    spec.range_kPa = {number(*ends[0]), number(*ends[1])};
   }
   return spec;
 }

@@ -27,7 +27,8 @@ class Columns {
       table.fail_header(
           "no column is a reading: a coordinate such as tip_x_mm, a pressure or volume such as air_pressure_kPa or "
           "air_volume_mm3, a tension or length such as tendon_tension_N or tendon_length_mm, a support's force such as "
-          "base_force_x_N, a sensor's length or angle such as strain_length_mm or bend_angle_deg");
+          "base_force_x_N, a sensor's length, angle or direction such as strain_length_mm, bend_angle_deg or "
+          "imu_direction_x");
   }
 
   [[nodiscard]] MeasuredPoses poses() const {
@@ -105,8 +106,11 @@ class Columns {
       if (const auto read = reading_of(column, static_cast<Index>(a))) return read;
     for (std::size_t s = 0; s < model_.sensors.size(); ++s) {
       const Sensor& sensor = *model_.sensors[s];
+      for (int axis = 0; sensor.kind == SensorKind::direction && axis < 3; ++axis)
+        if (column == sensor.name + "_direction_" + axes[axis])
+          return PoseColumn{column, -1, axis, -1, Reading::direction, -1, static_cast<Index>(s)};
       const bool length = sensor.kind == SensorKind::length;
-      if (column != sensor.name + (length ? "_length_mm" : "_angle_deg")) continue;
+      if (sensor.kind == SensorKind::direction || column != sensor.name + (length ? "_length_mm" : "_angle_deg")) continue;
       return PoseColumn{column, -1, -1, -1, length ? Reading::length : Reading::angle, -1, static_cast<Index>(s)};
     }
     return force_of(column);

@@ -109,8 +109,8 @@ Guess Fitter::least(const Fit& fit, const Readings& readings, double holding) co
     return problem_.normal(guess, problem_.slopes(*fit.nearby, guess), readings);
   };
   Normal normal = normal_at(at);
-  const Eigen::MatrixXd directions = directions_at(problem_.variables(), fit.at.places);
-  const Eigen::MatrixXd hold = holding * (directions.transpose() * readings.known.information * directions);
+  const Eigen::MatrixXd hold =
+      holding * readings.known.cost(problem_.variables(), fit.at.values, fit.at.places).matrix;
   normal.matrix += hold;
   double inner = 0;
   for (int i = 0; i < most_inner; ++i) {

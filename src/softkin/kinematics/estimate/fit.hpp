@@ -19,6 +19,7 @@ struct Fit {
   std::shared_ptr<const Survey> around{};  // of all places, at a shape nearby; null: none was made
   bool converged = false;
   bool interrupted = false;
+  bool anew = false;  // without what earlier readings tell
   int iterations = 0;
 };
 

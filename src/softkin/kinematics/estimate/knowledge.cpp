@@ -74,12 +74,26 @@ Eigen::MatrixXd directions_at(const Variables& variables, const std::vector<Plac
 Knowledge::Knowledge(const Variables& variables)
     : mean(mean_before(variables)), information(information_of(variables, covariance_before(variables))) {}
 
-Knowledge::Knowledge(const Variables& variables, const Eigen::VectorXd& told, const Eigen::MatrixXd& covariance,
-                     double share)
-    : mean(mean_before(variables)) {
-  mean += share * (told - mean);
-  information =
-      information_of(variables, share * share * covariance + (1 - share * share) * covariance_before(variables));
+double Knowledge::value(const Variables& variables, const Eigen::VectorXd& values,
+                        const std::vector<Place>& places) const {
+  const Eigen::VectorXd off = coordinates_of(variables, values, places) - mean;
+  double value = off.dot(information * off);
+  if (memory == nullptr) return value;
+  const Eigen::VectorXd y = memory->at(values, places);
+  return value + y.dot(memory->information() * y) - 2 * memory->pull().dot(y);
+}
+
+Knowledge::Cost Knowledge::cost(const Variables& variables, const Eigen::VectorXd& values,
+                                const std::vector<Place>& places) const {
+  const Eigen::MatrixXd directions = directions_at(variables, places);
+  const Eigen::VectorXd off = coordinates_of(variables, values, places) - mean;
+  Cost cost{directions.transpose() * information * directions, directions.transpose() * (information * off),
+            value(variables, values, places)};
+  if (memory == nullptr) return cost;
+  const Eigen::MatrixXd slopes = memory->slopes(values, places);
+  cost.matrix += slopes.transpose() * memory->information() * slopes;
+  cost.gradient += slopes.transpose() * (memory->information() * memory->at(values, places) - memory->pull());
+  return cost;
 }
 
 }  // namespace softkin::estimate

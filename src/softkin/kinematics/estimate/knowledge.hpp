@@ -1,6 +1,6 @@
 #pragma once
 
-#include <softkin/kinematics/estimate/variables.hpp>
+#include <softkin/kinematics/estimate/memory.hpp>
 
 namespace softkin::estimate {
 
@@ -11,21 +11,27 @@ namespace softkin::estimate {
 /// How these change with the columns of Variables: identity, and the tangents.
 [[nodiscard]] Eigen::MatrixXd directions_at(const Variables& variables, const std::vector<Place>& places);
 
-/// What is known of the unknowns before a reading: a normal distribution of their coordinates.
+/// What is known of the unknowns before a reading: a normal distribution of their coordinates, and what earlier
+/// readings tell.
 struct Knowledge {
   Eigen::VectorXd mean;
   Eigen::MatrixXd information;  // inverse of the covariance, on what it spans
 
+  const Memory* memory = nullptr;  // what earlier readings tell beside; null: nothing
+
   /// Before any reading: of numbers as given, of places anywhere on their patches.
   explicit Knowledge(const Variables& variables);
 
-  /// After a time in which what was told may have changed: x - mean decays and is stirred so that without readings it
-  /// comes to be known as before any, with this share of it left.
-  ///
-  /// told        coordinates of the last estimate, covariance theirs
-  /// share       exp(-elapsed / fade), 0 <= share <= 1
-  /// source      Ornstein-Uhlenbeck process: mean m + a (x - m), covariance a^2 P + (1 - a^2) C
-  Knowledge(const Variables& variables, const Eigen::VectorXd& told, const Eigen::MatrixXd& covariance, double share);
+  /// What is known costs at unknowns, to second order in Variables' columns: its matrix, half its gradient, itself.
+  struct Cost {
+    Eigen::MatrixXd matrix;
+    Eigen::VectorXd gradient;
+    double value = 0;
+  };
+  [[nodiscard]] Cost cost(const Variables& variables, const Eigen::VectorXd& values,
+                          const std::vector<Place>& places) const;
+  [[nodiscard]] double value(const Variables& variables, const Eigen::VectorXd& values,
+                             const std::vector<Place>& places) const;
 };
 
 }  // namespace softkin::estimate

@@ -6,6 +6,10 @@ namespace softkin::estimate {
 
 namespace {
 
+/// Robots that are kept, each of other stiffnesses: of the last fits of an update.
+constexpr std::size_t kept_robots = 4;
+/// By which a stiffness is perturbed, of its mean.
+constexpr double perturbation = 1e-5;
 /// Of a solve that begins at an equilibrium nearby: where it takes more, a shorter step is the shorter way.
 constexpr int most_iterations = 12;
 
@@ -37,14 +41,34 @@ bool Problem::reads_supports() const {
   return std::any_of(columns_.begin(), columns_.end(), [](const PoseColumn& column) { return column.support >= 0; });
 }
 
+const Statics& Problem::statics(const Eigen::VectorXd& values) const {
+  if (!variables_.stiffens()) return statics_;
+  const auto same = [&](const Stiffened& kept) {
+    for (Index i = 0; i < variables_.numbers(); ++i)
+      if (variables_.all()[static_cast<std::size_t>(i)].material >= 0 && kept.values[i] != values[i]) return false;
+    return true;
+  };
+  const auto found = std::find_if(stiffened_.begin(), stiffened_.end(), same);
+  if (found != stiffened_.end()) {
+    std::rotate(found, found + 1, stiffened_.end());
+    return *stiffened_.back().statics;
+  }
+  if (stiffened_.size() == kept_robots) stiffened_.erase(stiffened_.begin());
+  Stiffened robot{values, std::make_unique<const Model>(variables_.stiffened(values)), nullptr};
+  robot.statics = std::make_unique<const Statics>(*robot.model, statics_);
+  stiffened_.push_back(std::move(robot));
+  return *stiffened_.back().statics;
+}
+
 Guess Problem::solve(const Actuation& commands, const Eigen::VectorXd& values, const std::vector<Place>& places,
                      const Guess* near, const ProgressCallback& progress, const State* foretold) const {
   Guess guess{values, places, {}, {}};
-  const State start = near && near->solved() ? near->equilibrium.state : statics_.rest();
-  if (near && near->solved() && foretold) (void)statics_.foretell(start, *foretold, options_);
+  const Statics& statics = this->statics(values);
+  const State start = near && near->solved() ? near->equilibrium.state : statics.rest();
+  if (near && near->solved() && foretold) (void)statics.foretell(start, *foretold, options_);
   StaticsOptions options = options_;
   if (near && near->solved()) options.max_iterations = std::min(options.max_iterations, most_iterations);
-  guess.equilibrium = statics_.solve(variables_.actuation(commands, values, places), start, options, progress);
+  guess.equilibrium = statics.solve(variables_.actuation(commands, values, places), start, options, progress);
   ++solves_;
   if (guess.equilibrium.report.status != Status::converged) {
     ++lost_;
@@ -52,7 +76,7 @@ Guess Problem::solve(const Actuation& commands, const Eigen::VectorXd& values, c
   }
   const State& state = guess.equilibrium.state;
   Points reactions;
-  if (reads_supports()) reactions = statics_.measured(state).reactions;
+  if (reads_supports()) reactions = statics.measured(state).reactions;
   guess.computed.resize(static_cast<Index>(columns_.size()));
   for (Index r = 0; r < static_cast<Index>(columns_.size()); ++r)
     guess.computed[r] = reading_at(variables_.model(), columns_[static_cast<std::size_t>(r)], state, reactions);
@@ -75,16 +99,49 @@ Nearby Problem::nearby(const Guess& at) const {
   all.multipliers.conservativeResize(Eigen::NoChange, own);
   all.moves.resize(static_cast<std::size_t>(own));
   near.parts = std::move(all);
+  if (variables_.stiffens()) set_stiffness_slopes(at, near.parts);
   return near;
 }
 
+/// The columns of stiffnesses, which are no commands.
+void Problem::set_stiffness_slopes(const Guess& at, Slopes& parts) const {
+  std::vector<Model> models;
+  std::vector<Perturbed> perturbed;
+  std::vector<Index> numbers;
+  models.reserve(2 * static_cast<std::size_t>(variables_.numbers()));
+  for (Index i = 0; i < variables_.numbers(); ++i) {
+    const Variable& variable = variables_.all()[static_cast<std::size_t>(i)];
+    if (variable.material < 0) continue;
+    Eigen::VectorXd more = at.values, less = at.values;
+    more[i] += perturbation * variable.mean;
+    less[i] -= perturbation * variable.mean;
+    const Model &stiffer = models.emplace_back(variables_.stiffened(more)),
+                &softer = models.emplace_back(variables_.stiffened(less));
+    perturbed.push_back({stiffer, softer, more[i] - less[i]});
+    numbers.push_back(i);
+  }
+  const Perturbations perturbations(statics(at.values), perturbed);
+  Slopes found =
+      slopes_of(at, perturbations.at(at.equilibrium.state, options_, slope_accuracy_, reads_supports()));
+  for (std::size_t k = 0; k < numbers.size(); ++k) {
+    const Index i = numbers[k], column = static_cast<Index>(k);
+    parts.of_readings.col(i) = found.of_readings.col(column);
+    parts.multipliers.col(i) = found.multipliers.col(column);
+    parts.moves[static_cast<std::size_t>(i)] = std::move(found.moves[k]);
+  }
+}
+
 Slopes Problem::slopes(const Guess& at, const std::vector<Actuation>& changes) const {
+  return slopes_of(at, statics(at.values).sensitivity_along(at.equilibrium.state, changes, options_, slope_accuracy_,
+                                                            reads_supports()));
+}
+
+Slopes Problem::slopes_of(const Guess& at, ParameterSensitivity found) const {
   const State& state = at.equilibrium.state;
-  ParameterSensitivity found = statics_.sensitivity_along(state, changes, options_, slope_accuracy_, reads_supports());
   Slopes slopes;
-  slopes.of_readings.setZero(static_cast<Index>(columns_.size()), static_cast<Index>(changes.size()));
+  slopes.of_readings.setZero(static_cast<Index>(columns_.size()), static_cast<Index>(found.positions.size()));
   const Points none;
-  for (std::size_t c = 0; c < changes.size(); ++c) {
+  for (std::size_t c = 0; c < found.positions.size(); ++c) {
     const Eigen::VectorXd multipliers = found.multipliers.col(static_cast<Index>(c));
     const ShapeChange change{found.positions[c], multipliers, found.reactions.empty() ? none : found.reactions[c]};
     for (std::size_t r = 0; r < columns_.size() && found.regular; ++r)
@@ -107,7 +164,7 @@ Eigen::MatrixXd Problem::by_node_forces(const Guess& at, std::size_t force) cons
   std::vector<Points> gradients;
   for (const PoseColumn& column : columns_)
     gradients.push_back(reading_gradient(variables_.model(), column, state.positions));
-  const std::vector<Points> moves = statics_.reciprocal_moves(state, gradients, options_, slope_accuracy_);
+  const std::vector<Points> moves = statics(at.values).reciprocal_moves(state, gradients, options_, slope_accuracy_);
   if (moves.empty()) return {};
   const std::vector<Index>& nodes = variables_.forces()[force].patch->nodes();
   Eigen::MatrixXd by(static_cast<Index>(moves.size()), 3 * static_cast<Index>(nodes.size()));
@@ -118,18 +175,19 @@ Eigen::MatrixXd Problem::by_node_forces(const Guess& at, std::size_t force) cons
 }
 
 Normal Problem::normal(const Guess& at, const Eigen::MatrixXd& slopes, const Readings& read) const {
-  const Eigen::MatrixXd directions = directions_at(variables_, at.places);
-  const Eigen::VectorXd off = coordinates_of(variables_, at.values, at.places) - read.known.mean;
-  return {slopes.transpose() * read.weights.asDiagonal() * slopes +
-              directions.transpose() * read.known.information * directions,
-          slopes.transpose() * read.weights.cwiseProduct(missed(at, read)) +
-              directions.transpose() * (read.known.information * off),
-          cost(at, read)};
+  const Eigen::VectorXd off = missed(at, read);
+  Knowledge::Cost known = read.known.cost(variables_, at.values, at.places);
+  return {slopes.transpose() * read.weights.asDiagonal() * slopes + known.matrix,
+          slopes.transpose() * read.weights.cwiseProduct(off) + known.gradient,
+          read.weights.dot(off.cwiseAbs2()) + known.value};
 }
 
 double Problem::cost(const Guess& at, const Readings& read) const {
-  const Eigen::VectorXd off = coordinates_of(variables_, at.values, at.places) - read.known.mean;
-  return read.weights.dot(missed(at, read).cwiseAbs2()) + off.dot(read.known.information * off);
+  return read.weights.dot(missed(at, read).cwiseAbs2()) + read.known.value(variables_, at.values, at.places);
+}
+
+void Problem::remember(const Nearby& nearby, const Guess& at, const Readings& read, Memory& memory) const {
+  memory.add(nearby.parts.of_readings, nearby.base, at.values, at.places, missed(at, read), read.weights);
 }
 
 void Problem::move(const Guess& from, const Eigen::VectorXd& step, Eigen::VectorXd& values,

@@ -53,7 +53,8 @@ class Problem {
 
   [[nodiscard]] const Variables& variables() const { return variables_; }
   [[nodiscard]] const std::vector<PoseColumn>& columns() const { return columns_; }
-  [[nodiscard]] const Statics& statics() const { return statics_; }
+  /// Of the robot with these numbers, kept for some of them.
+  [[nodiscard]] const Statics& statics(const Eigen::VectorXd& values) const;
 
   /// near      a guess from whose equilibrium the search begins; null: from rest
   /// foretold  where the equilibrium is about, from `near`; null: along the tangent there
@@ -71,6 +72,8 @@ class Problem {
 
   [[nodiscard]] Normal normal(const Guess& at, const Eigen::MatrixXd& slopes, const Readings& read) const;
   [[nodiscard]] double cost(const Guess& at, const Readings& read) const;
+  /// Adds what readings tell near a guess to a memory.
+  void remember(const Nearby& nearby, const Guess& at, const Readings& read, Memory& memory) const;
   /// A step from a guess: numbers within their ranges, places along their surfaces.
   void move(const Guess& from, const Eigen::VectorXd& step, Eigen::VectorXd& values, std::vector<Place>& places) const;
 
@@ -95,12 +98,21 @@ class Problem {
 
  private:
   [[nodiscard]] bool reads_supports() const;
+  [[nodiscard]] Slopes slopes_of(const Guess& at, ParameterSensitivity found) const;
+  void set_stiffness_slopes(const Guess& at, Slopes& parts) const;
 
   Variables variables_;
   std::vector<PoseColumn> columns_;
   StaticsOptions options_;
   double slope_accuracy_;
   Statics statics_;
+  /// Of a robot whose materials are as stiff as it is asked for.
+  struct Stiffened {
+    Eigen::VectorXd values;
+    std::unique_ptr<const Model> model;
+    std::unique_ptr<const Statics> statics;
+  };
+  mutable std::vector<Stiffened> stiffened_;  // the last one asked for at the end
   mutable int solves_ = 0, lost_ = 0;
 };
 

@@ -35,7 +35,8 @@ bool is_of_shape(const PoseColumn& column) {
 double reading_at(const Model& model, const PoseColumn& column, const State& state, const Points& reactions) {
   if (column.marker >= 0)
     return model.markers[static_cast<std::size_t>(column.marker)].at(state.positions)[column.axis];
-  if (column.sensor >= 0) return model.sensors[static_cast<std::size_t>(column.sensor)]->at(state.positions);
+  if (column.sensor >= 0)
+    return model.sensors[static_cast<std::size_t>(column.sensor)]->at(state.positions, column.axis);
   if (is_measure(column)) return measure_at(model, column.actuator, state.positions);
   if (column.support >= 0) return force_on(model, column, state.positions, reactions);
   return state.multipliers[column.actuator];
@@ -45,7 +46,8 @@ double reading_change(const Model& model, const PoseColumn& column, const State&
   const Points& at = state.positions;
   if (column.marker >= 0)
     return model.markers[static_cast<std::size_t>(column.marker)].velocity(at, change.moves)[column.axis];
-  if (column.sensor >= 0) return model.sensors[static_cast<std::size_t>(column.sensor)]->velocity(at, change.moves);
+  if (column.sensor >= 0)
+    return model.sensors[static_cast<std::size_t>(column.sensor)]->velocity(at, change.moves, column.axis);
   if (is_measure(column)) {
     const double largest = change.moves.cwiseAbs().maxCoeff();
     if (!(largest > 0)) return 0;
@@ -85,7 +87,7 @@ Points reading_gradient(const Model& model, const PoseColumn& column, const Poin
       gradient(v, axis) =
           column.marker >= 0
               ? model.markers[static_cast<std::size_t>(column.marker)].velocity(positions, move)[column.axis]
-              : model.sensors[static_cast<std::size_t>(column.sensor)]->velocity(positions, move);
+              : model.sensors[static_cast<std::size_t>(column.sensor)]->velocity(positions, move, column.axis);
       move(v, axis) = 0;
     }
   return gradient;

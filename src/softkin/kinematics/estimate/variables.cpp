@@ -3,6 +3,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
 #include <softkin/kinematics/estimate/variables.hpp>
+#include <softkin/model/families.hpp>
 #include <softkin/model/names.hpp>
 
 namespace softkin::estimate {
@@ -13,12 +14,12 @@ namespace {
   throw InvalidInput((unknown.option.empty() ? "unknown '" : unknown.option + " '") + unknown.name + "': " + why);
 }
 
-/// The commands of a force that the scene gives a range: NAME_fx and so on.
-std::vector<Index> commands_of_force(const Model& model, const std::string& name) {
+/// The commands of a force, or of its moment, that the scene gives a range: NAME_fx and so on.
+std::vector<Index> commands_of(const Model& model, const std::string& name, ActuatorKind kind) {
   std::vector<Index> commands;
   for (const char* axis : axis_names)
-    if (const auto a = find_actuator(model, name + "_f" + axis))
-      if (model.actuators[static_cast<std::size_t>(*a)].kind == ActuatorKind::force) commands.push_back(*a);
+    if (const auto a = find_actuator(model, name + (kind == ActuatorKind::moment ? "_m" : "_f") + axis))
+      if (model.actuators[static_cast<std::size_t>(*a)].kind == kind) commands.push_back(*a);
   return commands;
 }
 
@@ -36,23 +37,52 @@ Variables::Variables(const Model& model, const std::vector<EstimatedUnknown>& un
   for (const EstimatedUnknown& unknown : unknowns) add(unknown);
 }
 
+namespace {
+
+/// NAME of "materials.NAME.stiffness".
+std::optional<std::string> stiffened_region(const std::string& unknown) {
+  constexpr std::string_view begin = "materials.", end = ".stiffness";
+  if (!unknown.starts_with(begin) || !unknown.ends_with(end) || unknown.size() <= begin.size() + end.size())
+    return std::nullopt;
+  return unknown.substr(begin.size(), unknown.size() - begin.size() - end.size());
+}
+
+void stiffen(Material& material, double factor) {
+  ElasticLaw& law = material.elastic;
+  for (double* modulus : {&law.mu, &law.lambda, &law.c10, &law.c01, &law.c20, &law.c30, &law.bulk}) *modulus *= factor;
+  for (ViscousBranch& branch : material.viscosity) branch.modulus_MPa *= factor;
+  if (!material.families) return;
+  Families families = *material.families;
+  for (Families::Family& family : families.families) family.k1_MPa *= factor;
+  material.families = std::make_shared<const Families>(std::move(families));
+}
+
+}  // namespace
+
 void Variables::add(const EstimatedUnknown& unknown) {
+  if (const auto region = stiffened_region(unknown.name)) return add_stiffness(unknown, *region);
   const std::optional<Index> command = find_actuator(*model_, unknown.name);
-  const std::vector<Index> force = commands_of_force(*model_, unknown.name);
-  if (command && !force.empty()) refuse_unknown(unknown, "both a command and a force have that name");
-  if (!command && force.empty()) {
+  const std::vector<Index> force = commands_of(*model_, unknown.name, ActuatorKind::force);
+  const std::vector<Index> moment = commands_of(*model_, unknown.name, ActuatorKind::moment);
+  if (command && !(force.empty() && moment.empty()))
+    refuse_unknown(unknown, "both a command and a force have that name");
+  if (!command && force.empty() && moment.empty()) {
     std::vector<std::string> names;
     for (Index a = 0; a < own_actuators_; ++a) names.push_back(model_->actuators[static_cast<std::size_t>(a)].name);
     std::string list;
     for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-    refuse_unknown(unknown, "the scene has no command of that name, and no force with a 'range'; commands: " + list);
+    refuse_unknown(unknown, "the scene has no command of that name, and no force with a 'range'; commands: " + list +
+                                ". The stiffness of a material is materials.REGION.stiffness");
   }
   if (unknown.somewhere && command) refuse_unknown(unknown, "a command has no place: name a force");
   if (unknown.deviation && !(*unknown.deviation > 0 && std::isfinite(*unknown.deviation)))
     refuse_unknown(unknown, "the deviation must be above 0");
+  if (unknown.somewhere && !moment.empty())
+    refuse_unknown(unknown, "it has a moment, which acts on its region as a whole: its place cannot be told");
   if (unknown.somewhere) return add_patch(unknown, force);
   if (command) return add_variable(unknown, *command, -1);
   for (const Index a : force) add_variable(unknown, a, -1);
+  for (const Index a : moment) add_variable(unknown, a, -1);
 }
 
 void Variables::add_variable(const EstimatedUnknown& unknown, Index actuator, Index force) {
@@ -63,12 +93,78 @@ void Variables::add_variable(const EstimatedUnknown& unknown, Index actuator, In
     refuse_unknown(unknown, "command '" + of.name + "' has one value, so there is nothing to tell");
   if (of.kind == ActuatorKind::hold || of.kind == ActuatorKind::motion)
     refuse_unknown(unknown, "a command of kind '" + std::string(kind_name(of)) + "' cannot be told");
-  Variable variable{
-      actuator, force,  unknown.mean.value_or(of.rest), unknown.deviation.value_or((of.high - of.low) / 2),
-      of.low,   of.high};
+  Variable variable{.actuator = actuator,
+                    .force = force,
+                    .mean = unknown.mean.value_or(of.rest),
+                    .deviation = unknown.deviation.value_or((of.high - of.low) / 2),
+                    .low = of.low,
+                    .high = of.high};
   if (!(variable.mean >= of.low && variable.mean <= of.high))
     refuse_unknown(unknown, "its mean, " + command_text(of, variable.mean) + ", is outside " + range_text(of));
   variables_.push_back(variable);
+}
+
+void Variables::add_stiffness(const EstimatedUnknown& unknown, const std::string& region) {
+  constexpr double most = 10;  // times the mean, or as small a part of it
+  const auto refuse = [&](const std::string& why) { refuse_unknown(unknown, why); };
+  const auto material = std::find_if(model_->materials.begin(), model_->materials.end(),
+                                     [&](const Material& m) { return m.region == region; });
+  if (material == model_->materials.end()) {
+    std::vector<std::string> names;
+    for (const Material& m : model_->materials) names.push_back(m.region);
+    refuse("there is no material of region '" + region + "'" + suggest_name(region, names));
+  }
+  const auto index = static_cast<Index>(material - model_->materials.begin());
+  if (std::any_of(variables_.begin(), variables_.end(), [&](const Variable& v) { return v.material == index; }))
+    refuse("it is to be told twice");
+  if (unknown.somewhere) refuse("a stiffness has no place: name a force");
+  if (!unknown.deviation)
+    refuse("say what is known of it before, over that of the scene, such as " + unknown.name + "=1+-0.2");
+  if (!(*unknown.deviation > 0 && std::isfinite(*unknown.deviation))) refuse("the deviation must be above 0");
+  const double mean = unknown.mean.value_or(1);
+  if (!(mean > 0 && std::isfinite(mean))) refuse("its mean must be above 0");
+  variables_.push_back({.material = index,
+                        .mean = mean,
+                        .deviation = *unknown.deviation,
+                        .low = mean / most,
+                        .high = mean * most});
+}
+
+std::string name_of(const Model& model, const Variable& variable) {
+  if (variable.actuator >= 0) return model.actuators[static_cast<std::size_t>(variable.actuator)].name;
+  return "materials." + model.materials[static_cast<std::size_t>(variable.material)].region + ".stiffness";
+}
+
+ToldNumber told_number(const Model& model, const Variable& variable, double value, double deviation) {
+  ToldNumber told;
+  told.name = name_of(model, variable);
+  if (variable.actuator >= 0) told.unit = command_unit(model.actuators[static_cast<std::size_t>(variable.actuator)]);
+  told.value = value;
+  told.deviation = deviation;
+  told.known_mean = variable.mean;
+  told.known_deviation = variable.deviation;
+  told.at_bound = value <= variable.low ? -1 : value >= variable.high ? 1 : 0;
+  told.actuator = variable.actuator;
+  return told;
+}
+
+std::vector<Index> Variables::told_actuators() const {
+  std::vector<Index> told;
+  for (const Variable& variable : variables_)
+    if (variable.actuator >= 0) told.push_back(variable.actuator);
+  return told;
+}
+
+bool Variables::stiffens() const {
+  return std::any_of(variables_.begin(), variables_.end(), [](const Variable& v) { return v.material >= 0; });
+}
+
+Model Variables::stiffened(const Eigen::VectorXd& values) const {
+  Model robot = *model_;
+  for (Index i = 0; i < numbers(); ++i)
+    if (const Index m = variables_[static_cast<std::size_t>(i)].material; m >= 0)
+      stiffen(robot.materials[static_cast<std::size_t>(m)], values[i]);
+  return robot;
 }
 
 void Variables::add_patch(const EstimatedUnknown& unknown, const std::vector<Index>& commands) {
@@ -112,7 +208,7 @@ Actuation Variables::actuation(const Actuation& commands, const Eigen::VectorXd&
   all.head(own_actuators_) = commands;
   for (Index i = 0; i < numbers(); ++i) {
     const Variable& variable = variables_[static_cast<std::size_t>(i)];
-    all[variable.actuator] = variable.force < 0 ? values[i] : 0;
+    if (variable.actuator >= 0) all[variable.actuator] = variable.force < 0 ? values[i] : 0;
   }
   for (std::size_t f = 0; f < forces_.size(); ++f) {
     const std::vector<Actuation> along = changes_at(f, places[f]);
@@ -172,7 +268,8 @@ std::vector<Actuation> Variables::part_changes(const std::vector<Place>& base) c
   const Actuation none = Actuation::Zero(static_cast<Index>(model_->actuators.size()));
   std::vector<Actuation> changes(static_cast<std::size_t>(numbers()), none);
   for (Index i = 0; i < numbers(); ++i)
-    if (const Variable& variable = variables_[static_cast<std::size_t>(i)]; variable.force < 0)
+    if (const Variable& variable = variables_[static_cast<std::size_t>(i)];
+        variable.force < 0 && variable.actuator >= 0)
       changes[static_cast<std::size_t>(i)][variable.actuator] = 1;
   for (std::size_t f = 0; f < forces_.size(); ++f) {
     const FreeForce& force = forces_[f];

@@ -7,11 +7,16 @@ namespace softkin::estimate {
 
 /// A number that is told.
 struct Variable {
-  Index actuator = -1;             // whose command it is
+  Index actuator = -1;             // whose command it is; -1: of none
+  Index material = -1;             // whose stiffness it is, over that of the robot; -1: of none
   Index force = -1;                // index into Variables::forces where its place is not known; else -1
   double mean = 0, deviation = 0;  // before
   double low = 0, high = 0;
 };
+
+/// Of its command; "materials.REGION.stiffness".
+[[nodiscard]] std::string name_of(const Model& model, const Variable& variable);
+[[nodiscard]] ToldNumber told_number(const Model& model, const Variable& variable, double value, double deviation);
 
 /// A force of unknown place.
 struct FreeForce {
@@ -52,6 +57,13 @@ class Variables {
   [[nodiscard]] std::vector<Actuation> changes_at(std::size_t force, const Place& place) const;
 
   [[nodiscard]] Index own_actuators() const { return own_actuators_; }
+  /// Commands that are told.
+  [[nodiscard]] std::vector<Index> told_actuators() const;
+  /// Is the stiffness of a material a number?
+  [[nodiscard]] bool stiffens() const;
+  /// The robot with these numbers: whatever makes a material resist a change of shape is so many times as stiff.
+  [[nodiscard]] Model stiffened(const Eigen::VectorXd& values) const;
+
   /// Commands of the robot that are measured and can change a shape smoothly: neither told nor held nor moved.
   [[nodiscard]] std::vector<Index> measured() const;
 
@@ -61,6 +73,7 @@ class Variables {
  private:
   void add(const EstimatedUnknown& unknown);
   void add_variable(const EstimatedUnknown& unknown, Index actuator, Index force);
+  void add_stiffness(const EstimatedUnknown& unknown, const std::string& region);
   void add_patch(const EstimatedUnknown& unknown, const std::vector<Index>& commands);
   void add_node_commands(FreeForce& force);
 

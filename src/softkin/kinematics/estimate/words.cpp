@@ -13,6 +13,11 @@ constexpr double hardly = 0.5;
 /// Standard deviations from which on readings do not fit the model.
 constexpr double doubtful = 3;
 
+/// With its unit, if it has one.
+std::string in_its_unit(double value, int digits, const ToldNumber& of) {
+  return number(value, digits) + (of.unit.empty() ? "" : " " + of.unit);
+}
+
 std::string listed(const std::vector<std::string>& names) {
   std::string text;
   for (std::size_t i = 0; i < names.size(); ++i)
@@ -26,9 +31,9 @@ std::vector<std::string> estimate_words(const Estimate& estimate, const std::vec
   std::vector<std::string> words;
   for (const ToldNumber& told : estimate.numbers) {
     if (told.deviation > hardly * told.known_deviation)
-      words.push_back(told.name + " is told to " + number(told.deviation, 2) + " " + told.unit +
+      words.push_back(told.name + " is told to " + in_its_unit(told.deviation, 2, told) +
                       " only: the readings hardly say more than what was known before, " + number(told.known_mean, 3) +
-                      " +- " + number(told.known_deviation, 3) + " " + told.unit);
+                      " +- " + in_its_unit(told.known_deviation, 3, told));
     if (told.at_bound != 0)
       words.push_back(told.name + " is at the " + (told.at_bound < 0 ? "low" : "high") +
                       " end of its range: the readings may want more");

@@ -42,10 +42,9 @@ bool answers_with_ratio(const Model& model, const Actuator& actuator) {
          (answers_with_measure(actuator) || !answers_with_load(model, actuator) || is_cable(model, actuator));
 }
 
-/// A force at a place of the robot is a command of its maps, too.
+/// Loads on the robot are commands of its maps, too.
 bool is_input(const Actuator& actuator) {
-  return varies(actuator) ||
-         (actuator.kind == ActuatorKind::force && !actuator.points.empty() && actuator.low < actuator.high);
+  return varies(actuator) || (loads_robot(actuator) && actuator.low < actuator.high);
 }
 
 }  // namespace

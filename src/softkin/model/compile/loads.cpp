@@ -79,56 +79,123 @@ std::string label(const ForceSpec& spec) {
   return spec.name.empty() ? "a force" : "force '" + spec.name + "'";
 }
 
-/// Is it commanded along an axis, and not held to one value there.
-bool is_commanded(const ForceSpec& spec, int axis) {
-  return spec.range && (*spec.range)[0][axis] < (*spec.range)[1][axis];
-}
+/// The force of an entry, or its moment.
+struct Commanded {
+  const ForceSpec& spec;
+  ActuatorKind kind;
 
-void check_range(const ForceSpec& spec) {
-  if (!spec.range) return;
-  const auto refuse = [&](const std::string& why) { throw InvalidInput(spec.at.origin, label(spec) + " " + why); };
-  const auto& [low, high] = *spec.range;
-  if (spec.name.empty()) refuse("is commanded, and so needs a name");
+  [[nodiscard]] bool is_moment() const { return kind == ActuatorKind::moment; }
+  [[nodiscard]] const Vec3& value() const { return is_moment() ? spec.moment : spec.force; }
+  [[nodiscard]] const std::optional<std::array<Vec3, 2>>& range() const {
+    return is_moment() ? spec.moment_range : spec.range;
+  }
+  /// Is it commanded along an axis, and not held to one value there.
+  [[nodiscard]] bool along(int axis) const { return range() && (*range())[0][axis] < (*range())[1][axis]; }
+};
+
+void check_values(const Commanded& of) {
+  const auto refuse = [&](const std::string& why) {
+    throw InvalidInput(of.spec.at.origin, (of.is_moment() ? "the moment of " : "") + label(of.spec) + " " + why);
+  };
+  if (!of.value().allFinite()) refuse("is not finite");
+  if (!of.range()) return;
+  const char* const unit = of.is_moment() ? " N mm" : " N";
+  const auto& [low, high] = *of.range();
+  if (of.spec.name.empty()) refuse("is commanded, and so needs a name");
   if (!low.allFinite() || !high.allFinite()) refuse("has a range that is not finite");
   for (int axis = 0; axis < 3; ++axis) {
     const std::string along = std::string(" along ") + "xyz"[axis];
     if (low[axis] > high[axis])
-      refuse("has the range " + interval_text(low[axis], high[axis]) + " N" + along + ": the low end comes first");
-    if (spec.force[axis] < low[axis] || spec.force[axis] > high[axis])
-      refuse("is " + number(spec.force[axis]) + " N" + along + ", outside its range " +
-             interval_text(low[axis], high[axis]) + " N");
+      refuse("has the range " + interval_text(low[axis], high[axis]) + unit + along + ": the low end comes first");
+    if (of.value()[axis] < low[axis] || of.value()[axis] > high[axis])
+      refuse("is " + number(of.value()[axis]) + unit + along + ", outside its range " +
+             interval_text(low[axis], high[axis]) + unit);
   }
 }
 
-Actuator command_of(const ForceSpec& spec, int axis, const EmbeddedPoint& at) {
+Actuator command_of(const Commanded& of, int axis) {
   Actuator command;
-  command.name = spec.name + "_f" + "xyz"[axis];
-  command.kind = ActuatorKind::force;
+  command.name = of.spec.name + (of.is_moment() ? "_m" : "_f") + "xyz"[axis];
+  command.kind = of.kind;
   command.control = Control::load;
   command.axis = axis;
-  command.points = {at};
-  command.low = (*spec.range)[0][axis];
-  command.high = (*spec.range)[1][axis];
-  command.rest = spec.force[axis];
+  command.low = (*of.range())[0][axis];
+  command.high = (*of.range())[1][axis];
+  command.rest = of.value()[axis];
   return command;
 }
 
+/// Of a rigid region's vertices four that are far apart, or three where all are in a plane: those farthest from the
+/// first, from the line of two, from the plane of three.
+std::vector<Index> spread_out(const Points& rest, const std::vector<Index>& vertices) {
+  const auto at = [&](Index v) { return vertex_at(rest, v); };
+  std::vector<Index> spread{vertices.front()};
+  const auto farthest = [&](const auto& distance) {
+    const Index found = *std::max_element(vertices.begin(), vertices.end(),
+                                          [&](Index a, Index b) { return distance(a) < distance(b); });
+    spread.push_back(found);
+    return distance(found);
+  };
+  const double length = farthest([&](Index v) { return (at(v) - at(spread[0])).norm(); });
+  const Vec3 along = (at(spread[1]) - at(spread[0])).normalized();
+  farthest([&](Index v) { return along.cross(at(v) - at(spread[0])).norm(); });
+  const Vec3 normal = along.cross(at(spread[2]) - at(spread[0])).normalized();
+  constexpr double flat = 1e-3;
+  if (farthest([&](Index v) { return std::abs(normal.dot(at(v) - at(spread[0]))); }) < flat * length)
+    spread.pop_back();
+  return spread;
+}
+
+/// The vertices by which a moment takes hold of the rigid region that holds all of an entry's.
+std::vector<Index> moment_vertices(const Compilation& c, const ForceSpec& spec) {
+  const auto refuse = [&](const std::string& why) {
+    throw InvalidInput(spec.at.origin, "the moment of " + label(spec) + why);
+  };
+  const auto* region = std::get_if<std::string>(&spec.at.point);
+  if (region == nullptr) refuse(" acts on a rigid region: give 'region' in place of 'point'");
+  const std::vector<Index> vertices = c.regions.resolve({*region, spec.at.origin}).vertices;
+  for (const RigidRegion& rigid : c.model.rigid)
+    if (std::all_of(vertices.begin(), vertices.end(), [&](Index v) {
+          return !c.model.used[v] || std::binary_search(rigid.vertices.begin(), rigid.vertices.end(), v);
+        }))
+      return spread_out(c.model.rest, rigid.vertices);
+  refuse(" acts on a rigid region, which '" + *region + "' is not: list it under 'rigid'");
+  return {};
+}
+
+void add_moment(Compilation& c, const ForceSpec& spec) {
+  const Commanded moment{spec, ActuatorKind::moment};
+  check_values(moment);
+  if (spec.moment.isZero(0) && !spec.moment_range) return;
+  RegionMoment of{moment_vertices(c, spec)};
+  for (int axis = 0; axis < 3; ++axis)
+    if (moment.along(axis)) {
+      c.force_commands.push_back(command_of(moment, axis));
+      c.force_commands.back().other = static_cast<Index>(c.model.moments.size());
+    } else {
+      of.moment_Nmm[axis] = spec.moment[axis];
+    }
+  c.model.moments.push_back(std::move(of));
+}
+
 void add_force(Compilation& c, const ForceSpec& spec) {
-  if (!spec.force.allFinite()) throw InvalidInput(spec.at.origin, label(spec) + " is not finite");
-  check_range(spec);
+  const Commanded force{spec, ActuatorKind::force};
+  check_values(force);
   const EmbeddedPoint at = embed_point(c, spec.at, "the point of " + label(spec));
   std::vector<CavityFace> faces;
   if (const auto* region = std::get_if<std::string>(&spec.at.point); region != nullptr && spec.range)
     for (const LoadedFace& face : surface_faces(c, {*region, spec.at.origin})) faces.push_back(face.face);
   for (int axis = 0; axis < 3; ++axis) {
-    if (is_commanded(spec, axis)) {
-      c.force_commands.push_back(command_of(spec, axis, at));
+    if (force.along(axis)) {
+      c.force_commands.push_back(command_of(force, axis));
+      c.force_commands.back().points = {at};
       c.force_commands.back().cavity = faces;
       continue;
     }
     for (std::size_t i = 0; i < at.vertices.size(); ++i)
       c.model.dead_load(at.vertices[i], axis) += at.weights[i] * spec.force[axis];
   }
+  add_moment(c, spec);
 }
 
 }  // namespace
@@ -167,7 +234,7 @@ void add_force_commands(Compilation& c) {
   for (Actuator& command : c.force_commands) {
     if (find_actuator(c.model, command.name))
       throw InvalidInput(c.origin, "the command '" + command.name +
-                                       "' of a force has the name of an actuator: give one of them another name");
+                                       "' of a load has the name of an actuator: give one of them another name");
     c.model.actuators.push_back(std::move(command));
   }
 }

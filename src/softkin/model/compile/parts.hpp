@@ -42,7 +42,7 @@ struct Compilation {
   // physical: what elements of the body and chambers enclose, found when an actuator first asks, and whose it is
   std::optional<std::vector<EmptySpace>> empty_spaces;
   std::vector<Index> space_actuators;        // -1: no actuator's
-  std::vector<Actuator> force_commands;      // of forces that are commanded
+  std::vector<Actuator> force_commands;      // of forces, moments and pressures that are commanded
   std::vector<Triangle> sheets;              // physical: faces of layers some vertex of which is of no element
   std::map<std::string, Body> robot_bodies;  // by robot, made when they are first asked for; "": of all
 };

@@ -32,8 +32,9 @@ Sensor sensor_of(Compilation& c, const SensorSpec& spec) {
   }
   if (!spec.axis.allFinite() || !(spec.axis.stableNorm() > 0)) refuse_sensor(spec, "has an axis without direction");
   sensor.axis = spec.axis.stableNormalized();
-  if (spec.sections[0] == spec.sections[1]) refuse_sensor(spec, "is between a section and itself");
-  for (std::size_t i = 0; i < 2; ++i) sensor.sections[i] = section_of(c, spec, spec.sections[i]);
+  const bool angle = spec.kind == SensorKind::angle;
+  if (angle && spec.sections[0] == spec.sections[1]) refuse_sensor(spec, "is between a section and itself");
+  for (std::size_t i = 0; i < (angle ? 2 : 1); ++i) sensor.sections[i] = section_of(c, spec, spec.sections[i]);
   return sensor;
 }
 

@@ -77,7 +77,27 @@ class BodyFaces {
 void check(const TractionSpec& spec) {
   const auto refuse = [&](const std::string& why) { throw InvalidInput(spec.where.origin, title(spec) + why); };
   if (!spec.kilopascals.allFinite() || !std::isfinite(spec.pressure_kPa)) refuse(" is not finite");
+  if (spec.range_kPa) {
+    const auto& [low, high] = *spec.range_kPa;
+    if (!std::isfinite(low) || !std::isfinite(high) || !(low < high))
+      refuse(" has the range " + interval_text(low, high) + " kPa: the low end comes first, and is lower");
+    if (spec.pressure_kPa < low || spec.pressure_kPa > high)
+      refuse(" is " + number(spec.pressure_kPa) + " kPa, outside its range " + interval_text(low, high) + " kPa");
+    return;
+  }
   if (spec.kilopascals.isZero(0) && spec.pressure_kPa == 0) refuse(" is 0: give it a value, or leave it out");
+}
+
+Actuator command_of(const TractionSpec& spec, std::size_t traction) {
+  Actuator command;
+  command.name = spec.name;
+  command.kind = ActuatorKind::pressure;
+  command.control = Control::load;
+  command.other = static_cast<Index>(traction);
+  command.low = (*spec.range_kPa)[0];
+  command.high = (*spec.range_kPa)[1];
+  command.rest = spec.pressure_kPa;
+  return command;
 }
 
 /// Of a traction that keeps its direction, on the area at rest.
@@ -114,7 +134,10 @@ void compile_tractions(Compilation& c) {
       throw InvalidInput(spec.where.origin, "there are two tractions '" + spec.name + "'");
     std::vector<LoadedFace> faces = body.of(spec);
     const Vec3 traction = megapascals * spec.kilopascals;
-    if (spec.follows)
+    if (spec.range_kPa) {
+      c.force_commands.push_back(command_of(spec, c.model.tractions.size()));
+      c.model.tractions.push_back({Vec3::Zero(), 0, std::move(faces)});
+    } else if (spec.follows)
       c.model.tractions.push_back({traction, megapascals * spec.pressure_kPa, std::move(faces)});
     else
       for (const LoadedFace& face : faces) add_dead(c.model, traction, face);

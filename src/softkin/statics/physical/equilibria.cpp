@@ -15,7 +15,8 @@ Demand at_rest(const Model& model, const Actuation& wanted) {
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const ActuatorKind kind = model.actuators[a].kind;
     if (kind == ActuatorKind::turn) demand.actuation[static_cast<Index>(a)] = wanted[static_cast<Index>(a)];
-    if (kind == ActuatorKind::force) demand.actuation[static_cast<Index>(a)] = 0;
+    if (kind == ActuatorKind::force || kind == ActuatorKind::moment || kind == ActuatorKind::pressure)
+      demand.actuation[static_cast<Index>(a)] = 0;
     if (kind == ActuatorKind::growth) demand.actuation[static_cast<Index>(a)] = model.actuators[a].rest;
   }
   return demand;

@@ -161,7 +161,7 @@ void Hydrostatics::each_place(const Face& face, const Points& positions, const V
 
 void Hydrostatics::evaluate(const Iterate& at, const Demand& demand, Term::Scratch& scratch, Sum& sum,
                             Team& /*team*/) const {
-  static_cast<Scratch&>(scratch).share = demand.share;
+  static_cast<Scratch&>(scratch).demand = demand;
   double energy = 0;
   for (const Face& face : faces_)
     each_place(face, at.positions, [&](const Place& place, const Vec3& area) {

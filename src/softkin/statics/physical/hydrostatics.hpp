@@ -1,7 +1,7 @@
 #pragma once
 
 #include <softkin/model/model.hpp>
-#include <softkin/statics/physical/surface_load.hpp>
+#include <softkin/statics/physical/node_loads.hpp>
 
 namespace softkin::physical {
 
@@ -16,7 +16,7 @@ namespace softkin::physical {
 ///
 /// A face that the level cuts is cut along it: exactly where it is flat, else after eight by eight pieces. As p is 0
 /// there, the derivative of where it is cut is of no account.
-class Hydrostatics : public SurfaceLoad {
+class Hydrostatics : public NodeLoads {
  public:
   /// model  must outlive the object; of its tractions those are taken whose pressure grows with depth
   explicit Hydrostatics(const Model& model);
@@ -47,8 +47,8 @@ class Hydrostatics : public SurfaceLoad {
   /// visit(place, its area vector [mm^2])
   template <class Visit>
   static void each_place(const Face& face, const Points& positions, const Visit& visit);
-  [[nodiscard]] std::size_t faces() const override { return faces_.size(); }
-  [[nodiscard]] const std::vector<Index>& nodes_of_face(std::size_t face) const override { return faces_[face].nodes; }
+  [[nodiscard]] std::size_t parts() const override { return faces_.size(); }
+  [[nodiscard]] const std::vector<Index>& nodes_of_part(std::size_t face) const override { return faces_[face].nodes; }
   [[nodiscard]] Blocks slopes(std::size_t face, const Points& positions) const override;
 
   const Model& model_;

@@ -41,6 +41,10 @@ System::System(const Model& given, std::unique_ptr<const Pressures> pressures, c
     hydrostatics_ = std::make_unique<Hydrostatics>(model);
     hydrostatics_->add_cliques(cliques_);
   }
+  if (!model.moments.empty()) {
+    moments_ = std::make_unique<Moments>(model);
+    moments_->add_cliques(cliques_);
+  }
   if (!model.fibres.empty()) {
     fibres_ = std::make_unique<Fibres>(model);
     fibres_->add_cliques(cliques_);
@@ -66,6 +70,7 @@ System::System(const Model& given, std::unique_ptr<const Pressures> pressures, c
   terms_ = {&body_, &dead_loads_, &fading_loads_, &surroundings_};
   if (tractions_) terms_.push_back(tractions_.get());
   if (hydrostatics_) terms_.push_back(hydrostatics_.get());
+  if (moments_) terms_.push_back(moments_.get());
   if (fibres_) terms_.push_back(fibres_.get());
   if (layers_) terms_.push_back(layers_.get());
   if (families_) terms_.push_back(families_.get());

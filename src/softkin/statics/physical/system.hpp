@@ -10,6 +10,7 @@
 #include <softkin/statics/physical/layers.hpp>
 #include <softkin/statics/physical/loads.hpp>
 #include <softkin/statics/physical/magnets.hpp>
+#include <softkin/statics/physical/moments.hpp>
 #include <softkin/statics/physical/placement.hpp>
 #include <softkin/statics/physical/pressures.hpp>
 #include <softkin/statics/physical/surroundings.hpp>
@@ -198,6 +199,7 @@ class System {
   Surroundings surroundings_;
   std::unique_ptr<Tractions> tractions_;
   std::unique_ptr<Hydrostatics> hydrostatics_;
+  std::unique_ptr<Moments> moments_;
   std::unique_ptr<const FibreFamilies> families_;
   std::unique_ptr<Fibres> fibres_;
   std::unique_ptr<Layers> layers_;

@@ -9,6 +9,8 @@ namespace {
 
 using Plane = Eigen::Matrix<double, 3, 2>;
 
+constexpr double megapascals = 1e-3;  // in a kPa
+
 }  // namespace
 
 /// Load on a place per area at rest [MPa]: J (R t - p n), with J the area over that at rest.
@@ -63,11 +65,17 @@ bool Tractions::act(const Model& model) {
 }
 
 Tractions::Tractions(const Model& model) : model_(model) {
+  std::vector<Index> commands(model.tractions.size(), -1);
+  for (std::size_t a = 0; a < model.actuators.size(); ++a)
+    if (model.actuators[a].kind == ActuatorKind::pressure)
+      commands[static_cast<std::size_t>(model.actuators[a].other)] = static_cast<Index>(a);
   double count = 0;
-  for (const FollowingTraction& traction : model.tractions) {
+  for (std::size_t t = 0; t < model.tractions.size(); ++t) {
+    const FollowingTraction& traction = model.tractions[t];
     if (!traction.deeper_MPa_mm.isZero(0)) continue;  // see Hydrostatics
+    grows_ = grows_ || commands[t] < 0;
     for (const LoadedFace& loaded : traction.faces) {
-      Face face{traction.pressure_MPa, nodes_of(loaded.face), {}};
+      Face face{commands[t] < 0 ? traction.pressure_MPa : megapascals, commands[t], nodes_of(loaded.face), {}};
       for (const Index v : face.nodes) middle_ += vertex_at(model.rest, v);
       count += static_cast<double>(face.nodes.size());
       for (const TrianglePoint& point : triangle_points(face.nodes.size())) {
@@ -95,10 +103,11 @@ void Tractions::each_place(const Points& positions, const Visit& visit) const {
 
 void Tractions::evaluate(const Iterate& at, const Demand& demand, Term::Scratch& scratch, Sum& sum,
                          Team& /*team*/) const {
-  static_cast<Scratch&>(scratch).share = demand.share;
+  static_cast<Scratch&>(scratch).demand = demand;
   double energy = 0;
   each_place(at.positions, [&](const Face& face, const Place& place, const Load& load) {
-    const Vec3 force = demand.share * place.area_mm2 * load.whole();
+    const double scale = scale_of(face, demand);
+    const Vec3 force = scale * place.area_mm2 * load.whole();
     Vec3 x = -middle_, move = Vec3::Zero();
     for (std::size_t i = 0; i < face.nodes.size(); ++i) {
       const double shape = place.point->shape[static_cast<Eigen::Index>(i)];
@@ -106,10 +115,10 @@ void Tractions::evaluate(const Iterate& at, const Demand& demand, Term::Scratch&
       x += shape * vertex_at(at.positions, face.nodes[i]);
       move += shape * (vertex_at(at.positions, face.nodes[i]) - vertex_at(model_.rest, face.nodes[i]));
     }
-    energy +=
-        place.area_mm2 * (face.pressure_MPa * load.normal().dot(x) / 3 - load.traction(face.pressure_MPa).dot(move));
+    energy += scale * place.area_mm2 *
+              (face.pressure_MPa * load.normal().dot(x) / 3 - load.traction(face.pressure_MPa).dot(move));
   });
-  sum.energy += demand.share * energy;
+  sum.energy += energy;
 }
 
 Tractions::Blocks Tractions::slopes(std::size_t number, const Points& positions) const {
@@ -139,12 +148,27 @@ Tractions::Blocks Tractions::slopes(std::size_t number, const Points& positions)
 
 void Tractions::add_change(const Demand& from, const Demand& to, const Points& positions, Term::Scratch& /*scratch*/,
                            Points& force, Team& /*team*/) const {
-  const double change = to.share - from.share;
-  if (change == 0) return;
   each_place(positions, [&](const Face& face, const Place& place, const Load& load) {
+    const double change = scale_of(face, to) - scale_of(face, from);
+    if (change == 0) return;
     const Vec3 more = change * place.area_mm2 * load.whole();
     for (std::size_t i = 0; i < face.nodes.size(); ++i)
       force.row(face.nodes[i]) -= place.point->shape[static_cast<Eigen::Index>(i)] * more.transpose();
+  });
+}
+
+bool Tractions::loads(Index command) const {
+  return model_.actuators[static_cast<std::size_t>(command)].kind == ActuatorKind::pressure;
+}
+
+void Tractions::add_derivative(Index command, const Demand& /*demand*/, const Points& positions,
+                               Term::Scratch& /*scratch*/, Points& force, Team& /*team*/) const {
+  if (!loads(command)) return;
+  each_place(positions, [&](const Face& face, const Place& place, const Load& load) {
+    if (face.command != command) return;
+    const Vec3 push = place.area_mm2 * load.whole();
+    for (std::size_t i = 0; i < face.nodes.size(); ++i)
+      force.row(face.nodes[i]) -= place.point->shape[static_cast<Eigen::Index>(i)] * push.transpose();
   });
 }
 

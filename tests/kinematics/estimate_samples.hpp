@@ -1,0 +1,59 @@
+#pragma once
+
+#include <softkin/model/measured_poses.hpp>
+#include <softkin/model/sensor.hpp>
+
+#include "statics/physical_samples.hpp"
+
+namespace softkin::testing {
+
+/// A finger of 60 mm that can be touched anywhere on its back, with four markers and what else can be read.
+inline RobotSpec touched_finger() {
+  RobotSpec spec = bending_finger();
+  spec.actuators[0] = by_load(spec.actuators[0]);
+  spec.forces = {
+      {"touch", {std::string("z_high"), {}}, {0, 0, 0}, std::array<Vec3, 2>{Vec3(-1, -1, -1), Vec3(1, 1, 1)}}};
+  spec.markers = {{"a", {Vec3(20, 1, 15), {}}},
+                  {"b", {Vec3(35, 11, 15), {}}},
+                  {"c", {Vec3(50, 1, 15), {}}},
+                  {"d", {Vec3(59, 11, 2), {}}}};
+  SensorSpec strain{.name = "strain", .kind = SensorKind::length, .points = {{5, 6, 1}, {30, 6, 1}, {55, 6, 1}}};
+  add_volume_region(spec.mesh, "first", [](const Vec3& p) { return p.x() < 15; });
+  add_volume_region(spec.mesh, "last", [](const Vec3& p) { return p.x() > 45; });
+  SensorSpec bend{
+      .name = "bend", .kind = SensorKind::angle, .points = {}, .sections = {"first", "last"}, .axis = Vec3(0, 1, 0)};
+  spec.sensors = {std::make_shared<const SensorSpec>(strain), std::make_shared<const SensorSpec>(bend)};
+  return spec;
+}
+
+inline std::vector<PoseColumn> marker_columns(const Model& model) {
+  std::vector<PoseColumn> columns;
+  for (Index m = 0; m < static_cast<Index>(model.markers.size()); ++m)
+    for (int axis = 0; axis < 3; ++axis)
+      columns.push_back({model.markers[static_cast<std::size_t>(m)].name + "_" + "xyz"[axis] + "_mm", m, axis});
+  return columns;
+}
+
+/// Markers, both sensors, the chamber's volume and what the support bears.
+inline std::vector<PoseColumn> all_columns(const Model& model) {
+  std::vector<PoseColumn> columns = marker_columns(model);
+  columns.push_back({"strain_length_mm", -1, -1, -1, Reading::length, -1, 0});
+  columns.push_back({"bend_angle_deg", -1, -1, -1, Reading::angle, -1, 1});
+  columns.push_back({"air_volume_mm3", -1, -1, 0, Reading::volume});
+  for (int axis = 0; axis < 3; ++axis) columns.push_back({"base_force", -1, axis, -1, Reading::force, 0});
+  return columns;
+}
+
+inline StaticsOptions exactly() {
+  StaticsOptions options;
+  options.step_tolerance_mm = 1e-9;
+  return options;
+}
+
+inline Actuation commands_of(const Model& model, double pressure) {
+  Actuation commands = model.rest_actuation();
+  commands[0] = pressure;
+  return commands;
+}
+
+}  // namespace softkin::testing
