@@ -85,6 +85,32 @@ TEST(Trail, NothingIsToldOfWhatCannotBeForetold) {
   EXPECT_FALSE(walked(straight, {0, 0.4}).lead(demand_at(0.4), demand_at(0.8), {true, true}, tolerance, at));
 }
 
+/// Along a bent way of several loads each equilibrium is that of its own loads, whatever the ones before lead to.
+TEST(Trail, LoadsThatAreGivenAreThoseThatAreAskedFor) {
+  RobotSpec spec = chambers_beam(3);
+  for (ActuatorSpec& chamber : spec.actuators) chamber = by_load(chamber);
+  spec.actuators.push_back(by_load(cable("rope", {{0, 1, 10}, {24, 1, 10}, {48, 1, 10}})));
+  const Model model = compile(spec);
+  const Statics tracked(model);
+  State at = tracked.rest();
+  double farthest = 0;
+  for (int step = 0; step < 60; ++step) {
+    const double t = 0.1 * step;
+    Actuation loads(static_cast<Index>(model.actuators.size()));
+    for (Index a = 0; a < loads.size(); ++a) loads[a] = 20 + 15 * std::sin((1 + 0.4 * a) * t + a);
+    loads[loads.size() - 1] = 0.2 + 0.1 * std::cos(1.3 * t);
+    const Equilibrium found = tracked.solve(loads, at);
+    ASSERT_EQ(found.report.status, Status::converged);
+    EXPECT_LT((found.state.multipliers - loads).cwiseAbs().maxCoeff(), 1e-9) << step;
+    at = found.state;
+    if (step % 10 != 9) continue;
+    const Equilibrium fresh = Statics(model).solve(loads, Statics(model).rest());
+    farthest = std::max(farthest, distance(fresh.state.positions, model.rest));
+    EXPECT_LT(distance(found.state.positions, fresh.state.positions), 1e-4) << step;
+  }
+  EXPECT_GT(farthest, 0.2);
+}
+
 /// Where tangents do better they are not given up.
 TEST(Trail, FirstOrderIsKeptWhereItIsBetter) {
   const Curve curve(9);

@@ -138,6 +138,7 @@ class Continuation {
   bool release(const Demand& there, Iterate& at, bool contradicting);
   Newton::Outcome settle_swollen(const Demand& there, Swelling how, Iterate& trial);
   [[nodiscard]] Demand pressed(Demand demand, double times, Iterate& at) const;
+  void give_loads(const Demand& demand, Iterate& at) const;
   Newton::Outcome step(const Demand& here, const Demand& there, double length, const Iterate& at, Iterate& trial);
   bool leads_beyond(const Iterate& at);
   void take_beyond(Iterate& at);

@@ -22,6 +22,14 @@ Newton::Outcome Continuation::settle_here(const Demand& demand, Iterate& at) {
   return outcome;
 }
 
+/// Loads that are given are the demand's, wherever a prediction has them: one that goes on along a bent way of several
+/// commands misses them, and no equation would tell.
+void Continuation::give_loads(const Demand& demand, Iterate& at) const {
+  for (Index a = 0; a < system_.actuators(); ++a)
+    if (!active_[static_cast<std::size_t>(a)] && system_.measures().given_load(a))
+      at.multipliers[a] = system_.measures().given(a, demand.actuation[a]);
+}
+
 /// From a prediction to where what touches pushes as it will, from an equilibrium: Newton's method on the shape alone
 /// loses a face that rests on another, as it presses so little that it lies within a hundredth of the contact distance
 /// of where forces end. Where nothing touched yet, through softer contact that is felt from farther away.
@@ -54,6 +62,7 @@ Newton::Outcome Continuation::foresee_contact(const Demand& demand, const Iterat
 /// that it led to, and again from there.
 Newton::Outcome Continuation::settle(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised) {
   constexpr int most_rounds = 40;
+  give_loads(demand, at);
   if (!system_.friction()) return settle_constraints(demand, policy, at, factorised);
   auto outcome = settle_following(demand, policy, at, factorised);
   if (outcome != Newton::Outcome::stuck && outcome != Newton::Outcome::unmet) return outcome;
