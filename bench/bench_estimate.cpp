@@ -238,11 +238,12 @@ void tell_each(int draw, const Truth& truth, const std::vector<std::size_t>& wro
   };
   const Vec3 off = Vec3(told.numbers[0].value, told.numbers[1].value, told.numbers[2].value) - truth.force;
   std::printf(
-      "  %3d: %.2f kPa, (%.3f %.3f %.3f) N at (%.1f %.1f) mm; wrong %s, left out %s; %s, misfit %.1f, %.3f N off, "
-      "%d equilibria, %.2f s\n",
+      "  %3d: %.2f kPa, (%.3f %.3f %.3f) N at (%.1f %.1f) mm; wrong %s, left out %s; %s, misfit %.1f, told "
+      "(%.3f %.3f %.3f) N at (%.1f %.1f) mm, %.3f N off, %d equilibria, %.2f s\n",
       draw, truth.commands[0], truth.force[0], truth.force[1], truth.force[2], truth.place[0], truth.place[1],
-      list(wrong).c_str(), list(told.left_out).c_str(), softkin::name_of(told.status), told.misfit(), off.norm(),
-      told.equilibria, told.seconds);
+      list(wrong).c_str(), list(told.left_out).c_str(), softkin::name_of(told.status), told.misfit(),
+      told.numbers[0].value, told.numbers[1].value, told.numbers[2].value, told.places[0].at_rest[0],
+      told.places[0].at_rest[1], off.norm(), told.equilibria, told.seconds);
   std::fflush(stdout);
 }
 
@@ -332,7 +333,7 @@ void run_updates(const Model& model, const Options& options) {
     if (u > 0) processor.push_back(processor_seconds() - begin);
     failed += told.status != Status::converged;
     truth.positions = guess.equilibrium.state.positions;
-    if (options.verbose && told.equilibria > many_equilibria) tell_each(u, truth, {}, told);
+    if (options.verbose && (told.equilibria > many_equilibria || told.misfit() > 3)) tell_each(u, truth, {}, told);
     if (u == 0) continue;
     errors.add(truth, told);
     seconds.push_back(told.seconds);

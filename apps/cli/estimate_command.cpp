@@ -99,6 +99,7 @@ int run_estimate(const EstimateAsked& asked) {
 
 void add_options(CLI::App& command, EstimateAsked& asked) {
   add_scene(command, asked);
+  add_force(command, asked);
   add_value(command, "READINGS", asked.readings_file, "F.csv",
             "Readings, a row each: measured commands as in a path (air_kPa),\nt_s, then what was read: tip_x_mm, "
             "air_volume_mm3, tendon_tension_N,\nbase_force_x_N, strain_length_mm, bend_angle_deg; empty cells were not "
