@@ -4,6 +4,7 @@
 #include <softkin/runs/estimate_plan.hpp>
 
 #include "command.hpp"
+#include "estimate_options.hpp"
 #include "run_text.hpp"
 #include "solve_options.hpp"
 #include "terminal.hpp"
@@ -14,43 +15,27 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// In the order of Reading.
-constexpr const char* deviation_options[][2] = {{"--deviation", "MM"},          {"--deviation-pressure", "KPA"},
-                                                {"--deviation-tension", "N"},   {"--deviation-length", "MM"},
-                                                {"--deviation-volume", "MM^3"}, {"--deviation-force", "N"},
-                                                {"--deviation-angle", "DEG"}};
-
 /// What the user asks of `softkin estimate`.
 struct EstimateAsked : SolveOptions {
   std::string readings_file, report, table;
-  std::vector<std::string> unknowns;
-  std::array<std::optional<double>, readings> deviations{};
-  EstimatorOptions how;
+  EstimateOptions estimate;
   std::optional<int> plan;
-  bool keep_all = false, json = false, may_replace = false;
+  bool json = false, may_replace = false;
 };
 
 int run_estimate(const EstimateAsked& asked) {
   check_extension("--report", asked.report, {{".json", ""}});
   check_extension("--table", asked.table, {{".csv", ""}});
   check_solver(asked);
-  std::vector<EstimatedUnknown> unknowns;
-  for (const std::string& text : asked.unknowns) unknowns.push_back(parse_unknown("--unknown", text));
+  const std::vector<EstimatedUnknown> unknowns = asked.estimate.asked_unknowns();
   std::vector<fs::path> inputs{asked.scene, asked.readings_file};
   const Model model = asked_robot(asked, inputs);
   const std::vector<Output> outputs = asked_outputs({{"--report", asked.report}, {"--table", asked.table}});
   check_outputs(outputs, inputs, asked.may_replace);
   const OutputFolders folders(outputs);
   const MeasuredPoses poses = read_measured_poses(asked.readings_file, model);
-  std::array<double, readings> deviations{};
-  std::array<std::string, readings> names;
-  for (std::size_t k = 0; k < readings; ++k) {
-    deviations[k] = asked.deviations[k].value_or(0);
-    names[k] = deviation_options[k][0];
-  }
-  EstimatorOptions how = asked.how;
-  how.statics = asked.statics();
-  how.leave_out = !asked.keep_all;
+  const std::array<double, readings> deviations = asked.estimate.asked_deviations();
+  const EstimatorOptions how = asked.estimate.how(asked.statics());
   catch_interrupt();
   ProgressLine line;
   std::size_t done_rows = 0;
@@ -60,7 +45,7 @@ int run_estimate(const EstimateAsked& asked) {
     if (asked.plan) planner.add(told);
   };
   runs::EstimateReport report =
-      runs::estimate_poses(model, poses, unknowns, deviations, names, how, row, [&](const Progress&) {
+      runs::estimate_poses(model, poses, unknowns, deviations, deviation_names(), how, row, [&](const Progress&) {
         line.show(static_cast<double>(done_rows) / static_cast<double>(poses.commands.size()),
                   "row " + std::to_string(done_rows + 1) + " of " + std::to_string(poses.commands.size()));
         return !interrupted();
@@ -84,18 +69,9 @@ void add_options(CLI::App& command, EstimateAsked& asked) {
             "air_volume_mm3, tendon_tension_N,\nbase_force_x_N, strain_length_mm, bend_angle_deg; empty cells were not "
             "read")
       ->required();
-  add_repeated(command, "--unknown", asked.unknowns, "NAME",
-               "What is to be told: a force with a `range`, or NAME:place, where on\nits region it acts, too; or a "
-               "command that was not measured. With\n=MEAN+-DEVIATION: known before (default: half of its range)")
-      ->required();
-  for (std::size_t k = 0; k < readings; ++k)
-    add_value(command, deviation_options[k][0], asked.deviations[k], deviation_options[k][1],
-              std::string("Standard deviation of a ") + reading_names[k] + " that was read",
-              positive(std::string("a number > 0 in ") + reading_units[k]));
-  add_value(command, "--fade", asked.how.fade_s, "S",
-            "Time in which what pushes may become anything else: rows go on\nfrom each other (default: each by itself)",
-            positive_time());
-  command.add_flag("--keep-all", asked.keep_all, "Leave no reading out that contradicts the others");
+  add_unknowns(command, asked.estimate)->required();
+  add_deviations(command, asked.estimate);
+  add_fade(command, asked.estimate, "rows go on\nfrom each other (default: each by itself)");
   add_value(command, "--plan", asked.plan, "N",
             "Say which N further markers on the surface, or markers, sensors,\nlengths and volumes of the scene whose "
             "deviation is given, would\ntell most, one after the other, over all rows",

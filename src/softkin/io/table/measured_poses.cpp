@@ -152,6 +152,24 @@ std::vector<PoseColumn> reading_columns(const Model& model, const std::vector<st
   return Columns(table, model).readings_alone();
 }
 
+std::vector<PoseColumn> possible_readings(const Model& model) {
+  std::vector<std::string> names;
+  const auto along_axes = [&](const std::string& begin, const std::string& end) {
+    for (const char* axis : axis_names) names.push_back(begin + axis + end);
+  };
+  for (const Marker& marker : model.markers) along_axes(marker.name + "_", "_mm");
+  for (const Actuator& actuator : model.actuators) {
+    const bool air = actuator.kind == ActuatorKind::pneumatic;
+    if (!air && actuator.kind != ActuatorKind::cable) continue;
+    if (actuator.control != Control::load) names.push_back(actuator.name + (air ? "_pressure_kPa" : "_tension_N"));
+    if (actuator.control != Control::ratio) names.push_back(actuator.name + (air ? "_volume_mm3" : "_length_mm"));
+  }
+  for (const auto& sensor : model.sensors)
+    names.push_back(sensor->name + (sensor->kind == SensorKind::length ? "_length_mm" : "_angle_deg"));
+  for (const Support& support : model.supports) along_axes(support.name + "_force_", "_N");
+  return reading_columns(model, names);
+}
+
 MeasuredPoses read_measured_poses(const std::filesystem::path& file, const Model& model) {
   const CsvTable table = read_csv_with_gaps(file);
   return Columns(table, model).poses();
