@@ -36,6 +36,7 @@ Json force_json(const runs::ForcePicture& force) {
   Json json{{"name", force.name},
             {"at_mm", json_of(force.at)},
             {"force_N", json_of(force.force)},
+            {"deviation_N", force.deviation},
             {"across_N", axes_json(force.across)}};
   json["place_mm"] = force.place ? axes_json(*force.place) : Json();
   return json;
@@ -61,9 +62,37 @@ LiveEstimator::LiveEstimator(const Model& model, EstimateSetup setup)
     : model_(model),
       setup_(std::move(setup)),
       estimator_(model, setup_.unknowns, setup_.columns, setup_.deviations, setup_.how),
-      pictures_(model) {}
+      page_text_(text_for_page()),
+      columns_(setup_.columns),
+      pictures_(model) {
+  for (const PoseColumn& column : columns_) has_[static_cast<std::size_t>(column.kind)] = true;
+}
 
-std::string LiveEstimator::page_text() const {
+void LiveEstimator::have(const Eigen::VectorXd& values) {
+  for (std::size_t c = 0; c < setup_.columns.size(); ++c)
+    if (!std::isnan(values[static_cast<Index>(c)])) read_[static_cast<std::size_t>(setup_.columns[c].kind)] = true;
+  if (read_ != has_ && read_ != Kinds{}) {
+    has_ = read_;
+    columns_.clear();
+    std::vector<double> deviations;
+    for (std::size_t c = 0; c < setup_.columns.size(); ++c) {
+      if (!has_[static_cast<std::size_t>(setup_.columns[c].kind)]) continue;
+      columns_.push_back(setup_.columns[c]);
+      deviations.push_back(setup_.deviations[static_cast<Index>(c)]);
+    }
+    estimator_ = Estimator(model_, setup_.unknowns, columns_,
+                           Eigen::Map<const Eigen::VectorXd>(deviations.data(), static_cast<Index>(deviations.size())),
+                           setup_.how);
+    last_s_.reset();
+    last_ = {};
+  }
+  values_.resize(static_cast<Index>(columns_.size()));
+  Index next = 0;
+  for (std::size_t c = 0; c < setup_.columns.size(); ++c)
+    if (has_[static_cast<std::size_t>(setup_.columns[c].kind)]) values_[next++] = values[static_cast<Index>(c)];
+}
+
+std::string LiveEstimator::text_for_page() const {
   Json columns = Json::array();
   const std::vector<ReadingGroup>& groups = estimator_.groups();
   for (std::size_t c = 0; c < setup_.columns.size(); ++c) {
@@ -84,21 +113,24 @@ const Estimate& LiveEstimator::tell(std::uint64_t asker, const ReadingsRequest& 
                                     const ProgressCallback& progress) {
   const auto now = Clock::now();
   double elapsed = 0;
-  if (asker != asker_)
+  const bool is_other = asker != asker_;
+  if (is_other) read_ = {};
+  have(request.values);
+  if (is_other)
     estimator_.forget();
   else if (request.time_s && last_s_)
     elapsed = std::max(0.0, *request.time_s - *last_s_);
   else if (last_ != Clock::time_point{})
     elapsed = std::chrono::duration<double>(now - last_).count();
   asker_ = asker;
-  const Estimate& told = estimator_.update(request.commands, request.values, elapsed, progress);
+  const Estimate& told = estimator_.update(request.commands, values_, elapsed, progress);
   if (told.status != Status::converged) return told;
   last_s_ = request.time_s;
   last_ = now;
   return told;
 }
 
-std::string LiveEstimator::told_text(const ReadingsRequest& request, const Estimate& told) const {
+std::string LiveEstimator::told_text(const Estimate& told) const {
   Json json{{"status", name_of(told.status)}, {"remark", told.remark}};
   if (told.status != Status::converged) return runs::line_of(json);
   Json forces = Json::array();
@@ -111,7 +143,7 @@ std::string LiveEstimator::told_text(const ReadingsRequest& request, const Estim
   json["left_out"] = runs::left_out_json(told, estimator_.groups());
   json["words"] = estimate_words(told, estimator_.groups());
   json["seconds"] = told.seconds;
-  json["readings"] = runs::read_json(told, setup_.columns, request.values);
+  json["readings"] = runs::read_json(told, columns_, values_);
   json["forces"] = std::move(forces);
   return runs::line_of(json);
 }

@@ -25,7 +25,8 @@ struct EstimateSetup {
                                            const std::array<double, readings>& deviations,
                                            const std::array<std::string, readings>& options, EstimatorOptions how);
 
-/// Tells what readings say, each time from the last estimate. For one thread at a time.
+/// Tells what readings say, each time from the last estimate. For one thread at a time. Its estimator has the columns
+/// of the kinds that were read so far: those of others would keep it from what markers and sensors alone let it do.
 class LiveEstimator {
  public:
   /// model must outlive the object. throws InvalidInput as Estimator does
@@ -37,20 +38,29 @@ class LiveEstimator {
   [[nodiscard]] bool fades() const { return setup_.how.fade_s > 0; }
   /// What the page must know to ask for readings, JSON: "columns" with "name", "group", "axis", "unit" and "deviation",
   /// "told" actuators, "fade_s".
-  [[nodiscard]] std::string page_text() const;
+  [[nodiscard]] std::string page_text() const { return page_text_; }
 
   /// asker: where it is another than before, another clock and perhaps another scene, the last estimate is forgotten
   [[nodiscard]] const Estimate& tell(std::uint64_t asker, const ReadingsRequest& request,
                                      const ProgressCallback& progress);
   /// What was told last, as JSON for the page; numbers, places and forces only where it converged.
-  [[nodiscard]] std::string told_text(const ReadingsRequest& request, const Estimate& told) const;
+  [[nodiscard]] std::string told_text(const Estimate& told) const;
 
  private:
   using Clock = std::chrono::steady_clock;
+  using Kinds = std::array<bool, readings>;
+
+  [[nodiscard]] std::string text_for_page() const;
+  /// Takes readings of all columns; the estimator is made anew where these are of a kind that it does not have.
+  void have(const Eigen::VectorXd& values);
 
   const Model& model_;
   EstimateSetup setup_;
   Estimator estimator_;
+  std::string page_text_;
+  Kinds read_{}, has_{};             // by who asks now; of the estimator
+  std::vector<PoseColumn> columns_;  // the same
+  Eigen::VectorXd values_;           // of these, that were told from last
   runs::ForcePictures pictures_;
   std::uint64_t asker_ = 0;
   std::optional<double> last_s_{};  // time of what was told last

@@ -248,7 +248,7 @@ void LiveRobot::tell(const ReadingsRequest& request, std::uint64_t asker) {
   }
   LiveShape answer = shape_;
   answer.id = request.id;
-  answer.estimate = estimator_->told_text(request, told);
+  answer.estimate = estimator_->told_text(told);
   if (!shape) {
     answer.status = name_of(told.status);
     answer.remark = told.remark;

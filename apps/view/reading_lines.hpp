@@ -40,8 +40,8 @@ struct LineColumns {
 /// Commands that are not there rest.
 ///
 /// after   t_s must be larger [s]; none: any is
-/// throws  Refusal, and nothing else: no JSON object, an unknown key, which it names, what is no finite number, a command
-///         outside its range, a reading larger than largest_reading, no reading at all
+/// throws  Refusal, and nothing else: no JSON object, an unknown key, which it names, what is no finite number, a
+///         command outside its range, a reading larger than largest_reading, no reading at all
 [[nodiscard]] ReadingsRequest read_reading_line(std::string_view text, const LineColumns& columns,
                                                 std::optional<double> after);
 

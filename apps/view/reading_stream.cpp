@@ -84,7 +84,7 @@ class Writer : public std::enable_shared_from_this<Writer> {
   void look(Clock::time_point now) {
     const StreamLimits& limits = host_.limits();
     if (ending_ && seconds_until(since_, now) > linger_s) return drop();
-    if (writing_ && seconds_until(since_, now) > limits.stalled_s) return drop();
+    if ((writing_ || has_said_all_) && seconds_until(since_, now) > limits.stalled_s) return drop();
     if (!ending_ && !let_in_ && seconds_until(opened_, now) > limits.head_s) refuse("no token came", true);
   }
 
@@ -101,6 +101,7 @@ class Writer : public std::enable_shared_from_this<Writer> {
       return refuse("a line is at most " + std::to_string(longest_line) + " bytes long", true);
     if (error == net::error::eof && let_in_) {  // what it asked is still answered
       has_said_all_ = true;
+      since_ = Clock::now();
       return write();
     }
     if (error) return drop();
@@ -176,7 +177,7 @@ class Writer : public std::enable_shared_from_this<Writer> {
   std::optional<double> last_s_;     // of the line before
   int refusals_ = 0;
   bool let_in_ = false, has_said_all_ = false, writing_ = false, ending_ = false;
-  Clock::time_point opened_ = Clock::now(), since_{};  // since_: a write began, or the end
+  Clock::time_point opened_ = Clock::now(), since_{};  // since_: a write began, or an end
 };
 
 }  // namespace

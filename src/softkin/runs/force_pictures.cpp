@@ -84,6 +84,8 @@ std::vector<ForcePicture> ForcePictures::of(const Estimate& told) const {
         if (row >= 0 && column >= 0) covariance(i, j) = told.covariance(row, column);
       }
     }
+    const Vec3 along = picture.force.normalized();
+    picture.deviation = std::sqrt(std::max(0.0, along.dot(covariance * along)));
     picture.across = axes_of(across(covariance, picture.force));
     const auto place =
         std::find_if(told.places.begin(), told.places.end(), [&](const ToldPlace& p) { return p.force == name; });

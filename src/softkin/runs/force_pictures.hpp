@@ -12,8 +12,9 @@ constexpr double ellipse_90 = 2.14596602628935, interval_90 = 1.64485362695147;
 /// A force that was told, as it is drawn: an arrow at its place, a cone around it, and an ellipse at the place.
 struct ForcePicture {
   std::string name;
-  Vec3 at{0, 0, 0};     // where it acts, in the shape that was told [mm]
-  Vec3 force{0, 0, 0};  // [N]; what no command says of it, as components without a range, is not in it
+  Vec3 at{0, 0, 0};      // where it acts, in the shape that was told [mm]
+  Vec3 force{0, 0, 0};   // [N]; what no command says of it, as components without a range, is not in it
+  double deviation = 0;  // standard, of its size [N]
   // Half axes of what holds the arrow's tip with 90 %, across the arrow [N], the longer first: of an ellipse, or where
   // one component alone across it is told, of an interval, and the other is 0. Of a force of 0: its longest ones.
   std::array<Vec3, 2> across{Vec3::Zero(), Vec3::Zero()};
