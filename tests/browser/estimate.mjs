@@ -61,8 +61,10 @@ async function checkChanged(page) {
   await page.keyboard.press('Tab');
   assert.match(await text(page, 'readings'), /m1 x mm: a number up to/);
   assert.equal(await text(page, 'told'), told);
+  assert.equal(await field.getAttribute('aria-invalid'), 'true');
   await page.locator('#undo').click();
   await until(page, 'state', /^Told from 12 readings: converged/);
+  assert.doesNotMatch(await text(page, 'readings'), /m1 x mm/);
   await page.getByText('Nothing was read', {exact: true}).click();
   await until(page, 'state', /^Told from 0 readings: converged/);
   assert.match(await text(page, 'told'), /touch_fz is told to 1 N only/);

@@ -8,7 +8,7 @@ import {halfOpening, type ToldForce} from './estimate';
 /** Corners of an ellipse that is drawn. */
 const corners = 48;
 /** Of the robot's size: the arrow, or half of a wider cone, is as long; the scale stays while it is between these. */
-const longest = 0.32, kept = {low: 0.1, high: 0.4};
+const longest = 0.32, kept = {low: 0.12, high: 0.4};
 
 /** 1, 2 or 5 times a power of ten, at most so much. */
 export function roundBelow(most: number): number {

@@ -7,7 +7,7 @@ export function liveWords(state: LiveState, before: boolean): string {
   if (!connected) return before ? 'softkin does not answer: trying again …' : 'Connecting to softkin …';
   const others = watchers > 0 ? ` ${watchers} window${watchers > 1 ? 's' : ''} watch${watchers > 1 ? '' : 'es'}.` : '';
   if (control) return `You control the robot.${others}`;
-  if (streamed) return `Readings are streamed to softkin, and this window watches.${others}`;
+  if (streamed) return `Readings are streamed to softkin, and this window watches.`;
   const who = free ? 'Nobody controls the robot.' : 'Another window controls the robot; this one watches.';
   return secret ? who : `${who} To control it, open the whole address that softkin printed.`;
 }

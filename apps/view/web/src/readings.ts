@@ -36,6 +36,7 @@ export function readingsCsv({document, commands, values}: Robot): string {
 
 function makeFields(robot: Robot, columns: ReadingColumn[], box: HTMLElement): () => void {
   const wrong = element('p', {class: 'bad message', role: 'alert'});
+  let wrongAt = robot.values;  // what is said holds until others are read
   const fields = columns.map((column, c) => {
     const {group, axis, unit} = column;
     const field = element('input', {type: 'number', step: 'any', placeholder: '–',
@@ -43,6 +44,7 @@ function makeFields(robot: Robot, columns: ReadingColumn[], box: HTMLElement): (
     field.addEventListener('change', () => {
       wrong.textContent = field.validity.badInput ? whyNoReading('?', column) : whyNoReading(field.value, column);
       field.setAttribute('aria-invalid', String(wrong.textContent !== ''));
+      wrongAt = robot.values;
       if (wrong.textContent) return;
       robot.read(robot.values.map((value, k) => k !== c ? value : field.value === '' ? null : Number(field.value)));
     });
@@ -68,6 +70,10 @@ function makeFields(robot: Robot, columns: ReadingColumn[], box: HTMLElement): (
   box.append(element('table', {}, element('thead', {}, element('tr', {}, ...head)), element('tbody', {}, ...rows)),
              wrong, element('div', {class: 'buttons'}, clear));
   return () => {
+    if (wrong.textContent && robot.values !== wrongAt) {
+      wrong.textContent = '';
+      for (const field of fields) field.setAttribute('aria-invalid', 'false');
+    }
     fields.forEach((field, c) => {
       field.disabled = !robot.able;
       if (document.activeElement !== field) field.value = shown(robot.values[c]);

@@ -201,7 +201,7 @@ export class Robot {
       this.commands = commands;
       this.outside = false;
       this.estimate = frame.estimate ?? null;
-      if (!newest) this.showRead();
+      if (!mine) this.showRead();
       this.target = target && {marker: target.marker, at: target.at, errorMm: target.error_mm,
                                reached: target.reached, why: target.why};
     }
