@@ -161,8 +161,7 @@ class Writer : public std::enable_shared_from_this<Writer> {
   void hang_up() {
     ErrorCode ignored;
     socket_.shutdown(tcp::socket::shutdown_send, ignored);
-    text_.resize(4096);
-    socket_.async_read_some(net::buffer(text_), [self = shared_from_this()](ErrorCode error, std::size_t) {
+    socket_.async_read_some(net::buffer(rest_), [self = shared_from_this()](ErrorCode error, std::size_t) {
       error ? self->drop() : self->hang_up();
     });
   }
@@ -171,6 +170,7 @@ class Writer : public std::enable_shared_from_this<Writer> {
   tcp::socket socket_;
   Allowance lines_;
   std::string text_;                 // that was read, and is not yet taken
+  std::array<char, 4096> rest_{};    // that is not read for what it says; text_ may still be waited for
   std::string writes_;               // that is on its way
   std::deque<std::string> errors_;   // fewer than the refusals that end it
   std::optional<std::string> told_;  // the newest

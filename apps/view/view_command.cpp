@@ -294,8 +294,8 @@ void add_view_command(CLI::App& app, Run& run) {
   add_command(app, run, "view", "The robot live in a browser: bent while it is dragged, by the solver",
               "Serves a page at 127.0.0.1 until Ctrl-C. Who opens the printed address has control; who opens it "
               "without what\n"
-              "follows the # only watches. Exit code: 0 ended by Ctrl-C, 1 no equilibrium at rest, 2 bad usage or bad "
-              "input.\n"
+              "follows the # only watches. With --unknown the page tells what pushes the robot, from what was read.\n"
+              "Exit code: 0 ended by Ctrl-C, 1 no equilibrium at rest, 2 bad usage or bad input.\n"
               "Examples:\n"
               "  softkin view examples/pneumatic_finger/pneumatic_finger.yaml\n"
               "  softkin view examples/estimate/finger.yaml --unknown touch:place --deviation 0.2     # what pushes it",

@@ -5,10 +5,10 @@ const kept: Record<string, number> = {
   '--force': 1, '--formulation': 1, '--solver': 1, '--solver-tolerance': 1, '--max-iterations': 1, '--anderson': 1,
   '--stable': 0,
 };
-/** Those of what is told. */
+/** Those of what is told; a table of one row does not fade. */
 const keptToTell: Record<string, number> = {
   '--unknown': 1, '--deviation': 1, '--deviation-pressure': 1, '--deviation-tension': 1, '--deviation-length': 1,
-  '--deviation-volume': 1, '--deviation-force': 1, '--deviation-angle': 1, '--fade': 1, '--keep-all': 0,
+  '--deviation-volume': 1, '--deviation-force': 1, '--deviation-angle': 1, '--keep-all': 0,
 };
 
 /** Words of a line, as a shell of POSIX reads them. */

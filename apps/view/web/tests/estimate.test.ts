@@ -2,7 +2,10 @@ import assert from 'node:assert/strict';
 import {test} from 'node:test';
 import {fitText, forceText, halfOpening, placeText, plusMinus, type ToldForce} from '../src/estimate';
 import {roundBelow} from '../src/forces';
-import {groupsOf, whyNoReading} from '../src/readings';
+import {lineOf} from '../src/command_line';
+import type {RobotDocument} from '../src/document';
+import {groupsOf, readingsCsv, whyNoReading} from '../src/readings';
+import type {Robot} from '../src/robot';
 
 const force: ToldForce = {name: 'touch', at_mm: [1, 2, 3], force_N: [0, 3, -4], deviation_N: 0.25,
                           across_N: [[5, 0, 0], [0, 0.8, 0.6]], place_mm: null};
@@ -32,6 +35,19 @@ test('places and fits are told', () => {
 
 test('scales are 1, 2 or 5 times a power of ten', () => {
   assert.deepEqual([1, 1.9, 2, 4.99, 5, 9, 0.031, 310].map(roundBelow), [1, 1, 2, 2, 5, 5, 0.02, 200]);
+});
+
+test('what was typed is saved as a table of softkin estimate', () => {
+  const column = (name: string) => ({name, group: name, axis: '', unit: 'mm', deviation: 1});
+  const document = {
+    command: 'softkin view a.yaml --unknown touch:place --deviation=0.2 --fade 2 --port 8123 --keep-all --stable',
+    actuators: [{name: 'air'}, {name: 'touch_fx'}],
+    live: {estimate: {columns: [column('m1_x_mm'), column('m1_y_mm')], told: [1], fade_s: 2}},
+  } as unknown as RobotDocument;
+  assert.equal(readingsCsv({document, commands: [10, 0.3], values: [36.5, null]} as unknown as Robot),
+               'air,m1_x_mm\n10,36.5\n');
+  assert.equal(lineOf(document, [10, 0.3]),
+               'softkin estimate a.yaml readings.csv --unknown touch:place --deviation=0.2 --keep-all --stable');
 });
 
 test('what is typed is a number or nothing', () => {
