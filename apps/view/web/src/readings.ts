@@ -1,8 +1,11 @@
+import type {Actuator} from './document';
 import {
   type Estimate, type EstimateDocument, fitText, forceText, placeText, plusMinus, type ReadingColumn,
+  type ToldNumber,
 } from './estimate';
 import type {Robot} from './robot';
 import {byId, digits, element, plain} from './text';
+import {commandWords} from './words';
 
 /** Of a number that is shown in a field. */
 const shown = (value: number | null): string => value === null ? '' : String(Number(value.toPrecision(8)));
@@ -94,10 +97,14 @@ const meaning = (mmPerNewton: number, places: boolean): string =>
   (places ? 'Ellipse at its foot: it acts inside, in the surface, with 90 % (2.15 standard deviations). ' : '') +
   'As if all errors were normal.';
 
-function tell(estimate: Estimate, box: HTMLElement, mmPerNewton: number): void {
+/** Of a ratio in words: "× rest length". */
+export const unitOf = ({name, unit}: ToldNumber, actuators: Actuator[]): string =>
+  unit || actuators.filter((actuator) => actuator.name === name).map(commandWords).join('');
+
+function tell(estimate: Estimate, actuators: Actuator[], box: HTMLElement, mmPerNewton: number): void {
   const {numbers = [], places = [], forces = [], words = [], status, remark} = estimate;
-  const rows = numbers.map(({name, unit, value, deviation}) => element('tr', {}, element('td', {}, plain(name)),
-    element('td', {}, plusMinus(value, deviation, unit))));
+  const rows = numbers.map((told) => element('tr', {}, element('td', {}, plain(told.name)),
+    element('td', {}, plusMinus(told.value, told.deviation, unitOf(told, actuators)))));
   box.replaceChildren(
     ...forces.map((force) => element('p', {class: 'force'}, forceText(force))),
     ...places.map((place) => element('p', {}, `${plain(place.force)} acts, at rest, at ${placeText(place)}`)),
@@ -121,7 +128,7 @@ export function makeReadings(robot: Robot, mmPerNewton: () => number): () => voi
     fields();
     if (last === robot.estimate) return;
     last = robot.estimate;
-    if (last) tell(last, box, mmPerNewton());
+    if (last) tell(last, robot.document.actuators, box, mmPerNewton());
     else box.replaceChildren(element('p', {class: 'explain'}, 'Nothing was read yet.'));
   };
 }

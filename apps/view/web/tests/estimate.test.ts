@@ -3,8 +3,8 @@ import {test} from 'node:test';
 import {fitText, forceText, halfOpening, placeText, plusMinus, type ToldForce} from '../src/estimate';
 import {roundBelow} from '../src/forces';
 import {lineOf} from '../src/command_line';
-import type {RobotDocument} from '../src/document';
-import {groupsOf, readingsCsv, whyNoReading} from '../src/readings';
+import type {Actuator, RobotDocument} from '../src/document';
+import {groupsOf, readingsCsv, unitOf, whyNoReading} from '../src/readings';
 import type {Robot} from '../src/robot';
 
 const force: ToldForce = {name: 'touch', at_mm: [1, 2, 3], force_N: [0, 3, -4], deviation_N: 0.25,
@@ -48,6 +48,13 @@ test('what was typed is saved as a table of softkin estimate', () => {
                'air,m1_x_mm\n10,36.5\n');
   assert.equal(lineOf(document, [10, 0.3]),
                'softkin estimate a.yaml readings.csv --unknown touch:place --deviation=0.2 --keep-all --stable');
+});
+
+test('what is told of a ratio has its unit in words', () => {
+  const actuators = [{name: 'tendon', unit: '', control: 'length'}, {name: 'air', unit: 'kPa'}] as Actuator[];
+  const told = {value: 1, deviation: 0.1};
+  assert.equal(unitOf({...told, name: 'tendon', unit: ''}, actuators), '× rest length');
+  assert.equal(unitOf({...told, name: 'air', unit: 'kPa'}, actuators), 'kPa');
 });
 
 test('what is typed is a number or nothing', () => {
