@@ -24,6 +24,7 @@ using ErrorCode = boost::system::error_code;
 
 constexpr auto look_every = std::chrono::milliseconds(250);
 constexpr double linger_s = 2;                                  // for the other side to read why it ends
+constexpr double longest_answer_s = 600;                        // to who has said all
 constexpr std::uint64_t first_writer = std::uint64_t{1} << 63;  // askers below it are pages
 
 double seconds_until(Clock::time_point begin, Clock::time_point end) {
@@ -84,7 +85,8 @@ class Writer : public std::enable_shared_from_this<Writer> {
   void look(Clock::time_point now) {
     const StreamLimits& limits = host_.limits();
     if (ending_ && seconds_until(since_, now) > linger_s) return drop();
-    if ((writing_ || has_said_all_) && seconds_until(since_, now) > limits.stalled_s) return drop();
+    if (writing_ && seconds_until(since_, now) > limits.stalled_s) return drop();
+    if (has_said_all_ && seconds_until(since_, now) > longest_answer_s) return drop();
     if (!ending_ && !let_in_ && seconds_until(opened_, now) > limits.head_s) refuse("no token came", true);
   }
 
@@ -102,11 +104,17 @@ class Writer : public std::enable_shared_from_this<Writer> {
     if (error == net::error::eof && let_in_) {  // what it asked is still answered
       has_said_all_ = true;
       since_ = Clock::now();
+      if (!text_.empty()) take_line(std::exchange(text_, ""));
       return write();
     }
     if (error) return drop();
     std::string line = text_.substr(0, length - 1);
     text_.erase(0, length);
+    take_line(std::move(line));
+    if (!ending_) read();
+  }
+
+  void take_line(std::string line) {
     if (line.ends_with('\r')) line.pop_back();
     lines_.take(1, Clock::now());
     if (lines_.left(Clock::now()) < 0) return refuse("too many lines in a short time", true);
@@ -115,7 +123,6 @@ class Writer : public std::enable_shared_from_this<Writer> {
     } catch (const Refusal& refusal) {
       refuse(refusal.what(), !let_in_);
     }
-    if (!ending_) read();
   }
 
   void take(const std::string& line) {

@@ -156,7 +156,16 @@ TEST(ReadingStream, TellsWhatWasPassedOver) {
   const nlohmann::json last = line_of(writer);
   EXPECT_EQ(last.at("t_s"), 5);
   EXPECT_EQ(last.at("passed_over"), 3);
-  ASSERT_EQ(streamed.asked().size(), 5u);
+  // who has said all is still told what was asked last
+  writer.send("{\"t_s\": 6, \"tip_x_mm\": 12}");  // its last line may lack its end
+  writer.end_sending();
+  EXPECT_EQ(writer.take(1, 0.1), std::nullopt);
+  EXPECT_FALSE(writer.is_closed());
+  streamed.answer(request(6));
+  EXPECT_EQ(line_of(writer).at("t_s"), 6);
+  EXPECT_EQ(writer.take_rest(), "");
+  EXPECT_EQ(streamed.lent(), "+-");
+  ASSERT_EQ(streamed.asked().size(), 6u);
   EXPECT_EQ(streamed.asked()[4].asker, request(5).asker);
   EXPECT_EQ(std::get<ReadingsRequest>(streamed.asked()[4].what).id, 5u);
 }
