@@ -112,7 +112,7 @@ void add_options(CLI::App& command, RobotOptions& options) {
   constexpr const char* given[][2] = {{"--deviation", "MM"},          {"--deviation-pressure", "KPA"},
                                       {"--deviation-tension", "N"},   {"--deviation-length", "MM"},
                                       {"--deviation-volume", "MM^3"}, {"--deviation-force", "N"},
-                                      {"--deviation-angle", "DEG"},    {"--deviation-direction", "D"}};
+                                      {"--deviation-angle", "DEG"},   {"--deviation-direction", "D"}};
   for (std::size_t k = 0; k < readings; ++k)
     add_value(command, given[k][0], options.deviations[k], given[k][1],
               std::string("Of a ") + reading_names[k] + " that was read (default: by what is left)",

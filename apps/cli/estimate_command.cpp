@@ -6,6 +6,7 @@
 #include <softkin/runs/map_estimates.hpp>
 
 #include "command.hpp"
+#include "estimate_options.hpp"
 #include "run_text.hpp"
 #include "solve_options.hpp"
 #include "terminal.hpp"
@@ -16,20 +17,12 @@ namespace fs = std::filesystem;
 
 namespace {
 
-/// In the order of Reading.
-constexpr const char* deviation_options[][2] = {{"--deviation", "MM"},          {"--deviation-pressure", "KPA"},
-                                                {"--deviation-tension", "N"},   {"--deviation-length", "MM"},
-                                                {"--deviation-volume", "MM^3"}, {"--deviation-force", "N"},
-                                                {"--deviation-angle", "DEG"},    {"--deviation-direction", "D"}};
-
 /// What the user asks of `softkin estimate`.
 struct EstimateAsked : SolveOptions {
   std::string readings_file, report, table, map;
-  std::vector<std::string> unknowns;
-  std::array<std::optional<double>, readings> deviations{};
-  EstimatorOptions how;
+  EstimateOptions estimate;
   std::optional<int> plan;
-  bool keep_all = false, json = false, may_replace = false;
+  bool json = false, may_replace = false;
 };
 
 void check_map(const EstimateAsked& asked) {
@@ -37,7 +30,7 @@ void check_map(const EstimateAsked& asked) {
   const SolveOptions usual;
   const bool changed = asked.solver_name != usual.solver_name || asked.tolerance_mm != usual.tolerance_mm ||
                        asked.max_iterations != usual.max_iterations || asked.stable || asked.instant;
-  if (asked.plan || asked.how.fade_s > 0 || asked.keep_all || changed)
+  if (asked.plan || asked.estimate.fade_s > 0 || asked.estimate.keep_all || changed)
     throw InvalidInput(
         "a map tells each row by itself, leaves no reading out and plans none: --map goes without --plan, --fade, "
         "--keep-all and the solver's options");
@@ -48,8 +41,7 @@ int run_estimate(const EstimateAsked& asked) {
   check_extension("--table", asked.table, {{".csv", ""}});
   check_solver(asked);
   check_map(asked);
-  std::vector<EstimatedUnknown> unknowns;
-  for (const std::string& text : asked.unknowns) unknowns.push_back(parse_unknown("--unknown", text));
+  const std::vector<EstimatedUnknown> unknowns = asked.estimate.asked_unknowns();
   std::vector<fs::path> inputs{asked.scene, asked.readings_file};
   if (!asked.map.empty()) inputs.emplace_back(asked.map);
   const Model model = asked_robot(asked, inputs);
@@ -57,15 +49,8 @@ int run_estimate(const EstimateAsked& asked) {
   check_outputs(outputs, inputs, asked.may_replace);
   const OutputFolders folders(outputs);
   const MeasuredPoses poses = read_measured_poses(asked.readings_file, model);
-  std::array<double, readings> deviations{};
-  std::array<std::string, readings> names;
-  for (std::size_t k = 0; k < readings; ++k) {
-    deviations[k] = asked.deviations[k].value_or(0);
-    names[k] = deviation_options[k][0];
-  }
-  EstimatorOptions how = asked.how;
-  how.statics = asked.statics();
-  how.leave_out = !asked.keep_all;
+  const std::array<double, readings> deviations = asked.estimate.asked_deviations();
+  const EstimatorOptions how = asked.estimate.how(asked.statics());
   catch_interrupt();
   ProgressLine line;
   std::size_t done_rows = 0;
@@ -74,17 +59,17 @@ int run_estimate(const EstimateAsked& asked) {
     done_rows = number + 1;
     if (asked.plan) planner.add(told);
   };
-  const runs::AskedEstimates what{model, poses, unknowns, deviations, names};
+  const runs::AskedEstimates what{model, poses, unknowns, deviations, deviation_names()};
   runs::EstimateReport report =
-      asked.map.empty() ? runs::estimate_poses(what, how, row,
-                                               [&](const Progress&) {
-                                                 line.show(static_cast<double>(done_rows) /
-                                                               static_cast<double>(poses.commands.size()),
-                                                           "row " + std::to_string(done_rows + 1) + " of " +
-                                                               std::to_string(poses.commands.size()));
-                                                 return !interrupted();
-                                               })
-                        : runs::estimate_poses_by_map(runs::read_map_of(model, asked.map), what, row);
+      asked.map.empty()
+          ? runs::estimate_poses(
+                what, how, row,
+                [&](const Progress&) {
+                  line.show(static_cast<double>(done_rows) / static_cast<double>(poses.commands.size()),
+                            "row " + std::to_string(done_rows + 1) + " of " + std::to_string(poses.commands.size()));
+                  return !interrupted();
+                })
+          : runs::estimate_poses_by_map(runs::read_map_of(model, asked.map), what, row);
   line.clear();
   report.planned = asked.plan.has_value();
   if (report.planned) report.plan = planner.plan();
@@ -105,18 +90,9 @@ void add_options(CLI::App& command, EstimateAsked& asked) {
             "air_volume_mm3, tendon_tension_N,\nbase_force_x_N, strain_length_mm, bend_angle_deg; empty cells were not "
             "read")
       ->required();
-  add_repeated(command, "--unknown", asked.unknowns, "NAME",
-               "What is to be told: a force with a `range`, or NAME:place, where on\nits region it acts, too; or a "
-               "command that was not measured. With\n=MEAN+-DEVIATION: known before (default: half of its range)")
-      ->required();
-  for (std::size_t k = 0; k < readings; ++k)
-    add_value(command, deviation_options[k][0], asked.deviations[k], deviation_options[k][1],
-              std::string("Standard deviation of a ") + reading_names[k] + " that was read",
-              positive("a number > 0" + in_unit(static_cast<Reading>(k))));
-  add_value(command, "--fade", asked.how.fade_s, "S",
-            "Time in which what pushes may become anything else: rows go on\nfrom each other (default: each by itself)",
-            positive_time());
-  command.add_flag("--keep-all", asked.keep_all, "Leave no reading out that contradicts the others");
+  add_unknowns(command, asked.estimate)->required();
+  add_deviations(command, asked.estimate);
+  add_fade(command, asked.estimate, "rows go on\nfrom each other (default: each by itself)");
   add_value(command, "--map", asked.map, "F.skmap",
             "Kinematic map of the robot (softkin map) whose inputs are the\nunknowns: tells in its place, in "
             "microseconds a row");

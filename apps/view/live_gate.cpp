@@ -38,7 +38,8 @@ void Allowance::take(double count, Time now) {
   last_ = now;
 }
 
-LivePage live_page(std::string_view page, std::string document, const std::string& model, int port) {
+LivePage live_page(std::string_view page, std::string document, const std::string& model, int port,
+                   const std::string& estimate) {
   constexpr std::string_view tag = "http-equiv=\"Content-Security-Policy\"", content = "content=\"";
   const std::size_t at = page.find(tag), begin = page.find(content, at);
   const std::size_t end = begin == std::string_view::npos ? begin : page.find('"', begin + content.size());
@@ -52,7 +53,8 @@ LivePage live_page(std::string_view page, std::string document, const std::strin
       std::string(page.substr(0, begin)) + std::string(content) + live.policy + std::string(page.substr(end));
   live.policy += "; frame-ancestors 'self' http://127.0.0.1:* http://localhost:*";  // notebooks show it
   document.pop_back();
-  document += std::string(",\"live\":{\"path\":\"") + live_path + "\",\"model\":\"" + model + "\"}}";
+  document += std::string(",\"live\":{\"path\":\"") + live_path + "\",\"model\":\"" + model + "\"" +
+              (estimate.empty() ? "" : ",\"estimate\":" + estimate) + "}}";
   live.html = runs::page_html(told, document);
   return live;
 }

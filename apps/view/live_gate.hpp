@@ -50,8 +50,10 @@ inline constexpr const char* live_path = "/live";
 /// page      with a meta tag of its Content-Security-Policy
 /// document  JSON, an object with at least one key
 /// model     hexadecimal
+/// estimate  what the page must know to ask for readings, JSON; empty: nothing is told
 /// throws    InvalidInput where the page has no such tag, or no place for a document
-[[nodiscard]] LivePage live_page(std::string_view page, std::string document, const std::string& model, int port);
+[[nodiscard]] LivePage live_page(std::string_view page, std::string document, const std::string& model, int port,
+                                 const std::string& estimate = "");
 
 /// 16 hexadecimal digits of texts. source: FNV-1a, 64 bit
 [[nodiscard]] std::string fingerprint_of_texts(const std::initializer_list<std::string_view>& texts);

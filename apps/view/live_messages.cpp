@@ -57,6 +57,21 @@ class Message {
     return numbers;
   }
 
+  /// So many readings; null: not read, NaN.
+  [[nodiscard]] Eigen::VectorXd readings(std::size_t size) const {
+    const Json& list = at("values");
+    if (!list.is_array() || list.size() != size)
+      refuse("values must be a list of " + counted(size, "number") + " or null, one per column");
+    Eigen::VectorXd values = Eigen::VectorXd::Constant(static_cast<Index>(size), std::nan(""));
+    for (std::size_t i = 0; i < size; ++i) {
+      if (list[i].is_null()) continue;
+      if (!list[i].is_number() || !(std::abs(list[i].get<double>()) <= largest_reading))
+        refuse("values must be null or numbers up to " + number(largest_reading));
+      values[static_cast<Index>(i)] = list[i].get<double>();
+    }
+    return values;
+  }
+
   [[nodiscard]] std::size_t place(const char* key, std::size_t size) const {
     const Json& value = at(key);
     if (size == 0) refuse("the robot has no " + std::string(key));
@@ -81,16 +96,23 @@ class Message {
   std::optional<RequestId> id_;
 };
 
-CommandRequest command_of(const Message& message, const Model& model) {
+Actuation commands_of(const Message& message, const Model& model) {
   const std::size_t count = model.actuators.size();
-  CommandRequest request{message.id(),
-                         message.numbers("commands", count, counted(count, "number") + ", one per actuator")};
-  for (std::size_t a = 0; a < count; ++a) {
-    const Actuator& actuator = model.actuators[a];
-    const double value = request.commands[static_cast<Index>(a)];
-    if (value < actuator.low || value > actuator.high)
-      message.refuse(actuator.name + ": " + command_text(actuator, value) + " is outside " + range_text(actuator));
-  }
+  Actuation commands = message.numbers("commands", count, counted(count, "number") + ", one per actuator");
+  for (std::size_t a = 0; a < count; ++a)
+    check_command(model.actuators[a], commands[static_cast<Index>(a)], message.id());
+  return commands;
+}
+
+CommandRequest command_of(const Message& message, const Model& model) {
+  const RequestId id = message.id();
+  return {id, commands_of(message, model)};
+}
+
+ReadingsRequest readings_of(const Message& message, const Model& model, std::size_t count) {
+  ReadingsRequest request{message.id(), {}, {}};
+  request.commands = commands_of(message, model);
+  request.values = message.readings(count);
   return request;
 }
 
@@ -104,13 +126,17 @@ TargetRequest target_of(const Message& message, const Model& model) {
   return request;
 }
 
-ClientMessage message_of(const Json& json, const Model& model) {
+ClientMessage message_of(const Json& json, const Model& model, std::size_t readings) {
   if (!json.is_object()) throw Refusal("a message is a JSON object");
   const Message message(json);
   const std::string type = message.text("type");
   if (type == "hello") return Hello{message.text("secret")};
+  const bool moves = type == "command" || type == "target";
+  if (type == "readings" && readings == 0) message.refuse("nothing is told here: start softkin view with --unknown");
+  if (moves && readings > 0) message.refuse("what pushes is told here: send readings");
   if (type == "command") return command_of(message, model);
   if (type == "target") return target_of(message, model);
+  if (type == "readings") return readings_of(message, model, readings);
   if (type == "take") return Take{};
   if (type == "release") return Release{};
   message.refuse("there is no message of type " + repeated(type));
@@ -147,17 +173,19 @@ std::string head_text(const LiveShape& shape, RequestId id) {
   Json commands = Json::array(), loads = Json::array();
   for (const double command : shape.commands) commands.push_back(finite_or_null(command));
   for (const auto& load : shape.loads) loads.push_back(load ? finite_or_null(*load) : Json());
-  return message_text({{"id", id},
-                       {"status", shape.status},
-                       {"remark", shape.remark},
-                       {"commands", std::move(commands)},
-                       {"loads", std::move(loads)},
-                       {"markers", points_of(shape.markers)},
-                       {"iterations", shape.iterations},
-                       {"seconds", finite_or_null(shape.seconds)},
-                       {"target", shape.target ? json_of(*shape.target) : Json()},
-                       {"arrays", shape.arrays},
-                       {"vertices", shape.vertices}});
+  std::string text = message_text({{"id", id},
+                                   {"status", shape.status},
+                                   {"remark", shape.remark},
+                                   {"commands", std::move(commands)},
+                                   {"loads", std::move(loads)},
+                                   {"markers", points_of(shape.markers)},
+                                   {"iterations", shape.iterations},
+                                   {"seconds", finite_or_null(shape.seconds)},
+                                   {"target", shape.target ? json_of(*shape.target) : Json()},
+                                   {"arrays", shape.arrays},
+                                   {"vertices", shape.vertices}});
+  if (!shape.estimate.empty()) text.replace(text.size() - 1, 1, ",\"estimate\":" + shape.estimate + "}");
+  return text;
 }
 
 }  // namespace
@@ -167,11 +195,16 @@ double farthest_target_mm(const Model& model) {
   return farthest + 100 * model.diagonal_mm;
 }
 
-ClientMessage read_client_message(std::string_view text, const Model& model) {
-  if (text.size() > longest_message)
-    throw Refusal("a message is at most " + std::to_string(longest_message) + " bytes long");
+void check_command(const Actuator& actuator, double value, std::optional<RequestId> id) {
+  if (value < actuator.low || value > actuator.high)
+    throw Refusal(actuator.name + ": " + command_text(actuator, value) + " is outside " + range_text(actuator), id);
+}
+
+ClientMessage read_client_message(std::string_view text, const Model& model, std::size_t readings) {
+  if (const std::size_t longest = longest_message_of(readings); text.size() > longest)
+    throw Refusal("a message is at most " + std::to_string(longest) + " bytes long");
   try {
-    return message_of(parse_json(text), model);
+    return message_of(parse_json(text), model, readings);
   } catch (const Json::exception&) {
     throw Refusal("this is no JSON with numbers that a computer has");
   }
@@ -195,6 +228,7 @@ std::string state_text(const LiveState& state) {
                        {"secret", state.secret},
                        {"control", state.control},
                        {"free", state.free},
+                       {"streamed", state.streamed},
                        {"watchers", state.watchers}});
 }
 

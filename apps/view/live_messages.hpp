@@ -16,6 +16,11 @@ namespace softkin::view {
 
 /// A message is no longer than this [bytes].
 inline constexpr std::size_t longest_message = 4096;
+/// The same where so many readings may be in it.
+constexpr std::size_t longest_message_of(std::size_t readings) {
+  constexpr std::size_t digits = 26;  // of a number, with its comma
+  return longest_message + digits * readings;
+}
 
 /// Of a request, given by who asks: 1 to 2^53. 0: of none.
 using RequestId = std::uint64_t;
@@ -34,9 +39,19 @@ struct TargetRequest {
   Index marker = 0;
   Vec3 at = Vec3::Zero();  // [mm]
 };
+/// What was read, to be told from.
+struct ReadingsRequest {
+  RequestId id = 0;
+  Actuation commands;              // m, inside the ranges; those that are told do not count
+  Eigen::VectorXd values;          // of the columns; NaN: not read
+  std::optional<double> time_s{};  // when it was read; none: now
+};
 struct Take {};
 struct Release {};
-using ClientMessage = std::variant<Hello, CommandRequest, TargetRequest, Take, Release>;
+using ClientMessage = std::variant<Hello, CommandRequest, TargetRequest, ReadingsRequest, Take, Release>;
+
+/// A reading is no larger than this, in its unit: so far the squares of what readings miss can be added up.
+inline constexpr double largest_reading = 1e9;
 
 /// What is refused, in a sentence, and of which request, where it tells.
 class Refusal : public InvalidInput {
@@ -54,10 +69,14 @@ class Refusal : public InvalidInput {
 
 /// A page's message, JSON; keys that are not known do not count.
 ///
-/// returns  with as many commands as there are actuators, inside their ranges, or a marker that there is and a place
-///          within farthest_target_mm()
-/// throws   Refusal, and nothing else, on whatever is not that
-[[nodiscard]] ClientMessage read_client_message(std::string_view text, const Model& model);
+/// readings  columns of which something may be read; 0: nothing is told here
+/// returns   with as many commands as there are actuators, inside their ranges; with a marker that there is and a place
+///           within farthest_target_mm(); with as many readings as there are columns, NaN or up to largest_reading.
+///           Where something is told, neither a command nor a target alone
+/// throws    Refusal, and nothing else, on whatever is not that
+[[nodiscard]] ClientMessage read_client_message(std::string_view text, const Model& model, std::size_t readings = 0);
+/// Throws Refusal naming the actuator where a command is outside its range.
+void check_command(const Actuator& actuator, double value, std::optional<RequestId> id = {});
 
 /// How a search for a target ended.
 struct TargetAnswer {
@@ -81,6 +100,7 @@ struct LiveShape {
   std::vector<std::string> arrays;  // that follow the positions
   std::vector<float> numbers;       // positions, x y z by vertex [mm]; then a number per vertex of each of the arrays
   std::size_t vertices = 0;
+  std::string estimate{};  // JSON of what readings told; empty: none were asked about
 };
 
 /// Length of the head (uint32), the head (JSON, padded with blanks to a multiple of four), the numbers as float32; all
@@ -93,6 +113,7 @@ struct LiveShape {
 struct LiveState {
   std::string model;  // what the page shows, hexadecimal
   bool secret = false, control = false, free = true;
+  bool streamed = false;     // readings come by the other port, and nobody else controls
   std::size_t watchers = 0;  // that said hello, without who has control
 };
 [[nodiscard]] std::string state_text(const LiveState& state);

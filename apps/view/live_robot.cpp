@@ -65,8 +65,13 @@ std::optional<LiveShape> live_shape(const Model& model, const Statics& statics, 
 }
 
 LiveRobot::LiveRobot(const Model& model, const Statics& statics, const runs::PageDocument& page,
-                     const StaticsOptions& options, Equilibrium rest, Publish publish)
-    : model_(model), statics_(statics), page_(page), options_(options), publish_(std::move(publish)) {
+                     const StaticsOptions& options, Equilibrium rest, Publish publish, LiveEstimator* estimator)
+    : model_(model),
+      statics_(statics),
+      page_(page),
+      options_(options),
+      publish_(std::move(publish)),
+      estimator_(estimator) {
   options_.keep_history = false;
   std::optional<LiveShape> shape = live_shape(model_, statics_, page_, rest);
   if (!shape) throw InvalidInput("the robot's shape at rest is not finite");
@@ -126,10 +131,13 @@ void LiveRobot::answer(const LiveRequest& request) {
   try {
     std::visit(
         [&](const auto& what) {
-          if constexpr (std::is_same_v<std::decay_t<decltype(what)>, CommandRequest>)
+          using What = std::decay_t<decltype(what)>;
+          if constexpr (std::is_same_v<What, CommandRequest>)
             solve(what, request.asker);
-          else
+          else if constexpr (std::is_same_v<What, TargetRequest>)
             search(what, request.asker);
+          else
+            tell(what, request.asker);
         },
         request.what);
   } catch (const std::exception& error) {
@@ -137,6 +145,7 @@ void LiveRobot::answer(const LiveRequest& request) {
     shape.id = std::visit([](const auto& what) { return what.id; }, request.what);
     shape.status = name_of(Status::not_converged);
     shape.remark = error.what();
+    if (std::holds_alternative<ReadingsRequest>(request.what)) shape.estimate = nothing_told_text(error.what());
     say(request.asker, std::move(shape));
   }
 }
@@ -221,6 +230,31 @@ void LiveRobot::search(const TargetRequest& request, std::uint64_t asker) {
     say(asker, std::move(answer));
     if (reached || has_newer()) return;
   }
+}
+
+/// The shape is that which was told, with its forces.
+void LiveRobot::tell(const ReadingsRequest& request, std::uint64_t asker) {
+  if (estimator_ == nullptr) throw InvalidInput("nothing is told of this robot");
+  const Estimate& told = estimator_->tell(asker, request, [this](const Progress&) { return !is_stopped(); });
+  if (told.status == Status::interrupted) return;
+  std::optional<LiveShape> shape;
+  if (told.status == Status::converged) {
+    Equilibrium found{told.state, told.actuation, {}};
+    found.report.status = told.status;
+    found.report.iterations = told.iterations;
+    found.report.seconds = told.seconds;
+    shape = live_shape(model_, statics_, page_, found);
+    if (shape) stand(std::move(found), std::move(*shape));
+  }
+  LiveShape answer = shape_;
+  answer.id = request.id;
+  answer.estimate = estimator_->told_text(told);
+  if (!shape) {
+    answer.status = name_of(told.status);
+    answer.remark = told.remark;
+    answer.seconds = told.seconds;
+  }
+  say(asker, std::move(answer));
 }
 
 }  // namespace softkin::view

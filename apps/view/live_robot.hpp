@@ -10,6 +10,7 @@
 #include <thread>
 #include <variant>
 
+#include "live_estimate.hpp"
 #include "live_messages.hpp"
 
 namespace softkin::view {
@@ -17,7 +18,7 @@ namespace softkin::view {
 /// What a robot is asked for.
 struct LiveRequest {
   std::uint64_t asker = 0;  // who has control, for who gets the answer
-  std::variant<CommandRequest, TargetRequest> what;
+  std::variant<CommandRequest, TargetRequest, ReadingsRequest> what;
 };
 
 /// A shape, and for whom it was solved.
@@ -36,15 +37,17 @@ struct LiveAnswer {
 ///
 /// Where something newer is asked for, a search for a target ends, and so does an equilibrium that takes longer than
 /// 0.3 s; neither is answered then. What does not converge is answered with the last shape that did. What is out of
-/// reach is answered at once from the last shape, and again where another start then finds better.
+/// reach is answered at once from the last shape, and again where another start then finds better. What is told from
+/// readings is told to its end, so that a stream that is faster than the solver is answered, too.
 class LiveRobot {
  public:
   /// Called by the robot's thread for every answer.
   using Publish = std::function<void(std::shared_ptr<const LiveAnswer>)>;
 
-  /// All must outlive the object. rest: an equilibrium, where it begins; page: of the same model
+  /// All must outlive the object. rest: an equilibrium, where it begins; page: of the same model; estimator: tells from
+  /// readings, none: those are answered by an error
   LiveRobot(const Model& model, const Statics& statics, const runs::PageDocument& page, const StaticsOptions& options,
-            Equilibrium rest, Publish publish);
+            Equilibrium rest, Publish publish, LiveEstimator* estimator = nullptr);
   ~LiveRobot();
   LiveRobot(const LiveRobot&) = delete;
   LiveRobot& operator=(const LiveRobot&) = delete;
@@ -61,6 +64,7 @@ class LiveRobot {
   void answer(const LiveRequest& request);
   void solve(const CommandRequest& request, std::uint64_t asker);
   void search(const TargetRequest& request, std::uint64_t asker);
+  void tell(const ReadingsRequest& request, std::uint64_t asker);
   [[nodiscard]] InverseResult searched(const std::vector<Goal>& goals, int other_starts) const;
   [[nodiscard]] ProgressCallback patience(double seconds) const;
   [[nodiscard]] bool has_newer() const;
@@ -73,6 +77,7 @@ class LiveRobot {
   const runs::PageDocument& page_;
   StaticsOptions options_;
   Publish publish_;
+  LiveEstimator* estimator_;
 
   // of the thread alone
   Equilibrium last_;                        // converged

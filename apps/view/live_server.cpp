@@ -54,6 +54,14 @@ class Pace {
   std::size_t written_ = 0;
 };
 
+/// Of a request; none: of what is none.
+std::optional<RequestId> id_of(const ClientMessage& message) {
+  if (const auto* command = std::get_if<CommandRequest>(&message)) return command->id;
+  if (const auto* target = std::get_if<TargetRequest>(&message)) return target->id;
+  if (const auto* readings = std::get_if<ReadingsRequest>(&message)) return readings->id;
+  return std::nullopt;
+}
+
 using Stream = beast::basic_stream<tcp, net::any_io_executor, Pace>;
 using Response = http::response<http::span_body<const char>>;
 
@@ -241,7 +249,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
     const LiveLimits& limits = host_.limits();
     stream().expires_never();
     socket_.set_option(websocket::stream_base::timeout{duration(limits.head_s), duration(limits.idle_s), true});
-    socket_.read_message_max(longest_message);
+    socket_.read_message_max(longest_message_of(host_.content().readings));
     socket_.auto_fragment(false);
     socket_.control_callback([this](websocket::frame_type, beast::string_view) { too_many(); });
     socket_.async_accept(request_->get(), [self = shared_from_this()](beast::error_code error) {
@@ -279,7 +287,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
     if (socket_.got_binary()) return close(websocket::close_code::unknown_data);
     const auto data = buffer_.cdata();
     try {
-      take_message(read_client_message({static_cast<const char*>(data.data()), data.size()}, host_.model()));
+      take_message(read_client_message({static_cast<const char*>(data.data()), data.size()}, host_.model(),
+                                       host_.content().readings));
     } catch (const Refusal& refusal) {
       refuse(refusal);
     }
@@ -298,9 +307,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   }
 
   void check_id(const ClientMessage& message) {
-    RequestId id = 0;
-    if (const auto* command = std::get_if<CommandRequest>(&message)) id = command->id;
-    if (const auto* target = std::get_if<TargetRequest>(&message)) id = target->id;
+    const RequestId id = id_of(message).value_or(0);
     if (id == 0) return;
     if (id <= last_id_) throw Refusal("id must be larger than that of the request before", id);
     last_id_ = id;
@@ -366,17 +373,17 @@ struct LiveServer::Parts : Host {
   [[nodiscard]] const Model& model() const override { return *model_; }
 
   [[nodiscard]] LiveState state_of(const Connection& connection) const override {
-    return {content_.model, connection.has_secret(), controller_ == &connection, controller_ == nullptr,
-            presence().watchers};
+    return {content_.model, connection.has_secret(), controller_ == &connection, controller_ == nullptr && !lent_,
+            lent_,          presence().watchers};
   }
 
   [[nodiscard]] Presence presence() const {
-    return {greeted_.size() - (controller_ != nullptr ? 1 : 0), controller_ != nullptr};
+    return {greeted_.size() - (controller_ != nullptr ? 1 : 0), controller_ != nullptr, lent_};
   }
 
   void greet(Connection& connection) override {
     greeted_.insert(&connection);
-    if (connection.has_secret() && controller_ == nullptr) {
+    if (connection.has_secret() && controller_ == nullptr && !lent_) {
       give_control(&connection);
     } else {
       connection.tell_state();  // the others with the next sweep
@@ -388,24 +395,23 @@ struct LiveServer::Parts : Host {
   void obey(Connection& connection, const ClientMessage& message) override {
     if (std::holds_alternative<Take>(message)) {
       if (!connection.has_secret()) throw Refusal("only who has the secret of the address takes control");
+      if (lent_) throw Refusal("readings are streamed to the robot, which has no other control meanwhile");
       if (controller_ != &connection) give_control(&connection);
       return;
     }
-    const auto* command = std::get_if<CommandRequest>(&message);
-    const auto* target = std::get_if<TargetRequest>(&message);
-    if (controller_ != &connection)
-      throw Refusal("another one has control, or nobody", command  ? std::optional(command->id)
-                                                          : target ? std::optional(target->id)
-                                                                   : std::nullopt);
-    if (command)
+    if (controller_ != &connection) throw Refusal("another one has control, or nobody", id_of(message));
+    if (const auto* command = std::get_if<CommandRequest>(&message))
       ask_({turn_, *command});
-    else if (target)
+    else if (const auto* target = std::get_if<TargetRequest>(&message))
       ask_({turn_, *target});
+    else if (const auto* readings = std::get_if<ReadingsRequest>(&message))
+      ask_({turn_, *readings});
     else
       give_control(nullptr);  // release
   }
 
   void retire(Connection& connection) override {
+    if (lender_ == &connection) lender_ = nullptr;
     if (greeted_.erase(&connection) > 0 && controller_ == &connection) give_control(nullptr);
   }
 
@@ -422,6 +428,12 @@ struct LiveServer::Parts : Host {
       if (each->has_frame()) each->show(nobodys_frame());  // its number is of another's request
       each->tell_state();
     }
+  }
+
+  void lend(bool lent) {
+    if (std::exchange(lent_, lent) == lent) return;
+    if (lent) lender_ = controller_;
+    give_control(lent ? nullptr : std::exchange(lender_, nullptr));
   }
 
   /// The shape for who did not ask for it.
@@ -509,6 +521,8 @@ struct LiveServer::Parts : Host {
 
   Connections connections_, refused_;
   Connection* controller_ = nullptr;
+  Connection* lender_ = nullptr;   // had control before the robot was lent
+  bool lent_ = false;              // to a stream of readings
   std::uint64_t turn_ = 0;         // counts who had control
   std::set<Connection*> greeted_;  // of connections_
   Presence told_;
@@ -552,6 +566,10 @@ void LiveServer::give_map(const std::string& map) {
   net::post(parts_->context_, [parts = parts_.get(), text = std::make_shared<const std::string>(map_text(map))] {
     parts->take_map(text);
   });
+}
+
+void LiveServer::lend(bool lent) {
+  net::post(parts_->context_, [parts = parts_.get(), lent] { parts->lend(lent); });
 }
 
 void LiveServer::stop() {

@@ -23,15 +23,17 @@ struct LiveLimits {
 /// Who is there.
 struct Presence {
   std::size_t watchers = 0;
-  bool controlled = false;
+  bool controlled = false;  // by a page
+  bool streamed = false;    // by readings that come by another port
   bool operator==(const Presence&) const = default;
 };
 
 /// What a server serves.
 struct LiveContent {
   LivePage page;
-  std::string model;   // hexadecimal: what the page shows
-  std::string secret;  // with which a page gets control; not empty
+  std::string model;         // hexadecimal: what the page shows
+  std::string secret;        // with which a page gets control; not empty
+  std::size_t readings = 0;  // columns of which a page may say what was read; 0: nothing is told here
 };
 
 /// Serves a page and its WebSocket at 127.0.0.1, on the thread that run() is called on. Whoever is slow to read gets
@@ -65,6 +67,8 @@ class LiveServer {
   void show(std::shared_ptr<const LiveAnswer> answer);
   /// To all who watch, and to who comes. map: as runs::PageDocument tells it
   void give_map(const std::string& map);
+  /// While it is lent to a stream of readings no page has control; who had it gets it back.
+  void lend(bool lent);
   /// Tells all that it goes, and ends within half a second.
   void stop();
 

@@ -17,11 +17,13 @@
 #include <thread>
 
 #include "cli/command.hpp"
+#include "cli/estimate_options.hpp"
 #include "cli/run_text.hpp"
 #include "cli/solve_options.hpp"
 #include "cli/terminal.hpp"
 #include "view/background_map.hpp"
 #include "view/live_server.hpp"
+#include "view/reading_stream.hpp"
 
 namespace softkin::cli {
 
@@ -35,7 +37,27 @@ struct ViewOptions : SolveOptions {
   bool make_map = false;
   int port = 0;
   bool no_open = false;
+  EstimateOptions estimate;
+  std::optional<int> readings_port;
+
+  [[nodiscard]] bool tells() const { return !estimate.unknowns.empty(); }
 };
+
+/// What is told of a robot needs an unknown, and what an unknown needs is not bent by a map.
+void check_telling(const ViewOptions& options) {
+  const auto refuse = [](const std::string& why) { throw InvalidInput(why); };
+  if (options.tells()) {
+    if (!options.map.empty() || options.make_map)
+      refuse(std::string(options.make_map ? "--make-map" : "--map") +
+             ": what is told of --unknown is told by the solver alone; leave out one of them");
+    return;
+  }
+  for (std::size_t k = 0; k < readings; ++k)
+    if (options.estimate.deviations[k]) refuse(deviation_names()[k] + ": it needs --unknown, what is to be told");
+  if (options.estimate.fade_s > 0) refuse("--fade: it needs --unknown, what is to be told");
+  if (options.estimate.keep_all) refuse("--keep-all: it needs --unknown, what is to be told");
+  if (options.readings_port) refuse("--readings-port: it needs --unknown, what is to be told");
+}
 
 void add_view_options(CLI::App& command, ViewOptions& options) {
   add_scene(command, options);
@@ -47,6 +69,14 @@ void add_view_options(CLI::App& command, ViewOptions& options) {
   add_value(command, "--port", options.port, "N", "Of 127.0.0.1 to listen at (default: 0, any that is free)",
             integer_from(0, 65535));
   command.add_flag("--no-open", options.no_open, "Start no browser");
+  add_unknowns(command, options.estimate);
+  add_deviations(command, options.estimate);
+  add_fade(command, options.estimate, "readings\ngo on from each other (default: each tell by themselves)");
+  add_value(
+      command, "--readings-port", options.readings_port, "N",
+      "Take readings at 127.0.0.1 too, as JSON lines with the columns of\n`softkin estimate` (0: at any port that "
+      "is free, which is printed)",
+      integer_from(0, 65535));
   add_force(command, options);
   add_solver(command, options);
 }
@@ -95,8 +125,11 @@ std::string fingerprint_of(const Model& model, const ViewOptions& options) {
   const std::string solver = options.solver_name + " " + exact(options.tolerance_mm) + " " +
                              std::to_string(options.max_iterations) + " " + std::to_string(options.statics().anderson) +
                              (options.stable ? " stable" : "");
-  return view::fingerprint_of_texts(
-      {SOFTKIN_VERSION, softkin::fingerprint_of(model), solver, options.map.empty() ? "" : read_file(options.map)});
+  std::string told = exact(options.estimate.fade_s) + (options.estimate.keep_all ? " all" : "");
+  for (const std::string& unknown : options.estimate.unknowns) told += " " + unknown;
+  for (const double deviation : options.estimate.asked_deviations()) told += " " + exact(deviation);
+  return view::fingerprint_of_texts({SOFTKIN_VERSION, softkin::fingerprint_of(model), solver,
+                                     options.map.empty() ? "" : read_file(options.map), told});
 }
 
 /// The shape at rest; Ctrl-C ends the search for it.
@@ -141,9 +174,14 @@ class ViewRun {
   ViewRun(const Model& model, const ViewOptions& options)
       : model_(model), options_(options), statics_(model), document_(model, runs::kept_command()) {
     if (!options.map.empty()) map_.emplace(runs::read_map_of(model, options.map));
+    if (options.tells())
+      estimator_.emplace(
+          model, view::estimate_setup(model, options.estimate.asked_unknowns(), options.estimate.asked_deviations(),
+                                      deviation_names(), options.estimate.how(options.statics())));
   }
 
-  int run(view::LiveServer& server) {
+  /// stream: of readings; null: none
+  int run(view::LiveServer& server, view::ReadingStream* stream) {
     Equilibrium rest = at_rest(model_, statics_, options_.statics());
     const ElementDeformation deformation = statics_.measured(rest.state);
     const StepRecord record = runs::step_record(model_, rest, deformation);
@@ -152,19 +190,26 @@ class ViewRun {
       return not_converged;
     }
     document_.add(record, rest.state.positions, deformation);
-    return serve(server, std::move(rest));
+    return serve(server, stream, std::move(rest));
   }
 
  private:
-  int serve(view::LiveServer& server, Equilibrium rest) {
+  int serve(view::LiveServer& server, view::ReadingStream* stream, Equilibrium rest) {
     const std::string model = fingerprint_of(model_, options_);
-    view::LiveContent content{
-        view::live_page(runs::embedded_page(), document_.text(map_ ? &map_->data() : nullptr), model, server.port()),
-        model, fresh_secret()};
+    view::LiveContent content{view::live_page(runs::embedded_page(), document_.text(map_ ? &map_->data() : nullptr),
+                                              model, server.port(), estimator_ ? estimator_->page_text() : ""),
+                              model, fresh_secret(), estimator_ ? estimator_->columns().size() : 0};
     const std::string address = "http://127.0.0.1:" + std::to_string(server.port()) + "/#" + content.secret;
-    view::LiveRobot robot(model_, statics_, document_, options_.statics(), std::move(rest),
-                          [&server](auto answer) { server.show(std::move(answer)); });
-    print("view: " + address + "\nCtrl-C ends it; whoever has the address bends the robot\n");
+    view::LiveRobot robot(
+        model_, statics_, document_, options_.statics(), std::move(rest),
+        [&server, stream](auto answer) {
+          if (stream != nullptr) stream->answer(answer);
+          server.show(std::move(answer));
+        },
+        estimator_ ? &*estimator_ : nullptr);
+    std::string told = "view: " + address + "\n";
+    if (stream != nullptr) told += begin(*stream, server, robot);
+    print(told + "Ctrl-C ends it; whoever has the address bends the robot\n");
     if (!options_.no_open) open_browser(address);
     ServingLine line;
     std::optional<view::BackgroundMap> maker;
@@ -173,15 +218,29 @@ class ViewRun {
         model_, std::move(content), [&robot](view::LiveRequest request) { robot.ask(std::move(request)); },
         [&line](const view::Presence& there) {
           line.there(counted(there.watchers, "page watches", "pages watch") +
-                     (there.controlled ? ", one has control" : ", none has control"));
+                     (there.streamed     ? ", readings are streamed"
+                      : there.controlled ? ", one has control"
+                                         : ", none has control"));
         },
         true);
     line.clear();
+    if (stream != nullptr) stream->stop();
     const bool made = !maker || maker->stop(0.3);
     if (robot.stop(0.3) && made) return done;
     // a large robot's factorisation cannot be stopped, and nobody waits for it
     std::fflush(nullptr);
     std::_Exit(done);
+  }
+
+  /// What is printed of it.
+  std::string begin(view::ReadingStream& stream, view::LiveServer& server, view::LiveRobot& robot) {
+    const std::string token = fresh_secret();
+    stream.begin(
+        {model_, estimator_->columns(), estimator_->told_actuators(), estimator_->fades()}, token,
+        [&robot](view::LiveRequest request) { robot.ask(std::move(request)); },
+        [&server](bool lent) { server.lend(lent); });
+    return "readings: JSON lines at 127.0.0.1:" + std::to_string(stream.port()) + ", the first {\"token\": \"" + token +
+           "\"}\n";
   }
 
   void make_map(view::LiveServer& server, ServingLine& line, std::optional<view::BackgroundMap>& maker) {
@@ -205,6 +264,7 @@ class ViewRun {
   const ViewOptions& options_;
   Statics statics_;
   std::optional<KinematicMap> map_;
+  std::optional<view::LiveEstimator> estimator_;
   runs::PageDocument document_;
 };
 
@@ -212,7 +272,10 @@ int run_view(const ViewOptions& options) {
   check_solver(options);
   if (options.make_map && !options.map.empty()) throw InvalidInput("--make-map: --map gives one");
   if (!runs::page_is_there()) throw InvalidInput(std::string("view: ") + runs::no_page);
+  check_telling(options);
   view::LiveServer server(options.port);
+  std::optional<view::ReadingStream> stream;
+  if (options.readings_port) stream.emplace(*options.readings_port);
   std::vector<fs::path> inputs{options.scene};
   ProgressLine line;
   line.show(-1, "reading the scene");
@@ -222,7 +285,7 @@ int run_view(const ViewOptions& options) {
   line.clear();
   catch_interrupt();
   print(options.scene + ": " + runs::model_summary(model, options.solver_name) + "\n");
-  return run.run(server);
+  return run.run(server, stream ? &*stream : nullptr);
 }
 
 }  // namespace
@@ -231,10 +294,11 @@ void add_view_command(CLI::App& app, Run& run) {
   add_command(app, run, "view", "The robot live in a browser: bent while it is dragged, by the solver",
               "Serves a page at 127.0.0.1 until Ctrl-C. Who opens the printed address has control; who opens it "
               "without what\n"
-              "follows the # only watches. Exit code: 0 ended by Ctrl-C, 1 no equilibrium at rest, 2 bad usage or bad "
-              "input.\n"
-              "Example:\n"
-              "  softkin view examples/pneumatic_finger/pneumatic_finger.yaml",
+              "follows the # only watches. With --unknown the page tells what pushes the robot, from what was read.\n"
+              "Exit code: 0 ended by Ctrl-C, 1 no equilibrium at rest, 2 bad usage or bad input.\n"
+              "Examples:\n"
+              "  softkin view examples/pneumatic_finger/pneumatic_finger.yaml\n"
+              "  softkin view examples/estimate/finger.yaml --unknown touch:place --deviation 0.2     # what pushes it",
               add_view_options, run_view);
 }
 

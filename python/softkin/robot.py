@@ -52,8 +52,9 @@ class Robot(Compiled, Solving):
     ) -> Estimator:
         """Tells what pushes the robot, where, and its shape, from a few readings. docs/estimate.md
 
-        unknowns    'touch': a force that has a range; 'touch:place': and where on its region; 'air': a command that is
-                    not measured; each with '=0+-0.5' where it is known before
+        unknowns    'touch': a force or wrench that has a range; 'touch:place': and where on its region; 'air': a command
+                    that is not measured, or a pressure on the surface; each with '=0+-0.5' where it is known before;
+                    'materials.body.stiffness=1+-0.2': over what the description says
         deviations  of the readings by their columns: {'tip_x_mm': 0.2, 'air_volume_mm3': 20}
         fade_s      time in which what pushes may become anything else [s]; 0: each update tells by itself
         leave_out   readings that contradict the others

@@ -92,6 +92,50 @@ def test_a_wrong_marker_is_named(beam: Robot) -> None:
     assert told.words[-1] == "left out, as it contradicts the other readings: marker side"
 
 
+def test_a_wrench_a_pressure_and_a_stiffness_are_told_from_directions_too() -> None:
+    vertices, tetrahedra = block((8, 2, 2), (64, 12, 12))
+    end = np.flatnonzero(vertices[:, 0] >= 56)
+
+    def arm(modulus: float) -> Robot:
+        return Robot(
+            vertices,
+            tetrahedra,
+            regions={
+                "base": {"vertices": np.flatnonzero(vertices[:, 0] == 0)},
+                "tool": {"vertices": end},
+                "top": {"vertices": np.flatnonzero(vertices[:, 2] == 12)},
+            },
+            materials=[{"youngs_modulus": modulus, "poisson_ratio": 0.4, "density": 1100}],
+            gravity=[0, 0, -9.81],
+            fixed=[{"region": "base"}],
+            rigid=["tool"],
+            forces=[{"name": "tool", "region": "tool", "moment_range": [[-20, 20], [-20, 20], [-20, 20]]}],
+            tractions=[{"name": "hand", "region": "top", "range": [-1, 1]}],
+            markers={"middle": [32, 12, 6], "end": [64, 6, 6]},
+            sensors=[{"name": "imu", "kind": "direction", "region": "tool", "axis": [1, 0, 0]}],
+            name="arm",
+        )
+
+    shape = arm(0.9).solve(tool_mx=6, tool_my=-4, tool_mz=8, hand=0.3)
+    read = readings_of(shape)
+    # of a rigid part any two of its points tell the direction
+    front, back = (np.flatnonzero((vertices == at).all(axis=1))[0] for at in ([64, 0, 0], [56, 0, 0]))
+    along = (shape.positions[front] - shape.positions[back]) / 8
+    read |= {f"imu_direction_{axis}": float(along[i]) for i, axis in enumerate("xyz")}
+    deviations = {name: 0.005 if name.endswith("_mm") else 2e-4 for name in read}
+    estimator = arm(1).estimator(["tool", "hand", "materials.all.stiffness=1+-0.2"], deviations)
+    assert estimator.told_commands == ["tool_mx", "tool_my", "tool_mz", "hand"]
+    told = estimator.update(read)
+    assert told.converged, told.remark
+    truth = {"tool_mx": 6, "tool_my": -4, "tool_mz": 8, "hand": 0.3, "materials.all.stiffness": 0.9}
+    for name, value in truth.items():
+        assert abs(told.numbers[name].value - value) < told.numbers[name].deviation, name
+    assert told.numbers["tool_mx"].unit == "N mm"
+    assert told.numbers["hand"].unit == "kPa"
+    assert told.numbers["materials.all.stiffness"].unit == ""
+    assert told.numbers["materials.all.stiffness"].deviation < 0.1
+
+
 def test_refusals(beam: Robot) -> None:
     with pytest.raises(InvalidInput, match="no command of that name"):
         beam.estimator("pull", DEVIATIONS)

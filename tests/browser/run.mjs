@@ -3,6 +3,7 @@
 // SOFTKIN_CHROMIUM: the browser, default /usr/bin/chromium.
 import {mkdirSync} from 'node:fs';
 import {launch} from './browser.mjs';
+import {estimateTests} from './estimate.mjs';
 import {fieldTests, liveFieldTests} from './field.mjs';
 import {liveTests} from './live.mjs';
 import {reportTests} from './report.mjs';
@@ -35,6 +36,7 @@ try {
   } else if (await hasView()) {
     await liveFieldTests(browser, test);
     await liveShownTests(browser, test);
+    await estimateTests(browser, test);
     await liveTests(browser, test);
   } else console.log('skipped: live mode, this softkin has no view');
 } finally {

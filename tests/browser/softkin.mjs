@@ -50,7 +50,7 @@ const serving = new Set();
 /** Ends what a test that failed has left, which would keep this program from ending. */
 export const stopAll = () => serving.forEach((child) => child.kill('SIGKILL'));
 
-/** softkin view until stop(). port: 0: any */
+/** softkin view until stop(). port: 0: any; output: what it has printed */
 export async function serve(scene, port, ...more) {
   const child = spawn(program, ['view', scene, '--no-open', '--port', String(port), ...more],
                       {stdio: ['ignore', 'pipe', 'inherit']});
@@ -59,8 +59,8 @@ export async function serve(scene, port, ...more) {
     serving.delete(child);
     done(code);
   }));
+  let text = '';
   const url = await new Promise((found, failed) => {
-    let text = '';
     child.stdout.on('data', (data) => {
       text += data;
       const match = /view: (http:\S+)/.exec(text);
@@ -68,7 +68,7 @@ export async function serve(scene, port, ...more) {
     });
     void ended.then((code) => failed(new Error(`softkin view ended with ${code}: ${text}`)));
   });
-  return {url, port: Number(new URL(url).port), stop: () => {
+  return {url, port: Number(new URL(url).port), output: () => text, stop: () => {
     child.kill('SIGINT');
     return ended;
   }};

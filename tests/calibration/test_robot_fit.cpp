@@ -189,7 +189,8 @@ TEST(RobotFit, ForcesOfSupportsTellTheDensity) {
 
 /// A tracker at the tip tells how it bends, and how the base stands; its slopes end where the truth is.
 TEST(RobotFit, DirectionsTellTheModulusAndTheBase) {
-  const Arm arm(std::string(scene) + "sensors: [{name: tracker, kind: direction, region: x_high, axis: [1, 0, 0.5]}]\n");
+  const Arm arm(std::string(scene) +
+                "sensors: [{name: tracker, kind: direction, region: x_high, axis: [1, 0, 0.5]}]\n");
   const NumberedRobot made = arm.robot({"materials.body.youngs_modulus=0.2", "base.ry=4", "base.z=7"}),
                       robot = arm.robot({"materials.body.youngs_modulus=0.3,0.05,2", "base.ry"});
   MeasuredPoses poses = arm.poses({});

@@ -1,9 +1,10 @@
 #include <softkin/drive/marlin_answer.hpp>
+#include <softkin/io/table/measured_poses.hpp>
 #include <softkin/io/table/workspace_table.hpp>
 #include <softkin/runs/report_comparison.hpp>
 
 #include "fuzz/targets.hpp"
-#include "view/live_messages.hpp"
+#include "view/reading_lines.hpp"
 
 namespace softkin::fuzz {
 
@@ -49,23 +50,54 @@ void run_marlin(const Input& input) {
   for (const auto& [letter, place] : answer.position) require_finite(place, "a board is nowhere");
 }
 
-/// What a page sends to a server: whatever is refused has one reason.
+void require_commands(const Model& model, const Actuation& commands) {
+  require(commands.size() == static_cast<Index>(model.actuators.size()), "other actuators");
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
+    const double value = commands[static_cast<Index>(a)];
+    require(value >= model.actuators[a].low && value <= model.actuators[a].high, "a command outside its range");
+  }
+}
+
+void require_readings(const Eigen::VectorXd& values, std::size_t columns) {
+  require(values.size() == static_cast<Index>(columns), "other columns");
+  for (const double value : values)
+    require(std::isnan(value) || std::abs(value) <= view::largest_reading, "a reading that is too large");
+}
+
+/// What is streamed to a server: the token, or a line of readings.
+void run_reading_line(const Input& input) {
+  static const view::LineColumns columns(finger(), possible_readings(finger()), {1}, false);
+  if (input.parts() > 1) {
+    const std::string token = view::read_token_line(input.part(1));
+    require(token.size() <= view::longest_line, "a token longer than its line");
+  }
+  const view::ReadingsRequest line = view::read_reading_line(input.part(0), columns, 0.0);
+  require_commands(finger(), line.commands);
+  require_readings(line.values, columns.readings.size());
+  require(!line.values.array().isNaN().all(), "no reading at all");
+  require(!line.time_s || (*line.time_s > 0 && std::isfinite(*line.time_s)), "a time that does not come after");
+  require(line.commands[1] == finger().rest_actuation()[1], "what is told was commanded");
+}
+
+/// What a page sends to a server: whatever is refused has one reason. A second part: to one that tells from readings.
 void run_live_message(const Input& input) {
   const Model& model = finger();
-  const view::ClientMessage message = view::read_client_message(input.part(0), model);
+  const std::size_t columns = input.parts() > 1 ? 3 : 0;
+  const view::ClientMessage message = view::read_client_message(input.part(0), model, columns);
   const auto require_id = [](view::RequestId id) {
     require(id >= 1 && id <= view::RequestId{1} << 53, "a request without a number");
   };
   if (const auto* hello = std::get_if<view::Hello>(&message)) {
-    require(hello->secret.size() <= view::longest_message, "a secret longer than its message");
+    require(hello->secret.size() <= view::longest_message_of(columns), "a secret longer than its message");
     require(!view::same_secret(hello->secret, hello->secret + "x"), "a longer secret is the same");
   } else if (const auto* command = std::get_if<view::CommandRequest>(&message)) {
     require_id(command->id);
-    require(command->commands.size() == static_cast<Index>(model.actuators.size()), "other actuators");
-    for (std::size_t a = 0; a < model.actuators.size(); ++a) {
-      const double value = command->commands[static_cast<Index>(a)];
-      require(value >= model.actuators[a].low && value <= model.actuators[a].high, "a command outside its range");
-    }
+    require(columns == 0, "a command where readings are told from");
+    require_commands(model, command->commands);
+  } else if (const auto* readings = std::get_if<view::ReadingsRequest>(&message)) {
+    require_id(readings->id);
+    require_commands(model, readings->commands);
+    require_readings(readings->values, columns);
   } else if (const auto* target = std::get_if<view::TargetRequest>(&message)) {
     require_id(target->id);
     require(target->marker >= 0 && target->marker < static_cast<Index>(model.markers.size()), "no such marker");
@@ -79,7 +111,8 @@ std::vector<Target> result_targets() {
   return {{"report", "reports.dict", run_report},
           {"workspace", "tables.dict", run_workspace},
           {"marlin", "marlin.dict", run_marlin},
-          {"live_message", "live.dict", run_live_message}};
+          {"live_message", "live.dict", run_live_message},
+          {"reading_line", "live.dict", run_reading_line}};
 }
 
 std::vector<Target> all_targets() {

@@ -182,10 +182,14 @@ TEST(CommandedWrench, Refusals) {
           {"elsewhere", [](RobotSpec& s) { s.forces[0].at = mean("y_high"); }, "which 'y_high' is not"},
           {"point", [](RobotSpec& s) { s.forces[0].at = at(30, 3, 4); },
            "the moment of force 'tool' acts on a rigid region: give 'region' in place of 'point'"},
-          {"infinite", [](RobotSpec& s) { s.forces[0].moment[1] = INFINITY; }, "the moment of force 'tool' is not finite"},
+          {"infinite", [](RobotSpec& s) { s.forces[0].moment[1] = INFINITY; },
+           "the moment of force 'tool' is not finite"},
           {"outside", [](RobotSpec& s) { s.forces[0].moment[0] = 5; },
            "the moment of force 'tool' is 5 N mm along x, outside its range [-2, 2] N mm"},
-          {"order", [](RobotSpec& s) { s.tractions[0].range_kPa = {4, -4}; },
+          {"order",
+           [](RobotSpec& s) {
+             s.tractions[0].range_kPa = {4, -4};
+           },
            "traction 'water' has the range [4, -4] kPa: the low end comes first"},
           {"pressure", [](RobotSpec& s) { s.tractions[0].pressure_kPa = 4; },
            "traction 'water' is 4 kPa, outside its range [-3, 3] kPa"},

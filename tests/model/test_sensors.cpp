@@ -27,11 +27,8 @@ RobotSpec sensed_block(bool quadratic) {
   const SensorSpec strain{.name = "strain", .kind = SensorKind::length, .points = {{2, 4, 1}, {28, 4, 1}}};
   const SensorSpec bend{
       .name = "bend", .kind = SensorKind::angle, .points = {}, .sections = {"x_low", "x_high"}, .axis = Vec3(0, 2, 0)};
-  const SensorSpec tracker{.name = "tracker",
-                           .kind = SensorKind::direction,
-                           .points = {},
-                           .sections = {"x_high"},
-                           .axis = Vec3(3, 0, 4)};
+  const SensorSpec tracker{
+      .name = "tracker", .kind = SensorKind::direction, .points = {}, .sections = {"x_high"}, .axis = Vec3(3, 0, 4)};
   spec.sensors = {std::make_shared<const SensorSpec>(strain), std::make_shared<const SensorSpec>(bend),
                   std::make_shared<const SensorSpec>(tracker)};
   return spec;

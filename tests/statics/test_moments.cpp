@@ -103,7 +103,8 @@ TEST(Moments, AreThoseOfACouple) {
   }
   const Eigen::Matrix<double, 6, 1> pulls = arms.completeOrthogonalDecomposition().solve(moment);
   const Vec3 first = pulls.head<3>(), second = pulls.tail<3>();
-  spec.forces = {{"a", {Vec3(60, 4, 0), {}}, first}, {"b", {Vec3(60, 0, 4), {}}, second},
+  spec.forces = {{"a", {Vec3(60, 4, 0), {}}, first},
+                 {"b", {Vec3(60, 0, 4), {}}, second},
                  {"o", {Vec3(60, 0, 0), {}}, -first - second}};
   const Model by_forces = compile(spec);
   const Equilibrium found = Statics(by_forces).solve(values({}), expected.state, tight());

@@ -73,7 +73,11 @@ RobotSpec turned_robot(bool quadratic) {
   RobotSpec spec = physical_robot(block_mesh({2, 1, 1}, {20, 8, 6}));
   spec.quadratic = quadratic;
   spec.rigid = {{{std::string("x_high"), {}}, "end"}};
-  spec.forces = {{"tool", {std::string("x_high"), {}}, {0, 0, 0}, std::nullopt, {300, -200, 50},
+  spec.forces = {{"tool",
+                  {std::string("x_high"), {}},
+                  {0, 0, 0},
+                  std::nullopt,
+                  {300, -200, 50},
                   std::array<Vec3, 2>{Vec3(300, -900, 50), Vec3(300, 900, 50)}}};
   return spec;
 }

@@ -58,6 +58,9 @@ class PlainSocket {
     return true;
   }
 
+  /// No more is sent; what comes is still taken.
+  void end_sending() { ::shutdown(socket_, SHUT_WR); }
+
   /// What comes next, so many bytes; none where less comes until then.
   std::optional<std::string> take(std::size_t count, double seconds = patient(5)) {
     while (read_.size() < count)

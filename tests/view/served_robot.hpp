@@ -27,8 +27,10 @@ class Served {
       asked_.push_back(request);
     });
   }
-  /// ask: takes the requests
-  Served(const Model& model, LiveServer::Ask ask) : server(0), model_(model) { run(std::move(ask)); }
+  /// ask: takes the requests; readings: columns that pages may say what was read of
+  Served(const Model& model, LiveServer::Ask ask, std::size_t readings = 0) : server(0), model_(model) {
+    run(std::move(ask), readings);
+  }
   ~Served() { end(); }
 
   void end() {
@@ -52,8 +54,9 @@ class Served {
   LiveServer server;
 
  private:
-  void run(LiveServer::Ask ask) {
-    LiveContent content{live_page(small_page(), R"({"robot":"block"})", "00ff", server.port()), "00ff", secret};
+  void run(LiveServer::Ask ask, std::size_t readings = 0) {
+    LiveContent content{live_page(small_page(), R"({"robot":"block"})", "00ff", server.port()), "00ff", secret,
+                        readings};
     thread_ = std::thread([this, content, ask] { server.run(model_, content, ask); });
   }
 

@@ -143,9 +143,9 @@ TEST(LiveMessages, FramesReadBack) {
 }
 
 TEST(LiveMessages, StatesAreTold) {
-  EXPECT_EQ(MessageJson::parse(state_text({"00ff", true, false, true, 3})),
+  EXPECT_EQ(MessageJson::parse(state_text({"00ff", true, false, true, true, 3})),
             MessageJson::parse(R"({"type":"state","model":"00ff","secret":true,"control":false,"free":true,
-                                   "watchers":3})"));
+                                   "streamed":true,"watchers":3})"));
 }
 
 TEST(LiveMessages, SecretsAreTheSameOrNot) {

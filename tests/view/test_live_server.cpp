@@ -110,7 +110,7 @@ TEST(LiveServer, WithoutTheSecretOneWatches) {
     LiveClient client = served.client(with);
     const nlohmann::json state = client.next("state");
     EXPECT_EQ(state, nlohmann::json::parse(R"({"type":"state","model":"00ff","secret":false,"control":false,"free":true,
-                                               "watchers":1})"));
+                                               "streamed":false,"watchers":1})"));
     client.command(1, {1, 1});
     EXPECT_EQ(client.next("refused").at("id"), 1);
     client.say(nlohmann::json{{"type", "take"}});
@@ -133,7 +133,7 @@ TEST(LiveServer, ControlGoesFromHandToHand) {
   const Served served(some_model());
   LiveClient first = served.client();
   EXPECT_EQ(first.next("state"), nlohmann::json::parse(R"({"type":"state","model":"00ff","secret":true,"control":true,
-                                                           "free":false,"watchers":0})"));
+                                                           "free":false,"streamed":false,"watchers":0})"));
   LiveClient second = served.client();
   nlohmann::json state = second.next("state");
   EXPECT_EQ(state.at("control"), false);

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <sstream>
+
 #include "cli/fk_samples.hpp"
 #include "cli/start_program.hpp"
 #include "served_robot.hpp"
@@ -60,11 +62,21 @@ TEST(ViewCommand, RefusesWhatCannotBe) {
   };
   refuses({"--port", "65536"}, "must be an integer from 0 to 65535");
   refuses({"--anderson", "3"}, "it needs --solver local-global");
+  for (const char* option : {"--deviation", "--deviation-volume", "--fade", "--readings-port"})
+    refuses({option, "1"}, std::string(option) + ": it needs --unknown");
+  refuses({"--keep-all"}, "--keep-all: it needs --unknown");
+  refuses({"--unknown", "air", "--make-map"}, "--make-map: what is told of --unknown is told by the solver alone");
+  refuses({"--unknown", "air:", "--deviation", "1"}, "what comes after the colon can only be 'place'");
+  refuses({"--unknown", "air", "--deviation", "0"}, "--deviation: must be a number > 0 in mm, not 0");
   if (!runs::page_is_there()) return refuses({}, "this softkin was built without its page");
+  refuses({"--unknown", "air"}, "what is read needs its deviation: --deviation in mm (coordinate), --deviation-press");
+  refuses({"--unknown", "wind", "--deviation", "1"}, "--unknown 'wind': the scene has no command of that name");
   refuses({"--map", folder / "none.skmap"}, "none.skmap");
   refuses({"--map", folder / "none.skmap", "--make-map"}, "--make-map: --map gives one");
   const LiveServer other(0);
   refuses({"--port", std::to_string(other.port())}, "--port " + std::to_string(other.port()) + ": cannot listen");
+  refuses({"--unknown", "air", "--deviation", "1", "--readings-port", std::to_string(other.port())},
+          "--readings-port " + std::to_string(other.port()) + ": cannot listen");
 }
 
 TEST(ViewCommand, BendsTheRobotAsFkDoes) {
@@ -97,6 +109,72 @@ TEST(ViewCommand, BendsTheRobotAsFkDoes) {
   EXPECT_EQ(result.errors, "");
   EXPECT_LT(seconds, patient(1));
   EXPECT_EQ(client.close_code(), 1001);
+}
+
+/// Rows of a table with gaps, as lines of JSON.
+std::vector<std::string> lines_of_table(const std::string& file) {
+  std::istringstream table(read_text(file));
+  std::vector<std::string> names, lines;
+  for (std::string row; std::getline(table, row);) {
+    std::vector<std::string> cells;
+    std::istringstream stream(row);
+    for (std::string cell; std::getline(stream, cell, ',');) cells.push_back(cell);
+    if (names.empty()) {
+      names = cells;
+      continue;
+    }
+    nlohmann::json line;
+    for (std::size_t c = 0; c < cells.size(); ++c)
+      line[names[c]] = cells[c].empty() ? nlohmann::json() : nlohmann::json(std::stod(cells[c]));
+    lines.push_back(line.dump());
+  }
+  return lines;
+}
+
+/// What is streamed is told as softkin estimate tells it.
+TEST(ViewCommand, TellsWhatIsStreamedAsEstimateDoes) {
+  if (!runs::page_is_there()) GTEST_SKIP() << "built without the page";
+  const std::string examples = std::string(SOFTKIN_SOURCE_DIR) + "/examples/estimate/";
+  const std::string scene = examples + "finger.yaml", readings = examples + "readings.csv";
+  const std::vector<std::string> asked{"--unknown", "touch:place", "--deviation", "0.2", "--threads", "1"};
+  const auto with = [&](std::vector<std::string> words) {
+    words.insert(words.end(), asked.begin(), asked.end());
+    return words;
+  };
+  const TemporaryFolder folder;
+  StartedProgram program(folder, with({"view", scene, "--no-open", "--readings-port", "0"}));
+  std::string output;
+  ASSERT_TRUE(program.wait_until([&] {
+    output = read_text(folder / "stdout.txt");
+    return output.find("Ctrl-C") != std::string::npos;
+  }));
+  const std::string begin = "readings: JSON lines at 127.0.0.1:", first = ", the first ";
+  const std::size_t at = output.find(begin), token = output.find(first, at);
+  ASSERT_NE(token, std::string::npos) << output;
+  testing::PlainSocket writer(std::stoi(output.substr(at + begin.size())));
+  const std::size_t end = output.find('\n', token);
+  writer.send(output.substr(token + first.size(), end + 1 - token - first.size()));
+  const ProgramResult estimated = run_program(with({"estimate", scene, readings, "--json"}));
+  ASSERT_EQ(estimated.exit_code, 0) << estimated.errors;
+  const auto rows = nlohmann::json::parse(estimated.output).at("rows");
+  const std::vector<std::string> lines = lines_of_table(readings);
+  for (std::size_t r = 0; r < 3; ++r) {
+    writer.send(lines.at(r) + "\n");
+    const auto answer = nlohmann::json::parse(writer.take_until("\n", patient(20)).value_or("null"));
+    ASSERT_EQ(answer.at("status"), "converged") << answer;
+    EXPECT_EQ(answer.at("t_s"), rows[r].at("t_s"));
+    EXPECT_EQ(answer.at("words"), rows[r].at("words"));
+    for (std::size_t n = 0; n < 3; ++n) {
+      const auto& number = rows[r].at("numbers").at(n);
+      EXPECT_NEAR(answer.at("numbers").at(n).at("value").get<double>(), number.at("value").get<double>(),
+                  number.at("deviation").get<double>() / 100);
+    }
+  }
+  writer.send("{\"m1_x_mm\": }\n");
+  EXPECT_NE(writer.take_until("\n").value_or("").find("\"error\""), std::string::npos);
+  program.send(SIGINT);
+  EXPECT_EQ(program.wait().exit_code, 0);
+  EXPECT_EQ(writer.take_rest(), "");
 }
 
 /// Its commands lead where fk leads.

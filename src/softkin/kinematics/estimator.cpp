@@ -139,7 +139,8 @@ void Estimator::Parts::tell_numbers(const Fit& found) {
     const Variable& v = variables[i];
     const auto at = static_cast<Index>(i);
     const double value = found.told.values[at];
-    estimate.numbers.push_back(estimate::told_number(model, v, value, std::sqrt(std::max(0.0, estimate.covariance(at, at)))));
+    estimate.numbers.push_back(
+        estimate::told_number(model, v, value, std::sqrt(std::max(0.0, estimate.covariance(at, at)))));
     if (v.actuator >= 0) estimate.actuation[v.actuator] = value;
   }
 }

@@ -172,8 +172,8 @@ class Joiner {
     return std::make_shared<const SensorSpec>(std::move(all));
   }
   /// Forces are commanded along the common axes: a robot that is turned must have its own along these.
-  [[nodiscard]] std::optional<std::array<Vec3, 2>> turned_range(
-      const ForceSpec& force, const std::optional<std::array<Vec3, 2>>& range) const {
+  [[nodiscard]] std::optional<std::array<Vec3, 2>> turned_range(const ForceSpec& force,
+                                                                const std::optional<std::array<Vec3, 2>>& range) const {
     if (!range) return std::nullopt;
     const Mat3& turn = placed_.place.rotation;
     const Mat3 whole = turn.array().round().matrix();

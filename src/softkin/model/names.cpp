@@ -26,9 +26,9 @@ const char* filling_quantity(const Filling& filling) {
 }  // namespace
 
 const char* kind_name(const Actuator& actuator) {
-  constexpr const char* names[] = {"cable",  "dea",   "pneumatic", "magnetic", "growth",
-                                   "motion", "force", "hold",      "turn",     "moment",
-                                   "pressure"};  // in the order of ActuatorKind
+  constexpr const char* names[] = {
+      "cable", "dea",  "pneumatic", "magnetic", "growth",  "motion",
+      "force", "hold", "turn",      "moment",   "pressure"};  // in the order of ActuatorKind
   return names[static_cast<std::size_t>(actuator.kind)];
 }
 

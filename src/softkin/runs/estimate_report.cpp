@@ -5,25 +5,12 @@
 #include <softkin/core/text.hpp>
 #include <softkin/io/json_text.hpp>
 #include <softkin/model/names.hpp>
+#include <softkin/runs/estimate_json.hpp>
 #include <softkin/runs/estimate_report.hpp>
 
 namespace softkin::runs {
 
 namespace {
-
-Json vector_json(const Vec3& v) {
-  return Json{v[0], v[1], v[2]};
-}
-
-Json matrix_json(const Eigen::MatrixXd& m) {
-  Json rows = Json::array();
-  for (Eigen::Index i = 0; i < m.rows(); ++i) {
-    Json row = Json::array();
-    for (Eigen::Index j = 0; j < m.cols(); ++j) row.push_back(m(i, j));
-    rows.push_back(std::move(row));
-  }
-  return rows;
-}
 
 /// Standard deviations along the axes.
 Vec3 deviations_of(const Mat3& covariance) {
@@ -52,7 +39,7 @@ Json plan_json(const EstimateReport& report) {
   for (const PlannedReading& reading : report.plan) {
     Json json{{"name", reading.name}, {"bits", reading.bits}};
     if (reading.vertex >= 0) json["vertex"] = reading.vertex;
-    if (reading.vertex >= 0 || reading.name.starts_with("marker")) json["at_rest_mm"] = vector_json(reading.at_rest);
+    if (reading.vertex >= 0 || reading.name.starts_with("marker")) json["at_rest_mm"] = json_of(reading.at_rest);
     const Estimate& told = report.told.front();
     for (std::size_t n = 0; n < told.numbers.size(); ++n)
       json["deviations"][told.numbers[n].name + unit_key(told.numbers[n].unit)] =
@@ -66,41 +53,17 @@ Json plan_json(const EstimateReport& report) {
 
 Json row_json(const EstimateReport& report, std::size_t row) {
   const Estimate& told = report.told[row];
-  Json numbers = Json::array(), places = Json::array(), left_out = Json::array();
-  for (const ToldNumber& n : told.numbers)
-    numbers.push_back({{"name", n.name},
-                       {"unit", n.unit},
-                       {"value", n.value},
-                       {"deviation", n.deviation},
-                       {"known_mean", n.known_mean},
-                       {"known_deviation", n.known_deviation},
-                       {"at_bound", n.at_bound}});
-  for (const ToldPlace& p : told.places)
-    places.push_back({{"force", p.force},
-                      {"at_rest_mm", vector_json(p.at_rest)},
-                      {"present_mm", vector_json(p.present)},
-                      {"covariance_mm2", matrix_json(p.covariance)}});
-  for (const std::size_t g : told.left_out) left_out.push_back(report.groups[g].name);
-  Json readings = Json::array();
-  for (std::size_t c = 0; c < report.poses.columns.size(); ++c) {
-    const double read = report.poses.values(static_cast<Index>(row), static_cast<Index>(c));
-    if (std::isnan(read) || told.computed.size() == 0) continue;
-    const double computed = told.computed[static_cast<Index>(c)];
-    readings.push_back({{"column", report.poses.columns[c].name},
-                        {"read", read},
-                        {"computed", computed},
-                        {"computed_deviation", told.deviations[static_cast<Index>(c)]}});
-  }
   Json json{{"line", report.poses.lines[row]}, {"status", name_of(told.status)}, {"remark", told.remark}};
   if (!report.poses.times.empty()) json["t_s"] = report.poses.times[row];
-  json["numbers"] = std::move(numbers);
-  json["places"] = std::move(places);
+  json["numbers"] = told_numbers_json(told);
+  json["places"] = told_places_json(told);
   json["covariance"] = matrix_json(told.covariance);
   json["chi_square"] = told.chi_square;
   json["freedoms"] = told.freedoms;
   json["misfit"] = told.misfit();
-  json["left_out"] = std::move(left_out);
-  json["readings"] = std::move(readings);
+  json["left_out"] = left_out_json(told, report.groups);
+  json["readings"] =
+      read_json(told, report.poses.columns, report.poses.values.row(static_cast<Index>(row)).transpose());
   json["words"] = report.words[row];
   json["equilibria"] = told.equilibria;
   json["seconds"] = told.seconds;

@@ -44,7 +44,8 @@ std::vector<ReadOutput> read_outputs(const KinematicMap& map, const Model& model
   return read;
 }
 
-std::vector<MapUnknown> map_unknowns(const KinematicMap& map, const Model& model, const estimate::Variables& variables) {
+std::vector<MapUnknown> map_unknowns(const KinematicMap& map, const Model& model,
+                                     const estimate::Variables& variables) {
   if (!variables.forces().empty())
     throw InvalidInput("the force '" + variables.forces()[0].name +
                        "' acts anywhere on its region, and a map knows forces at known places: leave out --map");
@@ -114,8 +115,7 @@ class MapRows {
       const double value = found.commands[unknowns_[i].input];
       const estimate::Variable& variable = variables_.all()[i];
       const auto at = static_cast<Index>(i);
-      told.numbers.push_back(
-          estimate::told_number(asked_.model, variable, value, std::sqrt(found.covariance(at, at))));
+      told.numbers.push_back(estimate::told_number(asked_.model, variable, value, std::sqrt(found.covariance(at, at))));
       told.actuation[variable.actuator] = value;
     }
     Eigen::VectorXd outputs(map_.outputs());
@@ -125,8 +125,7 @@ class MapRows {
     for (Index c = 0; c < static_cast<Index>(read_.size()); ++c) {
       const ReadOutput& read = read_[static_cast<std::size_t>(c)];
       told.computed[c] = read.size * found.computed[read.output];
-      for (Index i = 0; i < by.size(); ++i)
-        by[i] = slopes(unknowns_[static_cast<std::size_t>(i)].input, read.output);
+      for (Index i = 0; i < by.size(); ++i) by[i] = slopes(unknowns_[static_cast<std::size_t>(i)].input, read.output);
       told.deviations[c] = read.size * std::sqrt(by.dot(found.covariance * by));
     }
     told.chi_square = found.chi_square;

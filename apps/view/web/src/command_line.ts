@@ -5,6 +5,11 @@ const kept: Record<string, number> = {
   '--force': 1, '--formulation': 1, '--solver': 1, '--solver-tolerance': 1, '--max-iterations': 1, '--anderson': 1,
   '--stable': 0,
 };
+/** Those of what is told; a table of one row does not fade. */
+const keptToTell: Record<string, number> = {
+  '--unknown': 1, '--deviation': 1, '--deviation-pressure': 1, '--deviation-tension': 1, '--deviation-length': 1,
+  '--deviation-volume': 1, '--deviation-force': 1, '--deviation-angle': 1, '--keep-all': 0,
+};
 
 /** Words of a line, as a shell of POSIX reads them. */
 export function wordsOf(line: string): string[] {
@@ -25,12 +30,15 @@ export function sceneOf(robot: RobotDocument): string {
 
 /** The line that computes a state again. */
 export function lineOf(robot: RobotDocument, commands: number[]): string {
-  const words = ['softkin', 'fk', sceneOf(robot)], given = wordsOf(robot.command);
+  const told = robot.live?.estimate, options = told ? {...kept, ...keptToTell} : kept;
+  const words = ['softkin', ...(told ? ['estimate', sceneOf(robot), 'readings.csv'] : ['fk', sceneOf(robot)])];
+  const given = wordsOf(robot.command);
   given.forEach((word, i) => {
     const [name] = word.split('=');
-    if (!(name in kept)) return;
-    words.push(word, ...(word.includes('=') ? [] : given.slice(i + 1, i + 1 + kept[name])));
+    if (!(name in options)) return;
+    words.push(word, ...(word.includes('=') ? [] : given.slice(i + 1, i + 1 + options[name])));
   });
+  if (told) return words.map(quoted).join(' ');
   robot.actuators.forEach(({name, unit}, a) => words.push('--set', `${name}=${commands[a]}${unit}`));
   return words.map(quoted).join(' ');
 }

@@ -1,4 +1,5 @@
 import {type Packed, unpack} from './base64';
+import type {EstimateDocument} from './estimate';
 import type {MapDocument} from './map';
 
 export type Kind = 'cable' | 'dea' | 'pneumatic' | 'magnetic' | 'growth' | 'motion' | 'force' | 'hold' | 'turn';
@@ -19,6 +20,8 @@ interface PackedStep extends Told {
   commands: (number | null)[]; loads: (number | null)[]; markers: (number | null)[][]; time_s: number | null;
   positions: Packed; fields: Record<string, Packed>;
 }
+/** estimate: where it tells from readings. */
+export interface LiveDocument { path: string; model: string; estimate?: EstimateDocument }
 interface PackedSurface { points: Packed; triangles: Packed }
 /** What softkin writes into the page (runs/page_document.hpp). live: of softkin view alone; workspace: where a marker
     can be. */
@@ -27,7 +30,7 @@ interface PackedDocument {
   regions: string[]; surface: {rest: Packed; triangles: Packed; region: Packed}; cables: Cable[];
   fibres?: Fibre[];
   obstacles: PackedSurface[]; bodies?: {triangles: Packed}; steps: PackedStep[]; map: MapDocument | null;
-  live?: {path: string; model: string} | null; workspace?: {marker: number; points: Packed; colour?: Packed} | null;
+  live?: LiveDocument | null; workspace?: {marker: number; points: Packed; colour?: Packed} | null;
 }
 
 /** Numbers that the program does not know are NaN. */
@@ -41,7 +44,7 @@ export interface Workspace { marker: number; points: Float32Array; colour: Float
 type Unpacked = 'surface' | 'steps' | 'obstacles' | 'bodies' | 'workspace' | 'live';
 export interface RobotDocument extends Omit<PackedDocument, Unpacked> {
   rest: Float32Array; triangles: Uint32Array; region: Uint16Array; bodies: Uint32Array; obstacles: Obstacle[];
-  steps: Step[]; live: {path: string; model: string} | null; workspace: Workspace | null;
+  steps: Step[]; live: LiveDocument | null; workspace: Workspace | null;
 }
 
 /** Of a triangle that belongs to no region. */

@@ -67,7 +67,7 @@ function gripsOf(robot: Robot, scene: RobotScene, x: number, y: number): Grip[] 
 /** The tip of the field moves across the way from the eye, and the commands with it as far as they can. */
 function holdField(robot: Robot, scene: RobotScene, dx: number, dy: number): Hold {
   const start = robot.commands.slice(), from = scene.field?.tip ?? [0, 0, 0], eye = scene.wayTo(from);
-  const perMm = 1 / (scene.field?.mmPerMilliTesla ?? 1), {actuators} = robot.document;
+  const perMm = 1 / (scene.field?.mmPerUnit ?? 1), {actuators} = robot.document;
   return {marker: null, move: (x, y) => {
     const change = scene.under(x + dx, y + dy, from, eye).map((value, k) => (value - from[k]) * perMm);
     robot.command(draggedField(actuators, start, change, eye));

@@ -2,10 +2,12 @@ import {type Frame, readFrame} from './frame';
 import type {MapDocument} from './map';
 
 /** What the page asks of softkin view; the newest alone counts. */
-export type Ask = {type: 'command'; commands: number[]} | {type: 'target'; marker: number; at: number[]};
-/** connected: the server has said who controls. */
+export type Ask = {type: 'command'; commands: number[]} | {type: 'target'; marker: number; at: number[]} |
+  {type: 'readings'; commands: number[]; values: (number | null)[]};
+/** connected: the server has said who controls; streamed: readings that come by its other port do. */
 export interface LiveState {
-  connected: boolean; secret: boolean; control: boolean; free: boolean; watchers: number; refused: string;
+  connected: boolean; secret: boolean; control: boolean; free: boolean; streamed: boolean; watchers: number;
+  refused: string;
 }
 export interface LiveEvents {
   onFrame(frame: Frame, mine: boolean, newest: boolean): void;
@@ -14,7 +16,7 @@ export interface LiveEvents {
   /** softkin has made it meanwhile. */
   onMap(map: MapDocument): void;
 }
-interface StateText { type: 'state'; model: string; secret: boolean; control: boolean; free: boolean; watchers: number }
+interface StateText extends Omit<LiveState, 'connected' | 'refused'> { type: 'state'; model: string }
 interface MapText { type: 'map'; map: MapDocument }
 interface RefusedText { type: 'refused'; id: number | null; why: string }
 
@@ -23,7 +25,8 @@ const pauses = [500, 1000, 2000, 4000, 5000];
 /** A search for a target that takes longer gives way to a newer request [ms]. */
 const searchMs = 1000;
 
-const away: LiveState = {connected: false, secret: false, control: false, free: false, watchers: 0, refused: ''};
+const away: LiveState = {connected: false, secret: false, control: false, free: false, streamed: false, watchers: 0,
+                         refused: ''};
 
 /** The connection to softkin view: at most one request is on its way, and the newest waits. */
 export class Live {
@@ -118,9 +121,9 @@ export class Live {
         return;
       }
       this.tries = 0;
-      const {secret, control, free, watchers} = message;
+      const {secret, control, free, streamed, watchers} = message;
       const refused = control === this.state.control ? this.state.refused : '';
-      this.tell({connected: true, secret, control, free, watchers, refused});
+      this.tell({connected: true, secret, control, free, streamed, watchers, refused});
     } else if (message.type === 'refused') {
       if (message.id !== null && message.id === this.onWay?.id) this.onWay = null;
       this.tell({...this.state, refused: message.why});

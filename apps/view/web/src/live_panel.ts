@@ -2,18 +2,21 @@ import type {Live, LiveState} from './live';
 import {byId} from './text';
 
 /** Who controls, in words; away: it was connected before. */
-export function liveWords({connected, secret, control, free, watchers}: LiveState, before: boolean): string {
+export function liveWords(state: LiveState, before: boolean): string {
+  const {connected, secret, control, free, streamed, watchers} = state;
   if (!connected) return before ? 'softkin does not answer: trying again …' : 'Connecting to softkin …';
   const others = watchers > 0 ? ` ${watchers} window${watchers > 1 ? 's' : ''} watch${watchers > 1 ? '' : 'es'}.` : '';
   if (control) return `You control the robot.${others}`;
+  if (streamed) return `Readings are streamed to softkin, and this window watches.`;
   const who = free ? 'Nobody controls the robot.' : 'Another window controls the robot; this one watches.';
   return secret ? who : `${who} To control it, open the whole address that softkin printed.`;
 }
 
 /** Why the sliders are off; empty: they are on. */
-export function whyOff({connected, control, secret, free}: LiveState): string {
+export function whyOff({connected, control, secret, free, streamed}: LiveState): string {
   if (control) return '';
   if (!connected) return 'Off: softkin does not answer.';
+  if (streamed) return 'Off: readings are streamed.';
   if (!secret) return 'Off: this window only watches.';
   return free ? 'Off: press "Take control" first.' : 'Off: another window has control. "Take control" takes it away.';
 }
@@ -34,7 +37,7 @@ export function makeLivePanel(live: Live): () => void {
     if (words.textContent !== text) words.textContent = text;
     if (refused.textContent !== told) refused.textContent = told;
     words.className = state.connected ? '' : 'bad message';
-    button.hidden = !state.connected || (!state.secret && !state.control);
+    button.hidden = !state.connected || state.streamed || (!state.secret && !state.control);
     button.textContent = state.control ? 'Hand over' : 'Take control';
     button.classList.toggle('main', !state.control);
   };

@@ -65,6 +65,7 @@ function makeSwitches(robot: Robot, scene: RobotScene): HTMLElement[] {
     ['ghost', 'shape at rest', true, true], ['traces', 'ways of markers', true, robot.steps.length > 1],
     ['markers', 'markers', true, true], ['workspace', `where ${plain(who)} can go`, true, workspace !== null],
     ['around', 'what is around', true, around], ['field', 'magnetic field', true, field !== null],
+    ['forces', 'what pushes', true, robot.tells],
     ['grid', 'grid', true, true], ['clear', 'see through', cables.length > 0, true],
   ];
   return switches.filter(([, , , is]) => is).map(([part, words, on]) => {

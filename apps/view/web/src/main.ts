@@ -2,7 +2,7 @@ import './style.css';
 import {type ComparisonDocument, readComparison, showComparison} from './comparison';
 import {colourFor} from './colours';
 import {makeCurves} from './curves';
-import {readDocument, type RobotDocument, robotName} from './document';
+import {type LiveDocument, readDocument, type RobotDocument, robotName} from './document';
 import {makeDrag, placeOfHandles} from './drag';
 import {fieldOf} from './field';
 import {listenToKeys} from './keys';
@@ -13,6 +13,7 @@ import {eventTime, Meter} from './meter';
 import {makeTable, stateWords, tellOrigin} from './numbers';
 import {makePathPanel} from './path_panel';
 import {makePlayer} from './player';
+import {makeReadings} from './readings';
 import {makeRecorder} from './record';
 import {Robot} from './robot';
 import {download, makeSave} from './save';
@@ -35,7 +36,7 @@ async function savePicture(robot: Robot, scene: RobotScene): Promise<void> {
 }
 
 /** Connects the robot with the program that serves the page. */
-function goLive(robot: Robot, meter: Meter, {path, model}: NonNullable<RobotDocument['live']>): Live {
+function goLive(robot: Robot, meter: Meter, {path, model}: LiveDocument): Live {
   const url = `${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}${path}`;
   const live = new Live(url, location.hash.slice(1), model, robot.document.rest.length / 3, {
     onFrame: (frame, mine, newest) => {
@@ -92,7 +93,7 @@ function start(): void {
   const parts = [makePathPanel(robot, scene, player), makeSliders(byId('sliders'), robot), makeTarget(robot),
                  makeLooks(robot, scene, shapes), makeTensions(robot, scene, byId('looks'), corners),
                  makeCurves(byId('curves'), robot), makeTable(robot), makeSave(robot), player.update,
-                 ...(live ? [makeLivePanel(live)] : [])];
+                 makeReadings(robot, () => scene.forces.mmPerNewton), ...(live ? [makeLivePanel(live)] : [])];
   const labels = makeLabels(robot, scene), record = makeRecorder(canvas, robot, player);
   byId('curves-section').hidden = !read.actuators.some((actuator) => actuator.load_unit);
   tellOrigin(robot);
@@ -103,6 +104,7 @@ function start(): void {
     meter.drawn();
   };
   robot.onChange = () => {
+    scene.setForces(robot.estimate?.forces ?? []);  // whose scale is told
     for (const part of parts) part();
     scene.setShape(robot.pose.positions, robot.pose.markers);
     scene.setTarget(robot.target?.at ?? null, robot.target?.marker ?? 0);

@@ -51,7 +51,9 @@ export function stateWords(robot: Robot): {text: string; bad: boolean} {
   const {commands, document: {actuators}} = robot, rests = actuators.every(({rest}, i) => commands[i] === rest);
   if (!told) return {text: from === 'map' && !rests ? 'From the map' : 'At rest', bad: false};
   const {status, iterations, seconds, remark} = told, bad = status !== 'converged';
-  const text = `${from === 'step' ? `Step ${step + 1}` : 'Computed'}: ${plain(status)}, ${iterations} iterations, ` +
+  const read = robot.values.filter((value) => value !== null).length;
+  const how = robot.estimate ? `Told from ${read} reading${read === 1 ? '' : 's'}` : 'Computed';
+  const text = `${from === 'step' ? `Step ${step + 1}` : how}: ${plain(status)}, ${iterations} iterations, ` +
     `${digits(seconds, 2)} s${remark ? ` – ${remark}` : ''}`;
   return {text: bad ? `${text}. The shape is the last one that was found.` : text, bad};
 }

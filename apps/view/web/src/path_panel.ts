@@ -41,7 +41,7 @@ function wordsOf(track: FileTrack): string {
 /** A file of commands or waypoints, opened or dropped, is played; returns what brings its curve up to date. */
 export function makePathPanel(robot: Robot, scene: RobotScene, player: Player): () => void {
   const box = byId('path'), {actuators, markers} = robot.document;
-  const able = robot.map !== null || robot.document.live !== null;
+  const able = !robot.tells && (robot.map !== null || robot.document.live !== null);
   let track: FileTrack | null = null, drawnAt = -2;
   const choose = element('input', {type: 'file', accept: '.csv,.yaml,.yml,text/csv', class: 'away', tabindex: -1,
                                    'aria-hidden': 'true'});

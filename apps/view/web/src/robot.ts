@@ -1,4 +1,5 @@
 import type {RobotDocument, Step, Told} from './document';
+import type {Estimate} from './estimate';
 import type {Frame} from './frame';
 import type {Goal} from './inverse';
 import type {Ask} from './live';
@@ -15,7 +16,7 @@ export interface Target { marker: number; at: number[]; errorMm: number | null; 
 export interface Place { marker: number; at: (number | null)[] }
 /** The running program, as the robot sees it. */
 export interface Link { readonly state: {control: boolean}; readonly busy: boolean; send(ask: Ask): number }
-interface Memory { commands: number[]; step: number }
+interface Memory { commands: number[]; step: number; values: (number | null)[] }
 
 /** The robot of a document, its commands, and what was before. */
 export class Robot {
@@ -32,6 +33,10 @@ export class Robot {
   /** Of a file that is played: the row shown; -1: none. */
   row = -1;
   link: Link | null = null;
+  /** What was read, of the columns of which something is told; null: not read. */
+  values: (number | null)[];
+  /** What they told; null: nothing yet. */
+  estimate: Estimate | null = null;
   onChange: () => void = () => {};
   private past: Memory[] = [];
   private loadOutputs: number[] = [];
@@ -43,6 +48,7 @@ export class Robot {
     this.takeMap(document.map);
     this.steps = document.live ? [] : document.steps;
     this.commands = actuators.map((a) => a.rest);
+    this.values = document.live?.estimate?.columns.map(() => null) ?? [];
     this.pose = {commands: this.commands, loads: actuators.map(() => null), markers: markers.map((m) => m.at),
                  positions: rest, fields: {}, step: -1, from: 'rest', told: null};
     const first = document.live ? document.steps[0] : undefined;
@@ -88,9 +94,10 @@ export class Robot {
   }
 
   remember(): void {
-    const {commands, pose: {step}} = this, last = this.past.at(-1);
-    if (last && last.step === step && last.commands.every((c, i) => c === commands[i])) return;
-    this.past.push({commands: commands.slice(), step});
+    const {commands, values, pose: {step}} = this, last = this.past.at(-1);
+    const same = (a: (number | null)[], b: (number | null)[]) => a.every((value, i) => value === b[i]);
+    if (last && last.step === step && same(last.commands, commands) && same(last.values, values)) return;
+    this.past.push({commands: commands.slice(), step, values: values.slice()});
     if (this.past.length > 200) this.past.shift();
   }
 
@@ -99,6 +106,7 @@ export class Robot {
   undo(): void {
     if (!this.canUndo) return;
     const last = this.past.pop() as Memory;
+    this.values = last.values;
     if (last.step >= 0) this.showStep(last.step);
     else this.command(last.commands);
   }
@@ -106,8 +114,25 @@ export class Robot {
   command(commands: number[], row = -1): void {
     this.target = null;
     this.row = row;
-    if (this.able) this.link?.send({type: 'command', commands});
+    const {values} = this;
+    if (this.able && this.tells) this.link?.send({type: 'readings', commands: this.inRanges(commands), values});
+    else if (this.able) this.link?.send({type: 'command', commands});
     this.move(commands);
+  }
+
+  /** What pushes it is told from readings. */
+  get tells(): boolean { return Boolean(this.document.live?.estimate); }
+
+  /** All that was read, told anew. */
+  read(values: (number | null)[]): void {
+    this.remember();
+    this.values = values;
+    this.command(this.commands);
+  }
+
+  /** Commands that are told may be a rounding outside of theirs. */
+  private inRanges(commands: number[]): number[] {
+    return this.document.actuators.map(({low, high}, a) => Math.min(Math.max(commands[a], low), high));
   }
 
   /** Shows what the map says. */
@@ -123,6 +148,7 @@ export class Robot {
   reset(): void {
     if (this.link && !this.able) return;
     this.remember();
+    this.values = this.values.map(() => null);
     if (this.able) this.command(this.document.actuators.map((a) => Math.min(Math.max(a.rest, a.low), a.high)));
     else if (this.steps.length) this.showStep(0);
   }
@@ -174,15 +200,23 @@ export class Robot {
     if (last) {
       this.commands = commands;
       this.outside = false;
+      this.estimate = frame.estimate ?? null;
+      if (!mine) this.showRead();
       this.target = target && {marker: target.marker, at: target.at, errorMm: target.error_mm,
                                reached: target.reached, why: target.why};
     }
     this.onChange();
   }
 
+  /** What another window or a stream read, from what was told of it. */
+  private showRead(): void {
+    const {columns} = this.document.live?.estimate ?? {columns: []}, read = this.estimate?.readings;
+    if (read) this.values = columns.map(({name}) => read.find(({column}) => column === name)?.read ?? null);
+  }
+
   /** A rigid body goes where the robot pushes it: its center is no marker to be led somewhere. */
   canReach(marker: number): boolean {
-    if (this.document.markers[marker]?.body) return false;
+    if (this.document.markers[marker]?.body || this.tells) return false;
     return this.link ? this.able : this.able && this.markerOutputs[marker] >= 0;
   }
 }

@@ -1,6 +1,7 @@
 import {lineOf} from './command_line';
 import {robotName} from './document';
 import {displacement} from './looks';
+import {readingsCsv} from './readings';
 import type {Robot} from './robot';
 import {yamlOf} from './state';
 import {byId, element} from './text';
@@ -41,7 +42,9 @@ export function makeSave(robot: Robot): () => void {
   box.append(
     element('p', {class: 'explain'}, 'What is shown now, to go on with:'),
     element('div', {class: 'buttons'},
-      button('State (YAML)', () => download(`${name}.state.yaml`, new Blob([yamlOf(robot)], {type: 'text/yaml'}))),
+      robot.tells
+        ? button('Readings (CSV)', () => download('readings.csv', new Blob([readingsCsv(robot)], {type: 'text/csv'})))
+        : button('State (YAML)', () => download(`${name}.state.yaml`, new Blob([yamlOf(robot)], {type: 'text/yaml'}))),
       button('Shape (VTU)', () => download(`${name}.vtu`, new Blob([shapeFile(robot)], {type: 'application/xml'})))),
     element('p', {class: 'explain'}, 'The same by a line for a terminal:'), line,
     element('div', {class: 'buttons'}, button('Copy the line', () => void copy()), told));

@@ -4,17 +4,19 @@ import {
   SphereGeometry, Vector3, WebGLRenderer,
 } from 'three';
 import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
+import {Arrow} from './arrow';
 import {colourAt, paint, type Scale} from './colours';
 import type {RobotDocument} from './document';
+import type {ToldForce} from './estimate';
 import {largestField} from './field';
-import {FieldArrow} from './field_arrow';
+import {Forces} from './forces';
 import {Handles} from './handles';
 import {
   bodyColour, CarriedLine, makeBodies, makeBody, makeCloud, makeGhost, makeGrid, makeObstacle, ofTheme,
 } from './scene_parts';
 
 export type Part = 'ghost' | 'traces' | 'markers' | 'grid' | 'clear' | 'workspace' | 'around' |
-  'field';
+  'field' | 'forces';
 type Thread = Line<BufferGeometry, LineBasicMaterial>;
 type Ball = Mesh<SphereGeometry, MeshBasicMaterial>;
 
@@ -38,7 +40,9 @@ export class RobotScene {
   readonly gridMm: number;
   readonly handles = new Handles((at) => this.project(at));
   /** null: the robot is in no uniform field. */
-  readonly field: FieldArrow | null;
+  readonly field: Arrow | null;
+  /** That were told. */
+  readonly forces: Forces;
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
   private readonly ambient = new AmbientLight(0xffffff);
@@ -100,12 +104,13 @@ export class RobotScene {
     ({grid: this.grid, cellMm: this.gridMm} =
       makeGrid(this.size, this.box.getCenter(new Vector3()), this.box.min.z));
     this.field = this.fieldBeside(largestField(robot.actuators));
+    this.forces = new Forces(this.size);
     const sun = new DirectionalLight(0xffffff, 2.2);
     sun.position.set(-0.4, -1, 1.4);
     this.camera.add(sun);
     this.scene.add(this.ambient, this.camera, this.grid, this.body, this.ghost, ...this.around,
-                   ...this.traces, ...[...this.cables, ...this.fibres].flatMap(({rim, core}) => [rim, core]), ...this.balls, this.target,
-                   this.gap, this.wanted, this.handles.group);
+                   ...this.traces, ...[...this.cables, ...this.fibres].flatMap(({rim, core}) => [rim, core]),
+                   ...this.balls, this.target, this.gap, this.wanted, this.handles.group, this.forces.group);
     if (this.cloud) this.scene.add(this.cloud);
     if (this.field) this.scene.add(this.field.group);
     this.controls = new OrbitControls(this.camera);
@@ -119,13 +124,13 @@ export class RobotScene {
   }
 
   /** Left of the robot, as long in the largest field as a quarter of the robot. most: along x, y and z [mT] */
-  private fieldBeside(most: number[] | null): FieldArrow | null {
+  private fieldBeside(most: number[] | null): Arrow | null {
     if (!most) return null;
-    const mmPerMilliTesla = 0.25 * this.size / Math.hypot(...most);
-    const reach = new Vector3().fromArray(most).multiplyScalar(mmPerMilliTesla);
+    const mmPerUnit = 0.25 * this.size / Math.hypot(...most);
+    const reach = new Vector3().fromArray(most).multiplyScalar(mmPerUnit);
     const foot = this.box.getCenter(new Vector3()).setX(this.box.min.x - reach.x - 0.08 * this.size);
     this.box.expandByPoint(foot.clone().sub(reach)).expandByPoint(foot.clone().add(reach));
-    return new FieldArrow(foot, mmPerMilliTesla);
+    return new Arrow(foot, mmPerUnit);
   }
 
   /** Colours of the theme. */
@@ -143,6 +148,7 @@ export class RobotScene {
     for (const line of this.traces) line.material.color = ofTheme('--trace');
     if (this.cloud && !this.cloud.material.vertexColors) this.cloud.material.color = ofTheme('--accent');
     this.field?.dress(ofTheme('--field'));
+    this.forces.dress(ofTheme('--force'));
     this.gap.material.color = ofTheme('--bad');
     this.wanted.material.color = ofTheme('--accent');
     const grid = this.grid.material;
@@ -270,6 +276,11 @@ export class RobotScene {
     this.draw();
   }
 
+  setForces(forces: ToldForce[]): void {
+    this.forces.set(forces);
+    this.draw();
+  }
+
   setTarget(target: number[] | null, marker: number): void {
     this.target.visible = this.gap.visible = target !== null;
     if (target) {
@@ -287,6 +298,7 @@ export class RobotScene {
     if (part === 'traces') for (const line of this.traces) line.visible = on;
     if (part === 'markers') for (const ball of this.balls) ball.visible = on;
     if (part === 'field' && this.field) this.field.group.visible = on;
+    if (part === 'forces') this.forces.group.visible = on;
     if (part === 'clear') for (const material of this.body.material) {
       material.needsUpdate = material.transparent !== on;
       material.transparent = on;
@@ -329,6 +341,7 @@ export class RobotScene {
     const mmPerPxAtOne = 2 * Math.tan(this.camera.fov * Math.PI / 360) / (this.canvas.clientHeight || 1);
     this.handles.fit(this.camera, mmPerPxAtOne);
     this.field?.fit(this.camera, mmPerPxAtOne);
+    this.forces.fit(this.camera, mmPerPxAtOne);
     this.renderer.render(this.scene, this.camera);
     this.onDrawn();
   }

@@ -24,7 +24,7 @@ export function whyNotTaken(text: string, {name, low, high, unit, control}: Actu
     `${withUnit(`${typed(low)} to ${typed(high)}`, words)}. The robot stays as it is.`;
 }
 
-function makeRow(actuator: Actuator, i: number): Row & {whole: HTMLElement} {
+function makeRow(actuator: Actuator, i: number, isTold: boolean): Row & {whole: HTMLElement} {
   const {low, high} = actuator, id = `actuator-${i}`, name = plain(actuator.name), unit = commandWords(actuator);
   const step = high > low ? (high - low) / 1000 : 'any';
   const slider = element('input', {type: 'range', id, min: low, max: high, step});
@@ -33,7 +33,7 @@ function makeRow(actuator: Actuator, i: number): Row & {whole: HTMLElement} {
   const load = element('span', {class: 'load'}), wrong = element('p', {class: 'bad message', role: 'alert'});
   const whole = element('div', {class: 'slider'},
     element('div', {class: 'row'}, element('label', {for: id}, name),
-            element('span', {class: 'kind'}, kindWords[actuator.kind]), load),
+            element('span', {class: 'kind'}, kindWords[actuator.kind] + (isTold ? ', told' : '')), load),
     slider,
     element('div', {class: 'ends'}, element('span', {}, digits(low, 3)), element('span', {class: 'typed'}, field, unit),
             element('span', {}, digits(high, 3))),
@@ -44,8 +44,9 @@ function makeRow(actuator: Actuator, i: number): Row & {whole: HTMLElement} {
 /** One slider for each actuator; returns what brings them up to date. */
 export function makeSliders(box: HTMLElement, robot: Robot): () => void {
   const around = element('details', {}, element('summary', {}, 'What is done to the things around it'));
+  const told = robot.document.live?.estimate?.told ?? [];
   const rows = robot.document.actuators.map((actuator, i) => {
-    const row = makeRow(actuator, i), {slider, field, wrong, whole} = row;
+    const row = makeRow(actuator, i, told.includes(i)), {slider, field, wrong, whole} = row;
     const tell = (why: string) => {
       wrong.textContent = why;
       field.setAttribute('aria-invalid', String(why !== ''));
@@ -79,8 +80,9 @@ export function makeSliders(box: HTMLElement, robot: Robot): () => void {
   if (around.childElementCount > 1) box.append(around);
   return () => rows.forEach(({actuator, slider, field, load, wrong, wrongAt}, i) => {
     const command = robot.commands[i], force = robot.pose.loads[i];
+    const isTold = told.includes(i);
     if (wrong.textContent && command !== wrongAt) wrong.textContent = '';
-    slider.disabled = field.disabled = !robot.able || actuator.low === actuator.high;
+    slider.disabled = field.disabled = !robot.able || actuator.low === actuator.high || isTold;
     slider.value = String(command);
     slider.setAttribute('aria-valuetext', `${digits(command)} ${commandWords(actuator)}`);
     if (document.activeElement !== field) field.value = typed(command);

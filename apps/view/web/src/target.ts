@@ -40,7 +40,7 @@ export function targetWords(robot: Robot): {text: string; bad: boolean} {
 export function makeTarget(robot: Robot): () => void {
   const {markers, live} = robot.document, box = byId('target'), error = byId('error');
   const able = markers.map((_, i) => i).filter((i) =>
-    live !== null ? !markers[i].body : robot.canReach(i));
+    live !== null ? !markers[i].body && !robot.tells : robot.canReach(i));
   if (!able.length) return () => {};
   robot.selected = able[0];
   byId('target-section').hidden = false;

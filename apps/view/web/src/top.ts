@@ -1,5 +1,6 @@
 import {robotName} from './document';
 import {type Box, boxAt, place, type Spot} from './labels';
+import {plusMinus} from './estimate';
 import {largestField} from './field';
 import type {LiveState} from './live';
 import {whyOff} from './live_panel';
@@ -28,7 +29,10 @@ export function tellAtTop(robot: Robot): void {
   const led = robot.document.markers.some((marker, i) => live ? !marker.body : robot.canReach(i));
   const marked = led ? [`the round marker${field ? ', its arrows' : ' or its arrows'}`] : [];
   const drag = [...marked, ...(field ? ['the tip of the field'] : [])].join(' or ');
-  byId('hint').textContent = movable
+  byId('hint').textContent = robot.tells
+    ? 'Type what was read: softkin tells what pushes, and the shape follows. Drag here to look from elsewhere. ' +
+      'Pale: the shape at rest.'
+    : movable
     ? `Move a slider${drag && `, or drag ${drag}`}: the robot follows. ` +
       'Drag beside it to look from elsewhere. Pale: the shape at rest.'
     : 'Play the steps, or drag here to look from elsewhere. Pale: the shape at rest.';
@@ -38,7 +42,9 @@ export function tellAtTop(robot: Robot): void {
 export function tellAtSliders(robot: Robot, live: LiveState | null): void {
   const {actuators, map} = {actuators: robot.document.actuators, map: robot.map}, box = byId('explain-actuators');
   const off = live ? whyOff(live) : '', a = actuators.length > 1 ? 'a' : 'the';
-  const text = off || (map || live ? `Drag ${a} slider or type a number: the robot bends.`
+  const each = actuators.length > 1 ? 'each' : 'the';
+  const text = off || (robot.tells ? `What ${each} actuator was commanded when this was read.`
+    : map || live ? `Drag ${a} slider or type a number: the robot bends.`
     : 'What each actuator does at this step. Play the steps below the picture.');
   if (box.textContent === text) return;
   box.textContent = text;
@@ -54,7 +60,7 @@ export function makeLabels(robot: Robot, scene: RobotScene): () => void {
   const {markers} = robot.document, box = byId('labels');
   const labels = markers.map(() => element('span')), letters = [0, 1, 2].map((k) => element('b', {}, 'xyz'[k]));
   box.append(...labels, ...letters);
-  const field = makeFieldLabel(box, robot, scene);
+  const field = makeFieldLabel(box, robot, scene), forces = makeForceLabels(box, robot, scene);
   let touched = false;
   const before: number[] = [];
   return () => {
@@ -74,6 +80,7 @@ export function makeLabels(robot: Robot, scene: RobotScene): () => void {
       return [boxAt({x: at.x - 4, y: at.y - 9}, letter.offsetWidth, letter.offsetHeight)];
     });
     field();
+    forces();
     putApart(box, labels, spots, around, before, robot.selected);
   };
 }
@@ -84,9 +91,10 @@ const radiusPx = 6;  // of a marker
 function putApart(box: HTMLElement, labels: HTMLElement[], spots: Spot[], letters: Box[], before: number[],
                   selected: number): void {
   const {left, top, width, height} = box.getBoundingClientRect();
-  const others = ['#hint', '#colour-bar', '#state', '#grid-size', '#labels .field'].flatMap((name): Box[] => {
-    const at = document.querySelector(name)?.getBoundingClientRect();
-    return at?.width ? [boxAt({x: at.left - left, y: at.top - top}, at.width, at.height)] : [];
+  const others = ['#hint', '#colour-bar', '#state', '#grid-size', '#labels .field', '#labels .force']
+    .flatMap((name) => [...document.querySelectorAll(name)]).flatMap((each): Box[] => {
+    const at = each.getBoundingClientRect();
+    return at.width ? [boxAt({x: at.left - left, y: at.top - top}, at.width, at.height)] : [];
   });
   const balls = spots.map(({x, y}) => boxAt({x: x - radiusPx, y: y - radiusPx}, 2 * radiusPx, 2 * radiusPx));
   const order = [...labels.keys()].sort((a, b) => Number(b === selected) - Number(a === selected) || a - b);
@@ -115,5 +123,25 @@ function makeFieldLabel(box: HTMLElement, robot: Robot, scene: RobotScene): () =
     label.hidden = !field.visible;
     label.classList.toggle('above', y < scene.project(field.foot).y);
     put(label, Math.max(x, label.offsetWidth - 16), y);  // not out of the picture
+  };
+}
+
+/** How large each force that was told is, at the tip of its arrow. */
+function makeForceLabels(box: HTMLElement, robot: Robot, scene: RobotScene): () => void {
+  const labels: HTMLElement[] = [];
+  return () => {
+    const {arrows, group} = scene.forces, told = robot.estimate?.forces ?? [];
+    while (labels.length < told.length) box.append(labels[labels.push(element('span', {class: 'force'})) - 1]);
+    labels.forEach((label, i) => {
+      label.hidden = i >= told.length || i >= arrows.length || !group.visible;
+      if (label.hidden) return;
+      const {force_N: force, name, deviation_N: deviation} = told[i], {foot, tip} = arrows[i];
+      const text = `${plain(name)} ${plusMinus(Math.hypot(...force), deviation, 'N')}`;
+      if (label.textContent !== text) label.textContent = text;
+      const from = scene.project(foot), to = scene.project(tip), {clientWidth, clientHeight} = box;
+      const x = to.x + (to.x < from.x ? -label.offsetWidth - 12 : 12), y = to.y + (to.y < from.y ? -26 : 6);
+      put(label, Math.min(Math.max(x, 0), clientWidth - label.offsetWidth),
+          Math.min(Math.max(y, 0), clientHeight - label.offsetHeight));
+    });
   };
 }

@@ -110,7 +110,8 @@ class Columns {
         if (column == sensor.name + "_direction_" + axes[axis])
           return PoseColumn{column, -1, axis, -1, Reading::direction, -1, static_cast<Index>(s)};
       const bool length = sensor.kind == SensorKind::length;
-      if (sensor.kind == SensorKind::direction || column != sensor.name + (length ? "_length_mm" : "_angle_deg")) continue;
+      if (sensor.kind == SensorKind::direction || column != sensor.name + (length ? "_length_mm" : "_angle_deg"))
+        continue;
       return PoseColumn{column, -1, -1, -1, length ? Reading::length : Reading::angle, -1, static_cast<Index>(s)};
     }
     return force_of(column);
@@ -154,6 +155,27 @@ std::vector<PoseColumn> reading_columns(const Model& model, const std::vector<st
   table.file = "readings";
   table.columns = names;
   return Columns(table, model).readings_alone();
+}
+
+std::vector<PoseColumn> possible_readings(const Model& model) {
+  std::vector<std::string> names;
+  const auto along_axes = [&](const std::string& begin, const std::string& end) {
+    for (const char* axis : axis_names) names.push_back(begin + axis + end);
+  };
+  for (const Marker& marker : model.markers) along_axes(marker.name + "_", "_mm");
+  for (const Actuator& actuator : model.actuators) {
+    const bool air = actuator.kind == ActuatorKind::pneumatic;
+    if (!air && actuator.kind != ActuatorKind::cable) continue;
+    if (actuator.control != Control::load) names.push_back(actuator.name + (air ? "_pressure_kPa" : "_tension_N"));
+    if (actuator.control != Control::ratio) names.push_back(actuator.name + (air ? "_volume_mm3" : "_length_mm"));
+  }
+  for (const auto& sensor : model.sensors)
+    if (sensor->kind == SensorKind::direction)
+      along_axes(sensor->name + "_direction_", "");
+    else
+      names.push_back(sensor->name + (sensor->kind == SensorKind::length ? "_length_mm" : "_angle_deg"));
+  for (const Support& support : model.supports) along_axes(support.name + "_force_", "_N");
+  return reading_columns(model, names);
 }
 
 MeasuredPoses read_measured_poses(const std::filesystem::path& file, const Model& model) {

@@ -18,4 +18,8 @@ namespace softkin {
 /// throws  InvalidInput on a name that is no reading, with what could be one
 [[nodiscard]] std::vector<PoseColumn> reading_columns(const Model& model, const std::vector<std::string>& names);
 
+/// All that can be read of a robot: coordinates of markers, what actuators and sensors answer with, and what supports
+/// exert, in the order of the model; reading_columns() knows their names.
+[[nodiscard]] std::vector<PoseColumn> possible_readings(const Model& model);
+
 }  // namespace softkin

@@ -109,8 +109,7 @@ Guess Fitter::least(const Fit& fit, const Readings& readings, double holding) co
     return problem_.normal(guess, problem_.slopes(*fit.nearby, guess), readings);
   };
   Normal normal = normal_at(at);
-  const Eigen::MatrixXd hold =
-      holding * readings.known.cost(problem_.variables(), fit.at.values, fit.at.places).matrix;
+  const Eigen::MatrixXd hold = holding * readings.known.cost(problem_.variables(), fit.at.values, fit.at.places).matrix;
   normal.matrix += hold;
   double inner = 0;
   for (int i = 0; i < most_inner; ++i) {

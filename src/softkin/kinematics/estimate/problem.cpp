@@ -121,8 +121,7 @@ void Problem::set_stiffness_slopes(const Guess& at, Slopes& parts) const {
     numbers.push_back(i);
   }
   const Perturbations perturbations(statics(at.values), perturbed);
-  Slopes found =
-      slopes_of(at, perturbations.at(at.equilibrium.state, options_, slope_accuracy_, reads_supports()));
+  Slopes found = slopes_of(at, perturbations.at(at.equilibrium.state, options_, slope_accuracy_, reads_supports()));
   for (std::size_t k = 0; k < numbers.size(); ++k) {
     const Index i = numbers[k], column = static_cast<Index>(k);
     parts.of_readings.col(i) = found.of_readings.col(column);

@@ -123,11 +123,8 @@ void Variables::add_stiffness(const EstimatedUnknown& unknown, const std::string
   if (!(*unknown.deviation > 0 && std::isfinite(*unknown.deviation))) refuse("the deviation must be above 0");
   const double mean = unknown.mean.value_or(1);
   if (!(mean > 0 && std::isfinite(mean))) refuse("its mean must be above 0");
-  variables_.push_back({.material = index,
-                        .mean = mean,
-                        .deviation = *unknown.deviation,
-                        .low = mean / most,
-                        .high = mean * most});
+  variables_.push_back(
+      {.material = index, .mean = mean, .deviation = *unknown.deviation, .low = mean / most, .high = mean * most});
 }
 
 std::string name_of(const Model& model, const Variable& variable) {

@@ -141,8 +141,7 @@ std::vector<Index> spread_out(const Points& rest, const std::vector<Index>& vert
   farthest([&](Index v) { return along.cross(at(v) - at(spread[0])).norm(); });
   const Vec3 normal = along.cross(at(spread[2]) - at(spread[0])).normalized();
   constexpr double flat = 1e-3;
-  if (farthest([&](Index v) { return std::abs(normal.dot(at(v) - at(spread[0]))); }) < flat * length)
-    spread.pop_back();
+  if (farthest([&](Index v) { return std::abs(normal.dot(at(v) - at(spread[0]))); }) < flat * length) spread.pop_back();
   return spread;
 }
 

@@ -34,8 +34,7 @@ class Couples {
       turned += 2 * arm.dot(way) * spin_ - way * arm.dot(spin_) - arm * way.dot(spin_);
     }
     const Vec3 spin = -inverse_ * turned;
-    for (std::size_t i = 0; i < arms_.size(); ++i)
-      changes.emplace_back(spin.cross(arms_[i]) + spin_.cross(of_arms[i]));
+    for (std::size_t i = 0; i < arms_.size(); ++i) changes.emplace_back(spin.cross(arms_[i]) + spin_.cross(of_arms[i]));
     return changes;
   }
 

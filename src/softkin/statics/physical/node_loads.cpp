@@ -11,7 +11,7 @@ void NodeLoads::add_cliques(linear::Cliques& cliques) {
 }
 
 void NodeLoads::stiffness(const Iterate& at, const Demand& demand, bool projected, Term::Scratch& /*scratch*/,
-                            LargeVector<double>& slots, Team& team) const {
+                          LargeVector<double>& slots, Team& team) const {
   using Block = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
   team.pieces(static_cast<Index>(parts()), [&](Index begin, Index end) {
     for (auto f = static_cast<std::size_t>(begin); f < static_cast<std::size_t>(end); ++f) {
@@ -31,7 +31,7 @@ void NodeLoads::stiffness(const Iterate& at, const Demand& demand, bool projecte
 }
 
 void NodeLoads::add_response(const Iterate& at, const Points& moves, const Term::Scratch& scratch,
-                               Points& force) const {
+                             Points& force) const {
   if (symmetric()) return;
   for (std::size_t f = 0; f < parts(); ++f) {
     const double share = scale(f, static_cast<const Scratch&>(scratch).demand) / 2;

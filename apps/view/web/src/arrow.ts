@@ -6,9 +6,9 @@ import {
 const shaftPx = 1.7, headPx = {length: 15, radius: 6}, ballPx = 4.5;
 const up = new Vector3(0, 1, 0);
 
-/** The flux density of the uniform fields as an arrow beside the robot, from a ball, which alone is seen where there is
-    no field. */
-export class FieldArrow {
+/** A vector as an arrow, from a ball, which alone is seen where it is zero: the flux density of the uniform fields
+    beside the robot [mT], a force at its place [N]. */
+export class Arrow {
   readonly group = new Group();
   private readonly material = new MeshBasicMaterial({depthTest: false, transparent: true});
   private readonly arrow = new Group();
@@ -18,10 +18,10 @@ export class FieldArrow {
   private lengthMm = 0;
   /** Where it ends [mm]. */
   tip: number[];
-  /** [mT] */
+  /** In the vector's unit. */
   size = 0;
 
-  constructor(foot: Vector3, readonly mmPerMilliTesla: number) {
+  constructor(foot: Vector3, public mmPerUnit: number) {
     this.arrow.add(this.shaft, this.head);
     this.group.add(this.arrow, this.ball);
     for (const part of [this.shaft, this.head, this.ball]) part.renderOrder = 5;
@@ -36,10 +36,9 @@ export class FieldArrow {
 
   dress(colour: Color): void { this.material.color = colour; }
 
-  /** field: [mT] */
-  set(field: number[]): void {
-    const way = new Vector3().fromArray(field).multiplyScalar(this.mmPerMilliTesla);
-    this.size = Math.hypot(...field);
+  set(vector: number[]): void {
+    const way = new Vector3().fromArray(vector).multiplyScalar(this.mmPerUnit);
+    this.size = Math.hypot(...vector);
     this.lengthMm = way.length();
     this.tip = this.group.position.clone().add(way).toArray();
     if (this.lengthMm > 0) this.arrow.quaternion.setFromUnitVectors(up, way.normalize());

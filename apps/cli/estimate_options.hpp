@@ -1,0 +1,31 @@
+#pragma once
+
+#include <softkin/kinematics/estimator.hpp>
+
+#include "solve_options.hpp"
+
+namespace softkin::cli {
+
+/// What is to be told, and how well it is read: of every command that estimates.
+struct EstimateOptions {
+  std::vector<std::string> unknowns;
+  std::array<std::optional<double>, readings> deviations{};  // in the order of Reading
+  double fade_s = 0;
+  bool keep_all = false;
+
+  /// throws  InvalidInput naming the option
+  [[nodiscard]] std::vector<EstimatedUnknown> asked_unknowns() const;
+  /// 0: not given
+  [[nodiscard]] std::array<double, readings> asked_deviations() const;
+  [[nodiscard]] EstimatorOptions how(const StaticsOptions& statics) const;
+};
+
+/// The options that give deviations, in the order of Reading.
+[[nodiscard]] std::array<std::string, readings> deviation_names();
+
+CLI::Option* add_unknowns(CLI::App& command, EstimateOptions& options);
+void add_deviations(CLI::App& command, EstimateOptions& options);
+/// --fade and --keep-all. then: what readings do where it is given
+void add_fade(CLI::App& command, EstimateOptions& options, const std::string& then);
+
+}  // namespace softkin::cli

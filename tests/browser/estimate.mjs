@@ -1,0 +1,133 @@
+// What pushes a robot is told from readings: typed in the page, or streamed to softkin view while pages watch.
+import assert from 'node:assert/strict';
+import {readFileSync, writeFileSync} from 'node:fs';
+import {connect} from 'node:net';
+import {createInterface} from 'node:readline';
+import {frames, open, violations} from './browser.mjs';
+import {example, out, serve, softkin} from './softkin.mjs';
+
+const scene = example('estimate', 'finger.yaml'), options = ['--unknown', 'touch:place', '--deviation', '0.2'];
+const table = readFileSync(example('estimate', 'readings.csv'), 'utf8').trim().split('\n').map((row) => row.split(','));
+const [columns, ...rows] = table;
+const text = (page, id) => page.locator(`#${id}`).textContent();
+const until = (page, id, pattern) => page.waitForFunction(([of, wanted]) =>
+  new RegExp(wanted).test(document.getElementById(of).textContent), [id, pattern.source]);
+/** The numbers of "0.79 ± 0.42 N". */
+const numbers = (told) => told.replaceAll('−', '-').match(/-?\d+(\.\d+)?/g).map(Number);
+
+/** What softkin estimate tells of one row. */
+async function estimated(row) {
+  writeFileSync(out('one_row.csv'), `${columns.join()}\n${row.join()}\n`);
+  return JSON.parse(await softkin('estimate', scene, out('one_row.csv'), ...options, '--json')).rows[0];
+}
+
+async function typeRow(page, row) {
+  await page.locator('.typed input').first().fill(row[1]);
+  await page.keyboard.press('Enter');
+  for (const [c, value] of row.slice(2).entries()) {
+    await page.locator('#readings input').nth(c).fill(value);
+    await page.keyboard.press('Tab');
+  }
+  await until(page, 'state', /^Told from 12 readings: converged/);
+}
+
+/** From one typed number to the next the estimate goes on: it ends within a tenth of what it does not know. */
+async function checkTyped(page) {
+  await until(page, 'live-words', /^You control/);
+  assert.match(await text(page, 'told'), /Nothing was read yet/);
+  assert.ok(await page.locator('#target-section').isHidden());
+  await typeRow(page, rows[0]);
+  const wanted = await estimated(rows[0]), told = await page.locator('#told td').allTextContents();
+  for (const [n, {name, value, deviation}] of wanted.numbers.entries()) {
+    assert.equal(told[2 * n], name.replaceAll('_', ' '));
+    const [shown] = numbers(told[2 * n + 1]);
+    assert.ok(Math.abs(shown - value) < 0.5 * deviation, `${name}: ${told[2 * n + 1]}, not ${value}`);
+    assert.match(told[2 * n + 1], / ± .* N$/);
+  }
+  assert.match(await text(page, 'told'),
+               /its direction within \d.*° \(90 %\).*Chi-square .* fit the model.*2\.15 standard deviations \(2-D/s);
+  await frames(page);
+  const label = page.locator('#labels .force');
+  assert.match(await label.textContent(), /^touch \d.* ± .* N$/);
+  assert.ok(await label.isVisible());
+}
+
+async function checkChanged(page) {
+  const before = await page.locator('#told .force').textContent();
+  await typeRow(page, rows[3]);
+  await page.waitForFunction((told) => document.querySelector('#told .force').textContent !== told, before);
+  const field = page.locator('#readings input').first(), told = await text(page, 'told');
+  await field.fill('1e12');
+  await page.keyboard.press('Tab');
+  assert.match(await text(page, 'readings'), /m1 x mm: a number up to/);
+  assert.equal(await text(page, 'told'), told);
+  assert.equal(await field.getAttribute('aria-invalid'), 'true');
+  await page.locator('#undo').click();
+  await until(page, 'state', /^Told from 12 readings: converged/);
+  assert.doesNotMatch(await text(page, 'readings'), /m1 x mm/);
+  await page.getByText('Nothing was read', {exact: true}).click();
+  await until(page, 'state', /^Told from 0 readings: converged/);
+  assert.match(await text(page, 'told'), /touch_fz is told to 1 N only/);
+}
+
+/** A client of the port: sends lines, and takes those that come back. */
+function writerTo(output) {
+  const [, port, token] = /lines at 127\.0\.0\.1:(\d+), the first (\{.*\})/.exec(output);
+  const socket = connect(Number(port), '127.0.0.1'), lines = createInterface({input: socket})[Symbol.asyncIterator]();
+  socket.write(`${token}\n`);
+  return {ask: async (row) => {
+    const line = Object.fromEntries(columns.map((name, c) => [name, Number(row[c])]));
+    socket.write(`${JSON.stringify(line)}\n`);
+    return JSON.parse((await lines.next()).value);
+  }, end: () => socket.end()};
+}
+
+async function checkStreamed(page, server) {
+  const writer = writerTo(server.output());
+  for (const row of rows.slice(0, 2)) {
+    const answer = await writer.ask(row);
+    assert.equal(answer.status, 'converged');
+    const shown = answer.numbers.map(({value}) => value);
+    await page.waitForFunction(([wanted]) => {
+      const cells = [...document.querySelectorAll('#told td')].map((cell) => cell.textContent.replaceAll('−', '-'));
+      return wanted.every((value, n) => Math.abs(parseFloat(cells[2 * n + 1]) - value) < 0.01);
+    }, [shown]);
+  }
+  await until(page, 'live-words', /^Readings are streamed/);
+  assert.ok(await page.locator('#readings input').first().isDisabled());
+  assert.equal(await page.locator('#readings input').first().inputValue(), rows[1][2]);
+  await page.screenshot({path: out('estimate_streamed.png')});
+  writer.end();
+  await until(page, 'live-words', /^You control/);
+}
+
+async function checkLooks(browser, server) {
+  for (const [width, scheme] of [[1280, 'dark'], [390, 'light']]) {
+    const {page, watch, context} = await open(browser, server.url,
+                                              {width, height: width < 600 ? 844 : 720, scheme, offline: false});
+    await page.waitForSelector('#told .force');
+    await frames(page, 3);
+    assert.deepEqual(await violations(page), []);
+    assert.ok(await page.evaluate(() => document.documentElement.scrollWidth) <= width, 'wider than its window');
+    assert.ok(await page.evaluate(() => document.querySelector('#panel').scrollWidth <=
+      document.querySelector('#panel').clientWidth), 'the panel is wider than it shows');
+    await page.screenshot({path: out(`estimate_${width}_${scheme}.png`)});
+    await page.getByLabel('what pushes', {exact: true}).uncheck();
+    await frames(page);
+    assert.ok(await page.locator('#labels .force').isHidden());
+    assert.deepEqual(watch.errors, []);
+    await context.close();
+  }
+}
+
+export async function estimateTests(browser, test) {
+  const server = await serve(scene, 0, ...options, '--readings-port', '0');
+  const {page, watch} = await open(browser, server.url, {offline: false});
+  await test('estimate: typed readings tell what pushes', () => checkTyped(page));
+  await test('estimate: it changes with what is typed', () => checkChanged(page));
+  await test('estimate: pages follow what is streamed', () => checkStreamed(page, server));
+  await test('estimate: accessible in both themes', () => checkLooks(browser, server));
+  await test('estimate: no errors', () => assert.deepEqual(watch.errors, []));
+  await page.context().close();
+  await server.stop();
+}
