@@ -219,7 +219,7 @@ TEST(Walk, Refusals) {
   expect_refused(spec, "act along the direction of travel with 0.1");
   spec.forces.clear();
   spec.tractions = {{"water", {std::string("z_high"), {}}, true, {0, 0, 0}, 1}};
-  expect_refused(spec, "a pressure or traction on the surface");
+  expect_refused(spec, "a pressure, traction or moment may push");
   spec = good;
   spec.fixed.back().axes = {false, true, false};
   spec.gravity = {0, 0, -9.81};

@@ -25,8 +25,8 @@ namespace softkin {
 [[nodiscard]] bool answers_with_load(const Actuator& actuator);
 /// Is it commanded by its load, and no cable: its volume or area says more than the pressure or voltage again.
 [[nodiscard]] bool shows_measure(const Actuator& actuator);
-/// The unit of what the user commands, bare: "", "kPa", "N", "kV", "mL", "mm", "mT", "A", "A m^2", "degC", "N mm"; as a table
-/// has it: "[-]", "[kPa]", ....
+/// The unit of what the user commands, bare: "", "kPa", "N", "kV", "mL", "mm", "mT", "A", "A m^2", "degC", "N mm"; as a
+/// table has it: "[-]", "[kPa]", ....
 [[nodiscard]] std::string command_unit(const Actuator& actuator);
 [[nodiscard]] std::string bracketed_unit(const Actuator& actuator);
 /// The column of a CSV file that holds the commands of an actuator: "tendon", "air_kPa", "magnet_mx_Am2",

@@ -40,8 +40,9 @@ struct Sensor {
 
   /// positions  #V by 3 [mm]
   /// component  of a direction: along which axis of space
-  /// returns    direction: of R axis, R the rotation of the section [-]. length: sum of length_at_rest |sum of slope x| [mm]. angle: of R = R_1^T R_2, the turn about the axis,
-  ///            2 atan2(axis . (R_32 - R_23, R_13 - R_31, R_21 - R_12), 1 + tr R), in (-360, 360], 0 at rest [degrees]
+  /// returns    length: sum of length_at_rest |sum of slope x| [mm]. angle: of R = R_1^T R_2, the turn about the axis,
+  ///            2 atan2(axis . (R_32 - R_23, R_13 - R_31, R_21 - R_12), 1 + tr R), in (-360, 360], 0 at rest [degrees].
+  ///            direction: of R axis, R the rotation of the section [-]
   /// source     the twist of the unit quaternion of R, whose vector part is (R_32 - R_23, ...) / 4 over its scalar part
   [[nodiscard]] double at(const Points& positions, int component = 0) const;
 
