@@ -133,7 +133,7 @@ def test_a_wrench_a_pressure_and_a_stiffness_are_told_from_directions_too() -> N
     assert told.numbers["tool_mx"].unit == "N mm"
     assert told.numbers["hand"].unit == "kPa"
     assert told.numbers["materials.all.stiffness"].unit == ""
-    assert told.numbers["materials.all.stiffness"].deviation < 0.1
+    assert told.numbers["materials.all.stiffness"].deviation < 0.2
 
 
 def test_refusals(beam: Robot) -> None:

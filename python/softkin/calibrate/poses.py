@@ -73,6 +73,7 @@ def robot(
     deviation_volume_mm3: float | None = None,
     deviation_force_N: float | None = None,
     deviation_angle_deg: float | None = None,
+    deviation_direction: float | None = None,
     keep: int = 0,
     ordered: bool = False,
     threads: int = 0,
@@ -89,8 +90,8 @@ def robot(
                the same, gravity turns along. Empty: the poses are foretold as the scene is
     changes    of the scene, by path
     loss       'squares', 'huber' or 'cauchy', which wrong readings hardly move
-    deviation  of a coordinate [mm], pressure [kPa], tension [N], length [mm], volume [mm^3], force [N] as read; None:
-               by what is left
+    deviation  of a coordinate [mm], pressure [kPa], tension [N], length [mm], volume [mm^3], force [N], angle [deg],
+               component of a direction as read; None: by what is left
     keep       poses that are not fitted to but foretold, spread evenly
     ordered    where something rubs: each pose goes on from the one before, the first from rest; else each from rest
     threads    poses side by side; 0: as many as the machine has
@@ -107,6 +108,7 @@ def robot(
         "deviation_volume_mm3": deviation_volume_mm3,
         "deviation_force_N": deviation_force_N,
         "deviation_angle_deg": deviation_angle_deg,
+        "deviation_direction": deviation_direction,
     }
     for name, given in deviations.items():
         if given is not None and not given > 0:

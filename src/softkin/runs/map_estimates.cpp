@@ -36,7 +36,7 @@ std::vector<ReadOutput> read_outputs(const KinematicMap& map, const Model& model
     const auto found =
         std::find_if(outputs.begin(), outputs.end(), [&](const MapOutput& output) { return output.name == name; });
     if (found == outputs.end())
-      throw InvalidInput({poses.file}, "column '" + column.name + "' is nothing that the map gives: leave out --map");
+      throw InvalidInput({poses.file}, "column '" + column.name + "' is nothing that the map gives: the solver tells from it");
     const bool ratio = column.marker < 0 && name.ends_with("_ratio");
     read.push_back({static_cast<Index>(found - outputs.begin()),
                     ratio ? model.actuators[static_cast<std::size_t>(column.actuator)].rest_measure : 1});
@@ -48,7 +48,7 @@ std::vector<MapUnknown> map_unknowns(const KinematicMap& map, const Model& model
                                      const estimate::Variables& variables) {
   if (!variables.forces().empty())
     throw InvalidInput("the force '" + variables.forces()[0].name +
-                       "' acts anywhere on its region, and a map knows forces at known places: leave out --map");
+                       "' acts anywhere on its region, and a map knows forces at known places: the solver tells it");
   std::vector<MapUnknown> unknowns;
   const std::vector<MapInput>& inputs = map.data().inputs;
   for (const estimate::Variable& variable : variables.all()) {
@@ -56,7 +56,7 @@ std::vector<MapUnknown> map_unknowns(const KinematicMap& map, const Model& model
       return variable.actuator >= 0 && input.actuator == variable.actuator;
     });
     if (found == inputs.end())
-      throw InvalidInput("'" + estimate::name_of(model, variable) + "' is no input of the map: leave out --map");
+      throw InvalidInput("'" + estimate::name_of(model, variable) + "' is no input of the map: the solver tells it");
     unknowns.push_back({static_cast<Index>(found - inputs.begin()), variable.mean, variable.deviation});
   }
   return unknowns;
