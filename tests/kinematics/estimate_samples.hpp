@@ -56,4 +56,16 @@ inline Actuation commands_of(const Model& model, double pressure) {
   return commands;
 }
 
+/// A column of slopes against differences, to a share of the largest slope of what is read of the same kind.
+inline void expect_slopes(const std::vector<PoseColumn>& columns, const Eigen::MatrixXd& slopes, Index c,
+                          const Eigen::VectorXd& difference, double share) {
+  for (Index r = 0; r < static_cast<Index>(difference.size()); ++r) {
+    double size = 0;
+    for (Index other = 0; other < static_cast<Index>(difference.size()); ++other)
+      if (columns[static_cast<std::size_t>(other)].kind == columns[static_cast<std::size_t>(r)].kind)
+        size = std::max(size, slopes.row(other).cwiseAbs().maxCoeff());
+    EXPECT_NEAR(slopes(r, c), difference[r], share * size) << "reading " << r << ", column " << c;
+  }
+}
+
 }  // namespace softkin::testing

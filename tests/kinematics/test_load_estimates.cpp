@@ -156,13 +156,7 @@ TEST(StiffnessEstimates, AreOfTheRobotThatIsSoStiff) {
       return found.computed;
     };
     const Eigen::VectorXd difference = (8 * (computed(1) - computed(-1)) - (computed(2) - computed(-2))) / (12 * h);
-    for (Index r = 0; r < difference.size(); ++r) {
-      double size = 0;  // of what is read of the same kind
-      for (Index o = 0; o < difference.size(); ++o)
-        if (columns[static_cast<std::size_t>(o)].kind == columns[static_cast<std::size_t>(r)].kind)
-          size = std::max(size, slopes.row(o).cwiseAbs().maxCoeff());
-      EXPECT_NEAR(slopes(r, c), difference[r], 2e-6 * size) << "reading " << r << ", column " << c;
-    }
+    expect_slopes(columns, slopes, c, difference, 2e-6);
   }
 }
 
