@@ -36,7 +36,8 @@ std::vector<ReadOutput> read_outputs(const KinematicMap& map, const Model& model
     const auto found =
         std::find_if(outputs.begin(), outputs.end(), [&](const MapOutput& output) { return output.name == name; });
     if (found == outputs.end())
-      throw InvalidInput({poses.file}, "column '" + column.name + "' is nothing that the map gives: the solver tells from it");
+      throw InvalidInput({poses.file},
+                         "column '" + column.name + "' is nothing that the map gives: the solver tells from it");
     const bool ratio = column.marker < 0 && name.ends_with("_ratio");
     read.push_back({static_cast<Index>(found - outputs.begin()),
                     ratio ? model.actuators[static_cast<std::size_t>(column.actuator)].rest_measure : 1});
