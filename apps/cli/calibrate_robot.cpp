@@ -7,6 +7,7 @@
 #include <softkin/io/table/measured_poses.hpp>
 
 #include "command.hpp"
+#include "estimate_options.hpp"
 #include "solve_options.hpp"
 #include "terminal.hpp"
 
@@ -109,14 +110,7 @@ void add_options(CLI::App& command, RobotOptions& options) {
             "What a reading counts that is far off: squares (default),\nhuber or cauchy, which wrong readings hardly "
             "move",
             one_of({"squares", "huber", "cauchy"}));
-  constexpr const char* given[][2] = {{"--deviation", "MM"},          {"--deviation-pressure", "KPA"},
-                                      {"--deviation-tension", "N"},   {"--deviation-length", "MM"},
-                                      {"--deviation-volume", "MM^3"}, {"--deviation-force", "N"},
-                                      {"--deviation-angle", "DEG"},   {"--deviation-direction", "D"}};
-  for (std::size_t k = 0; k < readings; ++k)
-    add_value(command, given[k][0], options.deviations[k], given[k][1],
-              std::string("Of a ") + reading_names[k] + " that was read (default: by what is left)",
-              positive("a number > 0" + in_unit(static_cast<Reading>(k))));
+  add_deviations(command, options.deviations, " (default: by what is left)");
   add_value(command, "--keep", options.keep, "N", "Poses that are not fitted to but foretold, spread evenly",
             CLI::Range(0, 100000).description(""));
   command.add_flag(

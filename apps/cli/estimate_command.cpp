@@ -87,11 +87,11 @@ void add_options(CLI::App& command, EstimateAsked& asked) {
   add_force(command, asked);
   add_value(command, "READINGS", asked.readings_file, "F.csv",
             "Readings, a row each: measured commands as in a path (air_kPa),\nt_s, then what was read: tip_x_mm, "
-            "air_volume_mm3, tendon_tension_N,\nbase_force_x_N, strain_length_mm, bend_angle_deg; empty cells were not "
-            "read")
+            "air_volume_mm3, tendon_tension_N,\nbase_force_x_N, strain_length_mm, bend_angle_deg,\nimu_direction_x; "
+            "empty cells were not read")
       ->required();
   add_unknowns(command, asked.estimate)->required();
-  add_deviations(command, asked.estimate);
+  add_deviations(command, asked.estimate.deviations);
   add_fade(command, asked.estimate, "rows go on\nfrom each other (default: each by itself)");
   add_value(command, "--map", asked.map, "F.skmap",
             "Kinematic map of the robot (softkin map) whose inputs are the\nunknowns: tells in its place, in "

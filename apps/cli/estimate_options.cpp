@@ -45,11 +45,16 @@ CLI::Option* add_unknowns(CLI::App& command, EstimateOptions& options) {
                       "With\n=MEAN+-DEVIATION: known before (default: half of its range)");
 }
 
-void add_deviations(CLI::App& command, EstimateOptions& options) {
-  for (std::size_t k = 0; k < readings; ++k)
-    add_value(command, deviation_options[k][0], options.deviations[k], deviation_options[k][1],
-              std::string("Standard deviation of a ") + reading_names[k] + " that was read",
-              positive("a number > 0" + in_unit(static_cast<Reading>(k))));
+void add_deviations(CLI::App& command, std::array<std::optional<double>, readings>& deviations,
+                    const std::string& unsaid) {
+  for (std::size_t k = 0; k < readings; ++k) {
+    const auto kind = static_cast<Reading>(k);
+    add_value(command, deviation_options[k][0], deviations[k], deviation_options[k][1],
+              std::string("Standard deviation of ") + (kind == Reading::angle ? "an " : "a ") + reading_names[k] +
+                  " that was read" + unsaid +
+                  (kind == Reading::direction ? "; of each\ncomponent: 0.017 for a degree" : ""),
+              positive("a number > 0" + in_unit(kind)));
+  }
 }
 
 void add_fade(CLI::App& command, EstimateOptions& options, const std::string& then) {

@@ -24,7 +24,9 @@ struct EstimateOptions {
 [[nodiscard]] std::array<std::string, readings> deviation_names();
 
 CLI::Option* add_unknowns(CLI::App& command, EstimateOptions& options);
-void add_deviations(CLI::App& command, EstimateOptions& options);
+/// unsaid: what they are where they are not given, of commands that do without
+void add_deviations(CLI::App& command, std::array<std::optional<double>, readings>& deviations,
+                    const std::string& unsaid = "");
 /// --fade and --keep-all. then: what readings do where it is given
 void add_fade(CLI::App& command, EstimateOptions& options, const std::string& then);
 

@@ -70,7 +70,7 @@ void add_view_options(CLI::App& command, ViewOptions& options) {
             integer_from(0, 65535));
   command.add_flag("--no-open", options.no_open, "Start no browser");
   add_unknowns(command, options.estimate);
-  add_deviations(command, options.estimate);
+  add_deviations(command, options.estimate.deviations);
   add_fade(command, options.estimate, "readings\ngo on from each other (default: each tell by themselves)");
   add_value(
       command, "--readings-port", options.readings_port, "N",
