@@ -53,7 +53,8 @@ EstimateSetup estimate_setup(const Model& model, std::vector<EstimatedUnknown> u
   std::string missing;  // deviations that would let something be read
   for (std::size_t k = 0; k < readings; ++k)
     if (std::any_of(all.begin(), all.end(), [&](const PoseColumn& c) { return static_cast<std::size_t>(c.kind) == k; }))
-      missing += (missing.empty() ? "" : ", ") + options[k] + " in " + reading_units[k] + " (" + reading_names[k] + ")";
+      missing +=
+          (missing.empty() ? "" : ", ") + options[k] + in_unit(static_cast<Reading>(k)) + " (" + reading_names[k] + ")";
   throw InvalidInput({.file = model.name}, missing.empty() ? "nothing of this robot can be read"
                                                            : "what is read needs its deviation: " + missing);
 }

@@ -65,12 +65,11 @@ Continuation::Continuation(const System& system, Workspace& work, Team& team, co
       tracer_(options.trace, report) {}
 
 /// A demand whose pressures are so many times as large.
-Demand Continuation::pressed(Demand demand, double times, Iterate& at) const {
+Demand Continuation::pressed(Demand demand, double times) const {
   for (Index a = 0; a < system_.actuators(); ++a) {
     if (active_[static_cast<std::size_t>(a)] || !system_.measures().given_load(a) || system_.measures().sign(a) > 0)
       continue;
     demand.actuation[a] *= times;
-    at.multipliers[a] = system_.measures().given(a, demand.actuation[a]);
   }
   return demand;
 }
@@ -78,7 +77,7 @@ Demand Continuation::pressed(Demand demand, double times, Iterate& at) const {
 /// Of sheets that were flat: first what wrinkles does so without kinks, then with ever sharper ones, at last with its
 /// own; under pressures that stretch it, which fall to those that are asked for.
 Newton::Outcome Continuation::settle_swollen(const Demand& there, Swelling how, Iterate& trial) {
-  Demand pressing = pressed(there, how.boost, trial);
+  Demand pressing = pressed(there, how.boost);
   for (double barrier = how.barrier; barrier > narrowest_barrier; barrier *= narrower) {
     work_.layers->barrier = barrier;
     const auto outcome = settle(pressing, Newton::Policy::descend, trial);
@@ -88,7 +87,7 @@ Newton::Outcome Continuation::settle_swollen(const Demand& there, Swelling how, 
   auto outcome = settle(pressing, Newton::Policy::descend, trial);
   while (how.boost > 1 && outcome != Newton::Outcome::stuck && outcome != Newton::Outcome::interrupted) {
     how.boost = std::max(1.0, fall * how.boost);
-    pressing = pressed(there, how.boost, trial);
+    pressing = pressed(there, how.boost);
     outcome = settle(pressing, Newton::Policy::descend, trial);
   }
   return outcome;

@@ -99,10 +99,7 @@ bool Equilibria::foretell(const State& at, State there) const {
   if (system_.contact() || system_.pressures()) return false;
   Lease lease(*this, at.positions, true);
   if (lease.work().home.rows() == 0) return false;
-  for (Index a = 0; a < system_.actuators(); ++a)
-    there.multipliers[a] = system_.measures().measures(a) && system_.measures().given_load(a)
-                               ? system_.measures().given(a, there.actuation[a])
-                               : system_.measures().unit(a) * there.multipliers[a];
+  for (Index a = 0; a < system_.actuators(); ++a) there.multipliers[a] *= system_.measures().unit(a);
   lease.work().foretold = std::move(there);
   return true;
 }
