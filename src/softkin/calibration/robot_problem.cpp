@@ -57,6 +57,18 @@ Vec3 force_of(const Model& model, const PoseColumn& column, const Points& positi
   return reactions(model, positions, deformation)[static_cast<std::size_t>(column.support)].force;
 }
 
+/// Is it a component of a vector, which turns with the frame: of a marker's place, a direction, a support's force?
+bool turns(const PoseColumn& column) {
+  return column.marker >= 0 || column.support >= 0 || points_along(column);
+}
+
+/// That vector, in the frame of the scene.
+Vec3 vector_of(const Model& model, const PoseColumn& column, const Points& positions, const Points& at_vertices) {
+  if (column.marker >= 0) return model.markers[static_cast<std::size_t>(column.marker)].at(positions);
+  return points_along(column) ? direction_of(model, column, positions)
+                              : force_of(model, column, positions, at_vertices);
+}
+
 double measure_of(const Model& model, const PoseColumn& column, const State& state) {
   return estimate::reading_at(model, column, state, {});
 }
@@ -302,17 +314,11 @@ void RobotProblem::compute(RobotPoint& point, const Changes* changes, Index pose
     double& value = point.computed(pose, c);
     if (found.report.status != Status::converged)
       value = nan;
-    else if (column.marker >= 0)
-      value = (point.frame.rotation *
-                   point.model->markers[static_cast<std::size_t>(column.marker)].at(found.state.positions) +
-               point.frame.place)[column.axis];
-    else if (points_along(column))
-      value = (point.frame.rotation * direction_of(*point.model, column, found.state.positions))[column.axis];
+    else if (turns(column))
+      value = (point.frame.rotation * vector_of(*point.model, column, found.state.positions, reactions.reactions) +
+               (column.marker >= 0 ? point.frame.place : Vec3(0, 0, 0)))[column.axis];
     else if (measures(column))
       value = measure_of(*point.model, column, found.state);
-    else if (column.support >= 0)
-      value = (point.frame.rotation *
-               force_of(*point.model, column, found.state.positions, reactions.reactions))[column.axis];
     else
       value = found.state.multipliers[column.actuator];
   }
@@ -330,11 +336,9 @@ void RobotProblem::add_slopes(RobotPoint& point, const Changes& changes, Index p
   slopes.setZero(static_cast<Index>(poses_.columns.size()), count);
   for (Index c = 0; c < static_cast<Index>(slopes.rows()); ++c) {
     const PoseColumn& column = poses_.columns[static_cast<std::size_t>(c)];
-    if (column.marker < 0 && column.support < 0 && !points_along(column)) continue;
+    if (!turns(column)) continue;
     const bool marker = column.marker >= 0;
-    const Vec3 place = marker ? point.model->markers[static_cast<std::size_t>(column.marker)].at(state.positions)
-                       : points_along(column) ? direction_of(*point.model, column, state.positions)
-                                              : force_of(*point.model, column, state.positions, reactions);
+    const Vec3 place = vector_of(*point.model, column, state.positions, reactions);
     for (Index i = 0; i < count; ++i) {
       const MeasuringFrame &more = changes.more[static_cast<std::size_t>(i)],
                            &less = changes.less[static_cast<std::size_t>(i)];
@@ -357,23 +361,16 @@ void RobotProblem::add_slopes(RobotPoint& point, const Changes& changes, Index p
         slopes(c, i) += own + estimate::reading_change(*point.model, column, state, {found.positions[k], none, {}});
         continue;
       }
-      if (points_along(column)) {
-        const Vec3 turned =
-            direction_slope(changes.perturbed[k], *point.model, column, state.positions, found.positions[k]);
-        slopes(c, i) += (point.frame.rotation * turned)[column.axis];
-        continue;
-      }
-      if (column.support >= 0) {
-        slopes(c, i) +=
-            (point.frame.rotation * force_of(*point.model, column, state.positions, found.reactions[k]))[column.axis];
-        continue;
-      }
-      if (column.marker < 0) {
+      if (!turns(column)) {
         slopes(c, i) += found.multipliers(column.actuator, p);
         continue;
       }
-      const Vec3 moved = marker_slope(*point.model, changes.perturbed[k], static_cast<std::size_t>(column.marker),
-                                      state.positions, found.positions[k]);
+      const Vec3 moved = points_along(column) ? direction_slope(changes.perturbed[k], *point.model, column,
+                                                                state.positions, found.positions[k])
+                         : column.support >= 0
+                             ? force_of(*point.model, column, state.positions, found.reactions[k])
+                             : marker_slope(*point.model, changes.perturbed[k], static_cast<std::size_t>(column.marker),
+                                            state.positions, found.positions[k]);
       slopes(c, i) += (point.frame.rotation * moved)[column.axis];
     }
   }
