@@ -69,6 +69,10 @@ inline Pillow pillow(const Sheet& sheet) {
   return made;
 }
 
+inline double across(const Pillow& made, const Points& positions) {
+  return (positions.row(made.top) - positions.row(made.bottom)).norm();
+}
+
 /// Film of E t = 250 N/mm that wrinkles, held at the middle of its underside and so that it cannot turn.
 inline RobotSpec film_robot(const Pillow& made, Control control = Control::load, double high = 5) {
   RobotSpec spec;

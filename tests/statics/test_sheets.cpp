@@ -32,10 +32,6 @@ struct Mylar {
   }
 };
 
-double across(const Pillow& made, const Points& positions) {
-  return (positions.row(made.top) - positions.row(made.bottom)).norm();
-}
-
 }  // namespace
 
 TEST(Sheets, DiscsBecomeMylarBalloons) {
@@ -144,7 +140,6 @@ TEST(Sheets, AreRefusedWithAReason) {
               }),
               "is flat at rest");
   expect_says(refusal([](RobotSpec& spec) { spec.fixed.pop_back(); }), "can turn about");
-  expect_says(refusal([](RobotSpec& spec) { spec.contact.emplace(); }), "layers beside the body");
   expect_says(refusal([](RobotSpec& spec) {
                 auto film = *spec.layers[0];
                 film.bending = true;

@@ -301,6 +301,17 @@ void expect_derivatives(const RobotSpec& spec, double shake, const Vec3& move, d
 
 }  // namespace
 
+/// Of film that bulges by less than 1 mm on either side, over a plate that it feels.
+RobotSpec film_over_plate() {
+  RobotSpec spec = film_robot(pillow(disc(20, 3)));
+  spec.contact = contact_below(0.8);
+  ObstacleSpec plate;
+  plate.name = "plate";
+  plate.shape = Halfspace{{0, 0, -1}, {0, 0, 1}};
+  spec.contact->obstacles = {plate};
+  return spec;
+}
+
 TEST(Terms, DerivativesAreThoseOfTheEnergies) {
   Seen seen{};
   expect_derivatives(layered_robot(), 0.1, Vec3::Zero(), 1e-5, seen);
@@ -320,6 +331,7 @@ TEST(Terms, DerivativesAreThoseOfTheEnergies) {
   for (const bool quadratic : {false, true})
     expect_derivatives(sheeted_robot(quadratic), 0.1, Vec3::Zero(), 1e-6, seen);
   expect_derivatives(film_robot(pillow(disc(20, 3))), 0.5, Vec3::Zero(), 1e-6, seen);
+  expect_derivatives(film_over_plate(), 0.5, Vec3::Zero(), 1e-6, seen);
   expect_derivatives(body_on_floor({10, 10, 10}, 0.3), 1e-3, {0, 0, -0.03}, 2e-8, seen);
   for (const bool quadratic : {false, true})
     expect_derivatives(block_on_rough_floor(0.3, {0.2, 0, -0.03}, 2, quadratic), 1e-3, {0.01, 0, -0.03}, 2e-8, seen);

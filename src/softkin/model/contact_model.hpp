@@ -41,10 +41,12 @@ struct ContactModel {
   std::vector<std::array<Index, 3>> triangles;  // vertices of the model, normals outwards; faces of order 2 as four
   std::vector<EdgeWithNode> edges;              // of faces of order 2, by their nodes
   std::vector<Index> part_of;                   // per triangle
+  std::array<Index, 2> sheets{0, 0};            // triangles from, to before: solid on neither side
   std::vector<double> area;                     // per vertex of the model: for which it carries pressure [mm^2]
   Index other_vertices = 0;                     // the last vertices of the model: of bodies and obstacles
 
   [[nodiscard]] bool any() const { return distance_mm > 0; }
+  [[nodiscard]] bool sheet(Index triangle) const { return triangle >= sheets[0] && triangle < sheets[1]; }
   [[nodiscard]] const ContactPair& pair(Index a, Index b) const {
     return pairs[static_cast<std::size_t>(a) * parts.size() + static_cast<std::size_t>(b)];
   }

@@ -46,7 +46,7 @@ struct Normal {
 class Problem {
  public:
   /// Of derivatives, relative: far below what readings tell.
-  static constexpr double enough = 1e-4;
+  static constexpr double enough = 1e-2;
 
   Problem(const Model& model, const std::vector<EstimatedUnknown>& unknowns, std::vector<PoseColumn> columns,
           const StaticsOptions& options, double slope_accuracy = enough);

@@ -88,12 +88,17 @@ double distance_of(const ContactSpec& spec, double diagonal) {
   return distance;
 }
 
-/// Smallest at rest, of what the body is made of [MPa].
-double softest(const Model& model) {
+/// Smallest at rest, of what the body is made of [MPa]; of sheets beside it that over the robot's diagonal which they
+/// resist with in their plane.
+double softest(const Compilation& c) {
+  const Model& model = c.model;
   double least = std::numeric_limits<double>::infinity();
   for (const auto* roles : {&model.tetrahedron_roles, &model.prism_roles})
     for (const ElementRole& role : *roles)
       least = std::min(least, stiffness_at_rest(model.materials[role.material].elastic).youngs_modulus_MPa);
+  for (const auto& layer : c.spec.layers)
+    if (!c.sheets.empty())
+      least = std::min(least, std::min(layer->e1, layer->e2) * layer->thickness_mm / model.diagonal_mm);
   return least;
 }
 
@@ -105,14 +110,19 @@ class FaceRegion {
     for (const Index v : region.vertices) held_[static_cast<std::size_t>(v)] = true;
   }
 
+  /// owner  its element; -1: none
   [[nodiscard]] bool has(const Triangle& face, Index owner) const {
+    if (owner < 0) return all_held(face);
     const auto tetrahedra = static_cast<Index>(c_.tetrahedron_of.size());
     const bool inside = owner < tetrahedra ? is_in(region_.tetrahedra, c_.tetrahedron_of[owner])
                                            : is_in(region_.prisms, c_.prism_of[owner - tetrahedra]);
-    return inside || std::all_of(face.begin(), face.end(), [this](Index v) { return held_[v]; });
+    return inside || all_held(face);
   }
 
  private:
+  [[nodiscard]] bool all_held(const Triangle& face) const {
+    return std::all_of(face.begin(), face.end(), [this](Index v) { return held_[v]; });
+  }
   static bool is_in(const std::vector<Index>& ascending, Index i) {
     return std::binary_search(ascending.begin(), ascending.end(), i);
   }
@@ -121,6 +131,20 @@ class FaceRegion {
   const Region& region_;
   std::vector<bool> held_;
 };
+
+/// Faces of layers beside the body, once each.
+void add_sheets(Compilation& c, std::vector<Index>& owners) {
+  ContactModel& contact = c.model.contact;
+  contact.sheets[0] = static_cast<Index>(contact.triangles.size());
+  std::set<Triangle> known;
+  for (const Triangle& t : c.sheets) {
+    Triangle key = t;
+    std::sort(key.begin(), key.end());
+    if (known.insert(key).second) contact.triangles.push_back(t);
+  }
+  contact.sheets[1] = static_cast<Index>(contact.triangles.size());
+  owners.resize(contact.triangles.size(), -1);
+}
 
 /// The robots, then the regions that pairs name, as they come.
 void add_robot_parts(Compilation& c, const ContactSpec& contact) {
@@ -141,6 +165,7 @@ void add_robot_parts(Compilation& c, const ContactSpec& contact) {
     }
   std::vector<Index> owners;
   model.triangles = boundary_triangles(c.model.tetrahedra, c.model.edge_nodes, c.model.prisms, &owners);
+  add_sheets(c, owners);
   std::vector<bool> any(model.parts.size());
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {
     std::size_t part = robots;
@@ -240,14 +265,10 @@ void check_contact(const Compilation& c) {
 
 void compile_contact(Compilation& c) {
   if (!c.spec.contact) return;
-  if (!c.sheets.empty())
-    throw InvalidInput(c.origin,
-                       "`contact` is of the surfaces of elements, and layers beside the body have none: "
-                       "leave it out, or the layers");
   const ContactSpec& spec = *c.spec.contact;
   ContactModel& contact = c.model.contact;
   contact.distance_mm = distance_of(spec, c.model.diagonal_mm);
-  contact.modulus_MPa = softest(c.model);
+  contact.modulus_MPa = softest(c);
   add_robot_parts(c, spec);
   if (!c.model.edge_nodes.empty()) contact.edges = edges_of_faces(contact.triangles);
   const double mean = spread_area(c.model);

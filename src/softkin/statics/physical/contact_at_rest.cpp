@@ -67,6 +67,22 @@ class RestingSurfaces {
   [[nodiscard]] bool may_touch(Index triangle, Index other) const {
     return model.contact.pair(part(triangle), part(other)).touch;
   }
+  [[nodiscard]] bool sheet(Index triangle) const { return model.contact.sheet(triangle); }
+  /// A sheet of a robot and more of that robot: where they lie on each other at rest they do not feel each other.
+  [[nodiscard]] bool sheet_on_own(Index triangle, Index other) const {
+    return (sheet(triangle) || sheet(other)) && solid(triangle) == solid(other);
+  }
+  /// Is a side, by its place, as near to a triangle at rest as what does not feel each other is?
+  [[nodiscard]] bool near_at_rest(const contact::Ends& side, Index triangle) const {
+    const contact::Corners& c = corners(triangle);
+    double least = std::numeric_limits<double>::infinity();
+    for (const Index v : side)
+      least = std::min(least, contact::vertex_triangle(contact::points_of(model.rest, {v, c[0], c[1], c[2]})).squared);
+    for (std::size_t k = 0; k < 3; ++k)
+      least = std::min(
+          least, contact::edge_edge(contact::points_of(model.rest, {side[0], side[1], c[k], c[(k + 1) % 3]})).squared);
+    return std::sqrt(least) < too_close * model.contact.distance_mm;
+  }
 
   const Model& model;
   Points points;
@@ -219,6 +235,7 @@ std::optional<Crossing> find_crossing(RestingSurfaces& at) {
       const contact::Corners& c = at.corners(t);
       const bool shared = std::any_of(c.begin(), c.end(), [p, q](Index v) { return v == p || v == q; });
       if (shared || found || !at.may_touch(own, t)) return;
+      if (at.sheet_on_own(own, t) && at.near_at_rest({p, q}, t)) return;
       if (const auto place = crossing(at.rest(p), at.rest(q), at.rest(c[0]), at.rest(c[1]), at.rest(c[2])))
         found = Crossing{own, t, *place};
     });
@@ -233,14 +250,14 @@ void refuse_touching(RestingSurfaces& at) {
   at.broad->find(at.points, least, at.team, near);
   for (const contact::Pair& pair : near.vertex_triangle) {
     const Index own = at.at_vertex(pair.first);
-    if (!at.may_touch(own, pair.second)) continue;
+    if (!at.may_touch(own, pair.second) || at.sheet_on_own(own, pair.second)) continue;
     const auto nodes = contact::nodes_of_vertex_triangle(at.surface, pair);
     if (contact::vertex_triangle(contact::points_of(at.points, nodes)).squared <= least * least)
       refuse_crossing(at, own, pair.second, at.rest(nodes[0]));
   }
   for (const contact::Pair& pair : near.edge_edge) {
     const Index own = at.at_edge(pair.first), other = at.at_edge(pair.second);
-    if (!at.may_touch(own, other)) continue;
+    if (!at.may_touch(own, other) || at.sheet_on_own(own, other)) continue;
     const auto x = contact::points_of(at.points, contact::nodes_of_edge_edge(at.surface, pair));
     const contact::Separation separation = contact::edge_edge(x);
     if (separation.squared <= least * least)
@@ -272,7 +289,9 @@ void refuse_inside(const RestingSurfaces& at) {
     if (part.halfspace || (part.rank == ContactRank::robot && part.robot != p)) continue;
     Solid solid{p, part.rank, triangles_where(at, [&](Index t) { return at.solid(t) == p; }), {}, {}};
     solid.points = one_of_each(rest, solid.triangles);
-    if (part.rank == ContactRank::robot || is_closed(rest, solid.triangles)) solid.tree.emplace(rest, solid.triangles);
+    std::vector<Triangle> around = triangles_where(at, [&](Index t) { return at.solid(t) == p && !at.sheet(t); });
+    const bool any = !around.empty() && (part.rank == ContactRank::robot || is_closed(rest, around));
+    if (any) solid.tree.emplace(rest, std::move(around));
     solids.push_back(std::move(solid));
   }
   for (const Solid& inner : solids)
@@ -357,6 +376,7 @@ void refuse_narrow_gaps(RestingSurfaces& at) {
   for (const contact::Pair& pair : near.vertex_triangle) {
     const Index own = at.at_vertex(pair.first);
     if (!at.of_robot(own) || at.solid(own) != at.solid(pair.second) || !at.may_touch(own, pair.second)) continue;
+    if (at.sheet_on_own(own, pair.second)) continue;
     const auto nodes = contact::nodes_of_vertex_triangle(at.surface, pair);
     const contact::FourPoints x = contact::points_of(at.points, nodes);
     const contact::Separation separation = contact::vertex_triangle(x);

@@ -72,7 +72,76 @@ void sort_candidates(Candidates& candidates) {
   std::sort(candidates.edge_edge.begin(), candidates.edge_edge.end());
 }
 
-void leave_out_neighbours(const Points& rest, contact::BroadPhase& broad, Team& team, ContactSurfaces& surfaces) {
+contact::Lists lying_together(const Points& rest, contact::BroadPhase& broad, Team& team,
+                              const ContactSurfaces& surfaces) {
+  const contact::Surface& surface = surfaces.surface;
+  const double near = 4 * surfaces.reach_mm * surfaces.reach_mm;
+  Candidates close;
+  broad.find(rest, 2 * surfaces.reach_mm, team, close);
+  std::vector<Pair> together;
+  const auto add = [&](const contact::Nodes& nodes, int of_first) {
+    for (int i = 0; i < of_first; ++i)
+      for (int j = of_first; j < 4; ++j) {
+        const Index a = nodes[static_cast<std::size_t>(i)], b = nodes[static_cast<std::size_t>(j)];
+        together.push_back({a, b});
+        together.push_back({b, a});
+      }
+  };
+  const auto sheet_at = [&](const contact::Lists& triangles, Index i) {
+    return surfaces.rules->sheet(
+        triangles.items[static_cast<std::size_t>(triangles.begin[static_cast<std::size_t>(i)])]);
+  };
+  for (const Pair& pair : close.vertex_triangle) {
+    const contact::Nodes nodes = nodes_of_vertex_triangle(surface, pair);
+    if ((sheet_at(surface.vertex_triangles, pair.first) || surfaces.rules->sheet(pair.second)) &&
+        same_robot(surfaces, surfaces.vertex_part, pair.first, surfaces.triangle_part, pair.second) &&
+        contact::vertex_triangle(points_of(rest, nodes)).squared < near)
+      add(nodes, 1);
+  }
+  for (const Pair& pair : close.edge_edge) {
+    const contact::Nodes nodes = nodes_of_edge_edge(surface, pair);
+    if ((sheet_at(surface.edge_triangles, pair.first) || sheet_at(surface.edge_triangles, pair.second)) &&
+        same_robot(surfaces, surfaces.edge_part, pair.first, surfaces.edge_part, pair.second) &&
+        contact::edge_edge(points_of(rest, nodes)).squared < near)
+      add(nodes, 2);
+  }
+  return lists_of(static_cast<std::size_t>(rest.rows()), together);
+}
+
+namespace {
+
+/// Triangles and edges at vertices that lie on a vertex or on an end of an edge.
+void add_lying_together(const contact::Surface& surface, const contact::Lists& together, std::vector<Pair>& triangles,
+                        std::vector<Pair>& edges) {
+  if (together.items.empty()) return;
+  const auto each = [](const contact::Lists& lists, Index of, const auto& visit) {
+    for (Index i = lists.begin[static_cast<std::size_t>(of)]; i < lists.begin[static_cast<std::size_t>(of) + 1]; ++i)
+      visit(lists.items[static_cast<std::size_t>(i)]);
+  };
+  std::vector<Pair> around, at;  // of every row its edges and triangles
+  for (std::size_t e = 0; e < surface.edges.size(); ++e)
+    for (const Index v : surface.edges[e]) around.push_back({v, static_cast<Index>(e)});
+  for (std::size_t t = 0; t < surface.triangles.size(); ++t)
+    for (const Index v : surface.triangles[t]) at.push_back({v, static_cast<Index>(t)});
+  const contact::Lists edges_at = lists_of(together.begin.size() - 1, around),
+                       triangles_at = lists_of(together.begin.size() - 1, at);
+  for (std::size_t v = 0; v < surface.vertices.size(); ++v)
+    each(together, surface.vertices[v], [&](Index other) {
+      each(triangles_at, other, [&](Index t) { triangles.push_back({static_cast<Index>(v), t}); });
+    });
+  for (std::size_t e = 0; e < surface.edges.size(); ++e)
+    for (const Index v : surface.edges[e])
+      each(together, v, [&](Index other) {
+        each(edges_at, other, [&](Index f) {
+          edges.push_back({std::min(static_cast<Index>(e), f), std::max(static_cast<Index>(e), f)});
+        });
+      });
+}
+
+}  // namespace
+
+void leave_out_neighbours(const Points& rest, contact::BroadPhase& broad, Team& team, ContactSurfaces& surfaces,
+                          const contact::Lists& together) {
   const contact::Surface& surface = surfaces.surface;
   const double near = 4 * surfaces.reach_mm * surfaces.reach_mm;
   Candidates close;
@@ -89,6 +158,7 @@ void leave_out_neighbours(const Points& rest, contact::BroadPhase& broad, Team& 
     if (same_robot(surfaces, surfaces.edge_part, pair.first, surfaces.edge_part, pair.second) &&
         contact::edge_edge(points_of(rest, nodes_of_edge_edge(surface, pair))).squared < near)
       edges.push_back(pair);
+  add_lying_together(surface, together, triangles, edges);
   surfaces.unfelt_triangles = lists_of(surface.vertices.size(), triangles);
   surfaces.unfelt_edges = lists_of(surface.edges.size(), edges);
 }

@@ -50,8 +50,17 @@ struct ContactPush {
 /// Closeness of a robot to itself at rest is no contact: none of its vertices and edges feels what is nearer than twice
 /// the reach at rest.
 ///
+/// broad     of that surface
+/// together  of lying_together
+void leave_out_neighbours(const Points& rest, contact::BroadPhase& broad, Team& team, ContactSurfaces& surfaces,
+                          const contact::Lists& together = {});
+
+/// Sheets of a robot that lie on each other at rest, or on its body, pass through each other there: of every row of the
+/// positions vertices of features that are nearer at rest than twice the reach to one of which it is.
+///
 /// broad  of that surface
-void leave_out_neighbours(const Points& rest, contact::BroadPhase& broad, Team& team, ContactSurfaces& surfaces);
+[[nodiscard]] contact::Lists lying_together(const Points& rest, contact::BroadPhase& broad, Team& team,
+                                            const ContactSurfaces& surfaces);
 
 /// Potential between surfaces: the barrier of the distance of every vertex to the surface before it, for the area that
 /// the vertex carries, and of edges that cross. Each vertex counts the nearest features once, by inclusion and

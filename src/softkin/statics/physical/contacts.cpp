@@ -50,7 +50,13 @@ Contacts::Contacts(const Model& model)
   margin_mm_ = margin_share * surfaces_.reach_mm;
   Team alone(1);
   broad_ = std::make_unique<contact::BroadPhase>(surfaces_.surface, rest_, exclusions());
-  leave_out_neighbours(rest_, *broad_, alone, surfaces_);
+  contact::Lists together;
+  if (const auto& [first, end] = model.contact.sheets; first < end) {
+    contact::Exclusions lying = exclusions();
+    together = lying.neighbours = lying_together(rest_, *broad_, alone, surfaces_);
+    broad_ = std::make_unique<contact::BroadPhase>(surfaces_.surface, rest_, std::move(lying));
+  }
+  leave_out_neighbours(rest_, *broad_, alone, surfaces_, together);
   potential_ = std::make_unique<ContactPotential>(surfaces_, rest_);
 }
 

@@ -41,8 +41,8 @@ constexpr double least_jump = 0.9, finest = 0.02;
 /// A longer step that inverts an element is made shorter: laws that have an energy for it have a mirrored equilibrium.
 constexpr double most_inverting = 0.01;
 /// How smoothly sheets that were flat wrinkle at last, and from one solve to the next; how pressures fall from one to
-/// the next.
-constexpr double narrowest_barrier = 1e-11, narrower = 0.1, fall = 0.2;
+/// the next, and by how little where that leads nowhere.
+constexpr double narrowest_barrier = 1e-11, narrower = 0.1, fall = 0.2, gentlest = 0.9;
 /// Share of normal forces whose friction gives way, from which on it is told where the way ends.
 constexpr double worth_telling = 0.5;
 
@@ -75,22 +75,51 @@ Demand Continuation::pressed(Demand demand, double times) const {
 }
 
 /// Of sheets that were flat: first what wrinkles does so without kinks, then with ever sharper ones, at last with its
-/// own; under pressures that stretch it, which fall to those that are asked for.
+/// own; under pressures that stretch it, which fall to those that are asked for: from a shape that leads nowhere, back
+/// to the one before, by less.
 Newton::Outcome Continuation::settle_swollen(const Demand& there, Swelling how, Iterate& trial) {
-  Demand pressing = pressed(there, how.boost);
-  for (double barrier = how.barrier; barrier > narrowest_barrier; barrier *= narrower) {
+  const auto settled = [&](double barrier, double times) {
     work_.layers->barrier = barrier;
-    const auto outcome = settle(pressing, Newton::Policy::descend, trial);
+    const auto outcome = settle(pressed(there, times), Newton::Policy::descend, trial);
     work_.layers->barrier = 0;
+    return outcome;
+  };
+  double sharper = narrower;
+  for (double barrier = how.barrier; barrier > narrowest_barrier;) {
+    const Iterate last = trial;
+    const auto outcome = settled(barrier, how.boost);
     if (outcome == Newton::Outcome::interrupted) return outcome;
+    if (outcome == Newton::Outcome::stuck && system_.contact() && barrier < how.barrier && sharper < gentlest) {
+      barrier /= sharper;
+      sharper = std::sqrt(sharper);
+      trial = last;
+    }
+    barrier *= sharper;
   }
-  auto outcome = settle(pressing, Newton::Policy::descend, trial);
+  auto outcome = settled(0, how.boost);
+  double by = fall;
   while (how.boost > 1 && outcome != Newton::Outcome::stuck && outcome != Newton::Outcome::interrupted) {
-    how.boost = std::max(1.0, fall * how.boost);
-    pressing = pressed(there, how.boost);
-    outcome = settle(pressing, Newton::Policy::descend, trial);
+    const Iterate last = trial;
+    const double next = std::max(1.0, by * how.boost);
+    outcome = settled(0, next);
+    if (outcome == Newton::Outcome::stuck && by < gentlest) {
+      trial = last;
+      outcome = Newton::Outcome::converged;
+      by = std::sqrt(by);
+      continue;
+    }
+    how.boost = next;
+    by = std::max(fall, by * by);
   }
   return outcome;
+}
+
+/// Does what moves run into sheets that lie flat?
+bool Continuation::runs_into_flat(const Demand& there, const Iterate& at) {
+  if (!system_.contact()) return false;
+  Points held = at.positions;
+  system_.placement().hold(there, held);
+  return system_.contacts()->longest_step(at.positions, held, *work_.contacts, team_) < 1;
 }
 
 /// One step; trial begins at `at` and ends at the equilibrium.
@@ -98,6 +127,7 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
                                    Iterate& trial) {
   swollen_ = false;
   if (system_.limp() && system_.layers()->flat(at.positions)) {
+    if (runs_into_flat(there, at)) return Newton::Outcome::blocked;
     const std::optional<Swelling> swelling = swell(system_, there, active_, trial, work_, team_);
     swollen_ = swelling.has_value();
     predicted_ = begun_ = trial.positions;
@@ -282,7 +312,8 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   const bool unstable = outcome == Newton::Outcome::unstable;
   if (newton_.inverted() && !last_.inverted && length > most_inverting) reject("an element is inverted");
   // a body that nothing holds has no stiffness, and so no step
-  if (system_.surroundings().any_body() && !newton_.balanced()) reject("a body is out of balance");
+  if (outcome != Newton::Outcome::stuck && system_.surroundings().any_body() && !newton_.balanced())
+    reject("a body is out of balance");
 
   std::optional<Status> end;
   const double longest = longest_step(snap, unstable);

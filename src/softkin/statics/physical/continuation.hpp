@@ -137,6 +137,7 @@ class Continuation {
   std::optional<Status> out_of_patience(const Iterate& at);
   bool release(const Demand& there, Iterate& at, bool contradicting);
   Newton::Outcome settle_swollen(const Demand& there, Swelling how, Iterate& trial);
+  [[nodiscard]] bool runs_into_flat(const Demand& there, const Iterate& at);
   [[nodiscard]] Demand pressed(Demand demand, double times) const;
   void give_loads(const Demand& demand, Iterate& at) const;
   Newton::Outcome step(const Demand& here, const Demand& there, double length, const Iterate& at, Iterate& trial);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <softkin/statics/physical/contact_steps.hpp>
 #include <softkin/statics/physical/swelling.hpp>
 
 namespace softkin::physical {
@@ -16,6 +17,9 @@ constexpr double least_strain = 1e-3;
 /// Of the first residual, with which its equations are solved.
 constexpr double begin_accuracy = 1e-3;
 constexpr int begin_rounds = 2000;
+/// Where something stands in the way: rounds of going on, and of what is free then how much is gone.
+constexpr int way_rounds = 40;
+constexpr double of_free = 0.9;
 
 /// What pushes: loads and what chambers are filled with, whatever that takes.
 Eigen::VectorXd push_of(const System& system, const Demand& there, const std::vector<bool>& active, const Iterate& at,
@@ -88,6 +92,24 @@ class Drum {
   std::vector<bool> alone_;
 };
 
+/// Moves as far as nothing passes through anything: what comes near something stops there, all else goes on.
+void move_clear(const System& system, Points moves, Points& positions, Workspace& work, Team& team) {
+  if (!system.contact()) {
+    positions += moves;
+    return;
+  }
+  const Contacts& contacts = *system.contacts();
+  for (int round = 0; round < way_rounds && !moves.isZero(0); ++round) {
+    const double free = contacts.longest_step(positions, positions + moves, *work.contacts, team);
+    const double gone = free < 1 ? of_free * free : 1;
+    positions += gone * moves;
+    moves *= 1 - gone;
+    contacts.find(positions, *work.contacts, team);
+    for (const ContactPotential::Term& term : work.contacts->terms)
+      for (const Index v : term.nodes) moves.row(v).setZero();
+  }
+}
+
 }  // namespace
 
 std::optional<Swelling> swell(const System& system, const Demand& there, const std::vector<bool>& active, Iterate& at,
@@ -102,7 +124,7 @@ std::optional<Swelling> swell(const System& system, const Demand& there, const s
   const Points moves = Drum(system, begin.positions).moves(push);
   const double slope = system.layers()->mean_slope(moves);  // at 1 N/mm: the tension at which it were 1
   if (!(slope > 0)) return std::nullopt;
-  begin.positions += mean_slope / slope * moves;
+  move_clear(system, mean_slope / slope * moves, begin.positions, work, team);
   at = std::move(begin);
   const double strain = slope / system.layers()->stiffness_N_mm();
   return Swelling{std::min(widest_barrier, smooth * std::pow(std::max(strain, least_strain), 2)),
