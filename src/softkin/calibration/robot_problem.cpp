@@ -108,9 +108,14 @@ struct RobotProblem::Changes {
 
 RobotProblem::RobotProblem(const NumberedRobot& robot, const MeasuredPoses& poses, const RobotFitOptions& options,
                            const FitCallback& progress)
-    : robot_(robot), poses_(poses), options_(options), progress_(progress) {
-  for (Index c = 0; c < static_cast<Index>(poses.columns.size()); ++c) {
-    const PoseColumn& column = poses.columns[static_cast<std::size_t>(c)];
+    : robot_(robot),
+      options_(options),
+      progress_(progress),
+      first_model_(std::make_shared<const Model>(robot.model(robot.start()))),
+      dots_(poses, *first_model_, options.match_within_mm),
+      poses_(dots_.poses()) {
+  for (Index c = 0; c < static_cast<Index>(poses_.columns.size()); ++c) {
+    const PoseColumn& column = poses_.columns[static_cast<std::size_t>(c)];
     const auto same = std::find_if(groups_.begin(), groups_.end(), [&](const Group& group) {
       return column.marker >= 0 && group.marker == column.marker;
     });
@@ -119,16 +124,31 @@ RobotProblem::RobotProblem(const NumberedRobot& robot, const MeasuredPoses& pose
     else
       same->columns.push_back(c);
   }
-  first_model_ = std::make_shared<const Model>(robot.model(robot.start()));
   if (first_model_->formulation != Formulation::physical)
     throw InvalidInput({.file = first_model_->name},
                        "a robot is fitted in the physical formulation; this scene is of target shapes");
   first_statics_ = std::make_shared<const Statics>(*first_model_);
+  for (Index pose = 0; pose < static_cast<Index>(poses_.commands.size()); ++pose)
+    if (fits(pose)) dots_seen_ += dots_.seen(pose);
+  count();
+}
+
+void RobotProblem::count() {
+  readings_ = rows_ = 0;
   each_reading([&](Index pose, const Group& group, Index) {
     ++readings_;
     for (const Index c : group.columns) rows_ += read(pose, c);
   });
-  for (const FittedNumber& number : robot.numbers()) rows_ += number.deviation.has_value();
+  for (const FittedNumber& number : robot_.numbers()) rows_ += number.deviation.has_value();
+}
+
+bool RobotProblem::match(const RobotPoint& point, bool strict) {
+  strict_ = strict_ || strict;
+  std::vector<bool> counts(poses_.commands.size());
+  for (std::size_t pose = 0; pose < counts.size(); ++pose) counts[pose] = fits(static_cast<Index>(pose));
+  const bool changed = dots_.match(point.computed, strict_ ? nullptr : &counts);
+  count();
+  return changed;
 }
 
 bool RobotProblem::reads_forces() const {
