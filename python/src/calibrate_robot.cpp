@@ -17,6 +17,7 @@ struct PosesTask {
   std::string scene, poses, loss = "squares";
   std::vector<std::string> numbers, changes;
   std::vector<double> deviations;  // per kind of reading; 0: by what is left
+  double match_within_mm = 0;
   int keep = 0, threads = 0;
   bool ordered = false;
 };
@@ -43,13 +44,14 @@ RobotCalibration fit(const PosesTask& task,
     for (const std::string& text : task.numbers) numbers.push_back(calibration::parse_fitted_number("fit", text));
     const calibration::NumberedRobot robot(asked, numbers, inputs);
     const Model model = robot.model(robot.start());
-    const MeasuredPoses poses = read_measured_poses(task.poses, model);
+    const MeasuredPoses poses = read_measured_poses(task.poses, model, true);
     calibration::RobotFitOptions options;
     for (std::size_t i = 0; i < std::size(calibration::loss_names); ++i)
       if (task.loss == calibration::loss_names[i]) options.loss = static_cast<calibration::Loss>(i);
     for (std::size_t k = 0; k < readings; ++k) options.deviations[k] = task.deviations.at(k);
     options.kept = calibration::kept_aside("keep", task.keep, poses.commands.size());
     options.ordered = task.ordered;
+    options.match_within_mm = task.match_within_mm;
     options.threads = task.threads;
     const auto progress = [&](const calibration::FitProgress& p) {
       iteration = p.iteration;
@@ -62,7 +64,7 @@ RobotCalibration fit(const PosesTask& task,
     if (found.status == Status::interrupted) return;
     const calibration::RobotFitReport report{robot, poses, options, found, model};
     told = RobotCalibration{robot_fit_text(report), robot_fit_json(report), robot_fit_table(report), {}};
-    for (const PoseColumn& column : poses.columns)
+    for (const PoseColumn& column : found.named.columns)
       if (column.marker >= 0 && !told->plot) told->plot = robot_fit_plot(report);
   };
   watch.watch(work, [&] {
@@ -82,6 +84,7 @@ void bind_calibrate_robot(nb::module_& module) {
       .def_rw("numbers", &PosesTask::numbers)
       .def_rw("changes", &PosesTask::changes)
       .def_rw("deviations", &PosesTask::deviations)
+      .def_rw("match_within_mm", &PosesTask::match_within_mm)
       .def_rw("keep", &PosesTask::keep)
       .def_rw("ordered", &PosesTask::ordered)
       .def_rw("threads", &PosesTask::threads);
