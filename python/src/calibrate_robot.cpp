@@ -3,6 +3,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <softkin/calibration/robot_report.hpp>
+#include <softkin/core/error.hpp>
 #include <softkin/io/table/measured_poses.hpp>
 
 #include "bindings.hpp"
@@ -26,7 +27,8 @@ struct PosesTask {
 struct RobotCalibration {
   std::string text, json;
   Table readings;
-  std::optional<Plot> plot;  // none: no marker was measured
+  std::optional<Plot> plot;  // none: there is nothing to plot
+  std::string no_plot{};     // why
 };
 
 RobotCalibration fit(const PosesTask& task,
@@ -64,8 +66,11 @@ RobotCalibration fit(const PosesTask& task,
     if (found.status == Status::interrupted) return;
     const calibration::RobotFitReport report{robot, poses, options, found, model};
     told = RobotCalibration{robot_fit_text(report), robot_fit_json(report), robot_fit_table(report), {}};
-    for (const PoseColumn& column : found.named.columns)
-      if (column.marker >= 0 && !told->plot) told->plot = robot_fit_plot(report);
+    try {
+      told->plot = robot_fit_plot(report);
+    } catch (const InvalidInput& error) {
+      told->no_plot = error.what();
+    }
   };
   watch.watch(work, [&] {
     if (tell) (*tell)(iteration.load(), rms_mm.load());
@@ -95,7 +100,7 @@ void bind_calibrate_robot(nb::module_& module) {
       .def(
           "save_plot",
           [](const RobotCalibration& c, const std::string& path) {
-            if (!c.plot) throw nb::value_error("a plot shows markers, and none was measured");
+            if (!c.plot) throw InvalidInput(c.no_plot);
             write_svg(path, *c.plot);
           },
           nb::arg("path"));

@@ -240,13 +240,14 @@ def test_a_robot_from_its_poses(examples: Path, command: str, tmp_path: Path) ->
 def test_dots_without_names(examples: Path, command: str, tmp_path: Path) -> None:
     scenes = examples.parent / "docs" / "scenes"
     scene, poses = scenes / "finger_order_1.yaml", scenes / "finger_dots.csv"
-    found = calibrate.robot(scene, poses, fit={"materials.body.youngs_modulus": (45, 10, 100), "base.z": None}, match_within_mm=5)
+    fit = {"materials.body.youngs_modulus": (45, 10, 100), "base.ry": None, "base.z": None}
+    found = calibrate.robot(scene, poses, fit=fit, match_within_mm=5)
     assert found.converged
     assert found.values["materials.body.youngs_modulus"] == pytest.approx(38, abs=0.1)
     assert found.report["dots"] == {"within_mm": 5.0, "seen": 14, "matched": 13, "doubtful": 0}
     assert found.report["poses"][0]["dots"]["dot1"]["marker"] == "end"
     assert found.report["poses"][3]["dots"]["dot1"]["marker"] is None
-    options = ["--fit", "materials.body.youngs_modulus=45,10,100", "--fit", "base.z", "--match-within", "5", "--json"]
+    options = ["--fit", "materials.body.youngs_modulus=45,10,100", "--fit", "base.ry", "--fit", "base.z", "--match-within", "5", "--json"]
     printed = json.loads(subprocess.run([command, "calibrate", "robot", scene, poses, *options], capture_output=True, check=True).stdout)
     assert printed["numbers"] == found.report["numbers"]
     found.save_plot(tmp_path / "dots.svg")

@@ -138,8 +138,13 @@ std::optional<RobotPoint> first_point(const NumberedRobot& robot, RobotProblem& 
   std::optional<RobotPoint> point = problem.solve(start, nullptr, true);
   if (!point) return point;
   const VectorXd aligned = problem.aligned(*point);
-  if (aligned != start) point = problem.solve(aligned, &*point, true);
-  if (point && point->refusal.empty()) problem.match(*point, false);
+  if (aligned != start) {
+    std::optional<RobotPoint> next = problem.solve(aligned, &*point, true);
+    if (!next) return next;
+    const bool worse = !next->refusal.empty() || next->without_equilibrium > point->without_equilibrium;
+    if (!worse) point = std::move(next);
+  }
+  problem.match(*point, false);
   return point;
 }
 
