@@ -120,8 +120,8 @@ void add_options(CLI::App& command, RobotOptions& options) {
             CLI::Range(0, 100000).description(""));
   command.add_flag(
       "--ordered", options.ordered,
-      "The poses were taken in this order: where something rubs,\neach goes on from the one before, the first "
-      "from rest;\nelse each from rest");
+      "The poses were taken in this order: where something rubs or a\nmotor has play, each goes on from the one "
+      "before, the first\nfrom rest; else each from rest");
   add_value(command, "--report", options.report, "F.json", "All that is told, as JSON");
   add_value(command, "--table", options.table, "F.csv", "Every reading, measured and computed");
   add_value(command, "--plot", options.plot, "F.svg", "Measured and computed markers");

@@ -95,7 +95,8 @@ def robot(
                component of a direction as read; None: by what is left
     match_within_mm   how far a dot without a name may be from the marker that it is [mm]
     keep       poses that are not fitted to but foretold, spread evenly
-    ordered    where something rubs: each pose goes on from the one before, the first from rest; else each from rest
+    ordered    where something rubs or a motor has play: each pose goes on from the one before, the first from rest;
+               else each from rest
     threads    poses side by side; 0: as many as the machine has
     progress   called with the iteration and the root mean square of the markers [mm], now and then
     raises     InvalidInput naming the file, line and column, or the number

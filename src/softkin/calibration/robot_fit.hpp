@@ -20,8 +20,8 @@ struct RobotFitOptions {
   std::array<double, readings> deviations{};  // of each kind of reading; 0: told by what is left
   int max_iterations = 30;
   int threads = 0;             // poses side by side; 0: as many as the machine has
-  bool ordered = false;        // where something rubs: each pose goes on from the one before, the first from rest; else
-                               // each from rest
+  bool ordered = false;        // where something rubs or a motor has play: each pose goes on from the one before, the
+                               // first from rest; else each from rest
   std::vector<bool> kept{};    // per pose: not fitted to; empty: none
   double match_within_mm = 0;  // how far a dot without a name may be from its marker; 0: there are no such dots
 };

@@ -12,6 +12,7 @@ struct RobotPoint {
   std::shared_ptr<const Model> model;
   std::shared_ptr<const Statics> statics;
   MeasuringFrame frame;
+  std::vector<Actuation> acting;        // per pose: what acts of its commands
   std::vector<Equilibrium> equilibria;  // per pose
   Eigen::MatrixXd computed;             // as MeasuredPoses::values; NaN where a pose has no equilibrium
   std::vector<Eigen::MatrixXd> slopes;  // per pose: of the computed by the numbers; none: not asked for
@@ -92,6 +93,9 @@ class RobotProblem {
   void put(RobotPoint& point, const Eigen::VectorXd& values) const;
   struct Changes;
   void compute(RobotPoint& point, const Changes* changes, Index pose) const;
+  [[nodiscard]] std::vector<Actuation> acting(const Model& model) const;
+  void add_changes_of_acting(ParameterSensitivity& found, const RobotPoint& point, const Changes& changes,
+                             Index pose) const;
   void add_slopes(RobotPoint& point, const Changes& changes, Index pose, const Points& reactions) const;
   bool each_pose(int most_threads, const std::function<bool(Index, const ProgressCallback&)>& act);
 
