@@ -22,6 +22,7 @@ struct RobotOptions {
   std::string poses, report, table, plot, loss = "squares";
   std::vector<std::string> numbers;
   std::array<std::optional<double>, readings> deviations{};
+  std::optional<double> match_within_mm;
   int keep = 0;
   bool ordered = false;
   bool json = false, resume = false, may_replace = false;
@@ -40,6 +41,7 @@ calibration::RobotFitOptions fit_options(const RobotOptions& options, std::size_
   for (std::size_t k = 0; k < readings; ++k) fit.deviations[k] = options.deviations[k].value_or(0);
   fit.kept = calibration::kept_aside("--keep", options.keep, poses);
   fit.ordered = options.ordered;
+  fit.match_within_mm = options.match_within_mm.value_or(0);
   return fit;
 }
 
@@ -63,7 +65,7 @@ int calibrate_robot(const RobotOptions& options) {
   if (options.resume) leave_to_resume(outputs, options.report);
   check_outputs(outputs, inputs, options.may_replace);
   const Model model = robot.model(robot.start());
-  const MeasuredPoses poses = read_measured_poses(options.poses, model);
+  const MeasuredPoses poses = read_measured_poses(options.poses, model, true);
   const calibration::RobotFitOptions fit = fit_options(options, poses.commands.size());
   const OutputFolders folders(outputs);
   ProgressLine line;
@@ -78,7 +80,7 @@ int calibrate_robot(const RobotOptions& options) {
                                           ? calibration::predict_poses(robot, poses, robot.start(), fit, progress)
                                           : calibration::fit_robot(robot, poses, fit, progress);
   line.clear();
-  if (found.values.size() != static_cast<Index>(numbers.size())) {
+  if (found.computed.equilibria.empty()) {
     std::fprintf(stderr, "softkin: %s before the poses were solved once; nothing was written\n", why_stopped().c_str());
     return not_converged;
   }
@@ -111,12 +113,15 @@ void add_options(CLI::App& command, RobotOptions& options) {
             "move",
             one_of({"squares", "huber", "cauchy"}));
   add_deviations(command, options.deviations, " (default: by what is left)");
+  add_value(command, "--match-within", options.match_within_mm, "MM",
+            "Match dots without names (dot1_x_mm, ...) to the markers that\nthey are, within this distance",
+            positive("a number > 0 in mm"));
   add_value(command, "--keep", options.keep, "N", "Poses that are not fitted to but foretold, spread evenly",
             CLI::Range(0, 100000).description(""));
   command.add_flag(
       "--ordered", options.ordered,
-      "The poses were taken in this order: where something rubs,\neach goes on from the one before, the first "
-      "from rest;\nelse each from rest");
+      "The poses were taken in this order: where something rubs or a\nmotor has play, each goes on from the one "
+      "before, the first\nfrom rest; else each from rest");
   add_value(command, "--report", options.report, "F.json", "All that is told, as JSON");
   add_value(command, "--table", options.table, "F.csv", "Every reading, measured and computed");
   add_value(command, "--plot", options.plot, "F.svg", "Measured and computed markers");

@@ -3,6 +3,7 @@
 #include <nanobind/stl/vector.h>
 
 #include <softkin/calibration/robot_report.hpp>
+#include <softkin/core/error.hpp>
 #include <softkin/io/table/measured_poses.hpp>
 
 #include "bindings.hpp"
@@ -17,6 +18,7 @@ struct PosesTask {
   std::string scene, poses, loss = "squares";
   std::vector<std::string> numbers, changes;
   std::vector<double> deviations;  // per kind of reading; 0: by what is left
+  double match_within_mm = 0;
   int keep = 0, threads = 0;
   bool ordered = false;
 };
@@ -25,7 +27,8 @@ struct PosesTask {
 struct RobotCalibration {
   std::string text, json;
   Table readings;
-  std::optional<Plot> plot;  // none: no marker was measured
+  std::optional<Plot> plot;  // none: there is nothing to plot
+  std::string no_plot{};     // why
 };
 
 RobotCalibration fit(const PosesTask& task,
@@ -43,13 +46,14 @@ RobotCalibration fit(const PosesTask& task,
     for (const std::string& text : task.numbers) numbers.push_back(calibration::parse_fitted_number("fit", text));
     const calibration::NumberedRobot robot(asked, numbers, inputs);
     const Model model = robot.model(robot.start());
-    const MeasuredPoses poses = read_measured_poses(task.poses, model);
+    const MeasuredPoses poses = read_measured_poses(task.poses, model, true);
     calibration::RobotFitOptions options;
     for (std::size_t i = 0; i < std::size(calibration::loss_names); ++i)
       if (task.loss == calibration::loss_names[i]) options.loss = static_cast<calibration::Loss>(i);
     for (std::size_t k = 0; k < readings; ++k) options.deviations[k] = task.deviations.at(k);
     options.kept = calibration::kept_aside("keep", task.keep, poses.commands.size());
     options.ordered = task.ordered;
+    options.match_within_mm = task.match_within_mm;
     options.threads = task.threads;
     const auto progress = [&](const calibration::FitProgress& p) {
       iteration = p.iteration;
@@ -62,8 +66,11 @@ RobotCalibration fit(const PosesTask& task,
     if (found.status == Status::interrupted) return;
     const calibration::RobotFitReport report{robot, poses, options, found, model};
     told = RobotCalibration{robot_fit_text(report), robot_fit_json(report), robot_fit_table(report), {}};
-    for (const PoseColumn& column : poses.columns)
-      if (column.marker >= 0 && !told->plot) told->plot = robot_fit_plot(report);
+    try {
+      told->plot = robot_fit_plot(report);
+    } catch (const InvalidInput& error) {
+      told->no_plot = error.what();
+    }
   };
   watch.watch(work, [&] {
     if (tell) (*tell)(iteration.load(), rms_mm.load());
@@ -82,6 +89,7 @@ void bind_calibrate_robot(nb::module_& module) {
       .def_rw("numbers", &PosesTask::numbers)
       .def_rw("changes", &PosesTask::changes)
       .def_rw("deviations", &PosesTask::deviations)
+      .def_rw("match_within_mm", &PosesTask::match_within_mm)
       .def_rw("keep", &PosesTask::keep)
       .def_rw("ordered", &PosesTask::ordered)
       .def_rw("threads", &PosesTask::threads);
@@ -92,7 +100,7 @@ void bind_calibrate_robot(nb::module_& module) {
       .def(
           "save_plot",
           [](const RobotCalibration& c, const std::string& path) {
-            if (!c.plot) throw nb::value_error("a plot shows markers, and none was measured");
+            if (!c.plot) throw InvalidInput(c.no_plot);
             write_svg(path, *c.plot);
           },
           nb::arg("path"));

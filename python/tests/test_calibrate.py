@@ -237,6 +237,27 @@ def test_a_robot_from_its_poses(examples: Path, command: str, tmp_path: Path) ->
     assert "measured" in (tmp_path / "fit.svg").read_text()
 
 
+def test_dots_without_names(examples: Path, command: str, tmp_path: Path) -> None:
+    scenes = examples.parent / "docs" / "scenes"
+    scene, poses = scenes / "finger_order_1.yaml", scenes / "finger_dots.csv"
+    fit = {"materials.body.youngs_modulus": (45, 10, 100), "base.ry": None, "base.z": None}
+    found = calibrate.robot(scene, poses, fit=fit, match_within_mm=5)
+    assert found.converged
+    assert found.values["materials.body.youngs_modulus"] == pytest.approx(38, abs=0.1)
+    assert found.report["dots"] == {"within_mm": 5.0, "seen": 14, "matched": 13, "doubtful": 0}
+    assert found.report["poses"][0]["dots"]["dot1"]["marker"] == "end"
+    assert found.report["poses"][3]["dots"]["dot1"]["marker"] is None
+    options = ["--fit", "materials.body.youngs_modulus=45,10,100", "--fit", "base.ry", "--fit", "base.z", "--match-within", "5", "--json"]
+    printed = json.loads(subprocess.run([command, "calibrate", "robot", scene, poses, *options], capture_output=True, check=True).stdout)
+    assert printed["numbers"] == found.report["numbers"]
+    found.save_plot(tmp_path / "dots.svg")
+    assert "no marker" in (tmp_path / "dots.svg").read_text()
+    with pytest.raises(softkin.InvalidInput, match="dots without names"):
+        calibrate.robot(scene, poses, fit=["base.z"])
+    with pytest.raises(ValueError, match="match_within_mm"):
+        calibrate.robot(scene, poses, match_within_mm=0)
+
+
 def test_a_robot_from_its_poses_refuses(examples: Path, tmp_path: Path) -> None:
     scenes = examples.parent / "docs" / "scenes"
     scene, poses = scenes / "finger_order_1.yaml", scenes / "finger_poses.csv"

@@ -25,6 +25,19 @@ def test_path(robot: softkin.Robot) -> None:
     assert [shape.fingerprint for shape in by_name] == [shape.fingerprint for shape in [first, *rest]]
 
 
+def test_a_motor_with_play_along_a_path() -> None:
+    pull = {"name": "pull", "kind": "cable", "control": "tension", "range": [0, 2], "points": [(0, 10, 18), (32, 10, 18), (64, 10, 18)]}
+    told, acts = [0.4, 1, 0.8, 0.3, 0.5, 0.9], [0.4, 1, 1, 0.8, 0.8, 0.9]
+    exact = list(beam(actuators=[pull]).path([[tension] for tension in acts]))
+    playing = list(beam(actuators=[{**pull, "backlash": 0.5}]).path([[tension] for tension in told]))
+    for shape, other, tension in zip(playing, exact, told):
+        np.testing.assert_array_equal(shape.positions, other.positions)
+        assert shape.actuators["pull"].tension_N == other.actuators["pull"].tension_N
+        assert shape.actuation.tolist() == [tension]
+    with pytest.raises(softkin.InvalidInput, match="backlash"):
+        beam(actuators=[{**pull, "backlash": -1}])
+
+
 def test_path_goes_on_where_it_was(robot: softkin.Robot, tmp_path: Path) -> None:
     whole = [shape.fingerprint for shape in robot.path(STEPS)]
     for _ in robot.path(STEPS, store=tmp_path / "run"):

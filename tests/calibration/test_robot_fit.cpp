@@ -6,11 +6,9 @@
 #include <random>
 #include <softkin/calibration/robot_report.hpp>
 #include <softkin/core/error.hpp>
-#include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/io/table/measured_poses.hpp>
 
-#include "model/block_mesh.hpp"
-#include "support/temporary_folder.hpp"
+#include "calibration/arm_poses.hpp"
 
 /// Numbers of made-up robots from their poses.
 
@@ -19,80 +17,6 @@ namespace softkin::calibration {
 namespace {
 
 using namespace softkin::testing;
-
-/// An arm of 60 x 10 x 10 mm that hangs along x under its weight, with a tendon along its top, by its tension, and a
-/// marker on a stem.
-const char* const scene = R"(softkin: 1
-mesh: {file: arm.msh}
-materials: [{region: body, youngs_modulus: 0.3, poisson_ratio: 0.45, density: 1100}]
-fixed: [{region: x_low}]
-gravity: [0, 0, -9.81]
-actuators:
-  - {name: t1, kind: cable, control: tension, range: [0, 2], points: [[0, 5, 9], [20, 5, 9], [40, 5, 9], [60, 5, 9]]}
-  - {name: t2, kind: cable, control: tension, range: [0, 2], points: [[0, 9, 5], [20, 9, 5], [40, 9, 5], [60, 9, 5]]}
-markers:
-  - {name: tip, region: x_high, offset: [3, 0, 8]}
-  - {name: half, point: [30, 0, 5]}
-)";
-
-class Arm {
- public:
-  explicit Arm(const std::string& text = scene) {
-    write_mesh(folder_ / "arm.msh", block_mesh({6, 2, 2}, {60, 10, 10}));
-    std::ofstream(folder_ / "arm.yaml") << text;
-  }
-
-  [[nodiscard]] NumberedRobot robot(const std::vector<std::string>& numbers) const {
-    std::vector<FittedNumber> all;
-    for (const std::string& text : numbers) all.push_back(parse_fitted_number("--fit", text));
-    std::vector<std::filesystem::path> inputs;
-    AskedScene asked;
-    asked.scene = folder_ / "arm.yaml";
-    return {asked, all, inputs};
-  }
-
-  /// Its poses where it has these numbers, with noise and some readings far off.
-  [[nodiscard]] MeasuredPoses poses(const std::vector<std::string>& numbers, double noise = 0, unsigned seed = 1,
-                                    double wrong = 0) const {
-    const NumberedRobot truth = robot(numbers);
-    MeasuredPoses poses = empty(truth.model(truth.start()));
-    const RobotFit found = predict_poses(truth, poses, truth.start(), {});
-    poses.values = found.computed.values;
-    std::mt19937 engine(seed);
-    std::normal_distribution<double> normal(0, 1);
-    std::uniform_real_distribution<double> share(0, 1);
-    for (Index pose = 0; pose < static_cast<Index>(poses.values.rows()); ++pose)
-      for (Index c = 0; c < static_cast<Index>(poses.values.cols()); c += 3) {
-        const Vec3 way(normal(engine), normal(engine), normal(engine));
-        const bool off = share(engine) < wrong;
-        for (Index axis = 0; axis < 3; ++axis)
-          poses.values(pose, c + axis) += noise * normal(engine) + (off ? 30 * way.normalized()[axis] : 0);
-      }
-    return poses;
-  }
-
- private:
-  [[nodiscard]] static MeasuredPoses empty(const Model& model) {
-    MeasuredPoses poses;
-    poses.file = "poses.csv";
-    for (Index m = 0; m < 2; ++m)
-      for (int axis = 0; axis < 3; ++axis) {
-        const std::string name = model.markers[static_cast<std::size_t>(m)].name;
-        poses.columns.push_back({name + "_" + std::string(1, "xyz"[axis]) + "_mm", m, axis});
-      }
-    for (const auto& [one, two] : {std::pair{0.0, 0.0}, std::pair{0.1, 0.0}, std::pair{0.2, 0.0}, std::pair{0.0, 0.1},
-                                   std::pair{0.0, 0.2}, std::pair{0.1, 0.1}}) {
-      Actuation command(2);
-      command << one, two;
-      poses.commands.push_back(command);
-      poses.lines.push_back(poses.commands.size() + 1);
-    }
-    poses.values = Eigen::MatrixXd::Zero(6, 6);
-    return poses;
-  }
-
-  TemporaryFolder folder_;
-};
 
 const std::vector<std::string> truth{"materials.body.youngs_modulus=0.2",
                                      "materials.body.density=1000",
@@ -146,7 +70,7 @@ TEST(RobotFit, LeavesOutWhatIsMissingOrKept) {
 
 /// Without weight tensions over moduli alone count: the two cannot be told apart, and that is said.
 TEST(RobotFit, SaysWhatCannotBeToldApart) {
-  std::string light = scene;
+  std::string light = arm_scene;
   light.replace(light.find("gravity"), std::string("gravity: [0, 0, -9.81]").size(), "weights: printed");
   const Arm arm(light);
   const MeasuredPoses poses = arm.poses({"materials.body.youngs_modulus=0.2"}, 0.05, 3);
@@ -189,7 +113,7 @@ TEST(RobotFit, ForcesOfSupportsTellTheDensity) {
 
 /// A tracker at the tip tells how it bends, and how the base stands; its slopes end where the truth is.
 TEST(RobotFit, DirectionsTellTheModulusAndTheBase) {
-  const Arm arm(std::string(scene) +
+  const Arm arm(std::string(arm_scene) +
                 "sensors: [{name: tracker, kind: direction, region: x_high, axis: [1, 0, 0.5]}]\n");
   const NumberedRobot made = arm.robot({"materials.body.youngs_modulus=0.2", "base.ry=4", "base.z=7"}),
                       robot = arm.robot({"materials.body.youngs_modulus=0.3,0.05,2", "base.ry"});
@@ -304,7 +228,7 @@ TEST(RobotFit, RefusesWithAReason) {
 }
 
 TEST(MeasuredPoses, AreReadWithGaps) {
-  const Arm arm(std::string(scene) + "sensors: [{name: imu, kind: direction, region: x_high, axis: [1, 0, 0]}]\n");
+  const Arm arm(std::string(arm_scene) + "sensors: [{name: imu, kind: direction, region: x_high, axis: [1, 0, 0]}]\n");
   const Model model = arm.robot({}).model(Eigen::VectorXd(0));
   const TemporaryFolder folder;
   const auto read = [&](const std::string& text) {

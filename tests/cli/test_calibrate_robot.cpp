@@ -96,6 +96,55 @@ TEST(CalibrateRobot, ForetellsWhatIsKeptAside) {
   EXPECT_GT(json::parse(foretold.output)["markers"]["rms_mm"].get<double>(), 0.02);
 }
 
+/// The poses again, of which a camera saw dots: which is which changes from pose to pose, one is missing, one is none.
+TEST(CalibrateRobot, MatchesDotsToMarkers) {
+  const Poses folder;
+  std::string text = "air_kPa,tendon_N,dot1_x_mm,dot1_y_mm,dot1_z_mm,dot2_x_mm,dot2_y_mm,dot2_z_mm\n";
+  const json made = json::parse(read_text(folder / "made.json"));
+  const auto dot = [](const json& place, double z = 0) {
+    return "," + Poses::number(place[0]) + "," + Poses::number(place[1]) + "," +
+           Poses::number(place[2].get<double>() + z);
+  };
+  for (std::size_t p = 0; p < 4; ++p) {
+    const json& step = made["steps"][p];
+    const json &tip = step["markers"]["tip"], &corner = step["markers"]["corner"];
+    text += Poses::number(step["actuation"]["air"]) + "," + Poses::number(step["actuation"]["tendon"]);
+    text += p == 0   ? dot(corner) + dot(tip)
+            : p == 1 ? dot(tip) + ",,,"
+            : p == 2 ? dot(tip, 30) + dot(corner)
+                     : dot(tip) + dot(corner);
+    text += "\n";
+  }
+  const std::string dots = folder.write("dots.csv", text), report = folder / "fit.json";
+  const auto run = [&](const std::vector<std::string>& more) {
+    std::vector<std::string> words{"calibrate", "robot", folder.scene, dots, "--match-within", "2"};
+    words.insert(words.end(), more.begin(), more.end());
+    return run_program(words);
+  };
+  const ProgramResult fitted = run({"--fit", modulus, "--report", report, "--table", folder / "fit.csv"});
+  ASSERT_EQ(fitted.exit_code, 0) << fitted.errors;
+  expect_words(fitted.output, {"6 of 7 dots matched to markers within 2 mm", "pose 3 (line 4): dot1 is no marker",
+                               "materials.all.youngs_modulus=0.8"});
+  const json found = json::parse(read_text(report));
+  EXPECT_NEAR(found["numbers"][0]["value"].get<double>(), 0.8, 1e-5);
+  EXPECT_EQ(found["poses"][0]["dots"]["dot1"]["marker"], "corner");
+  EXPECT_EQ(found["poses"][1]["dots"]["dot1"]["marker"], "tip");
+  EXPECT_FALSE(found["poses"][1]["dots"].contains("dot2"));
+  EXPECT_TRUE(found["poses"][2]["dots"]["dot1"]["marker"].is_null());
+  EXPECT_EQ(found["dots"]["matched"], 6);
+  expect_words(read_text(folder / "fit.csv"), {"kept,marker,may_be", "1,2,dot1_x_mm,", ",corner,"});
+  const ProgramResult again = run({"--fit", modulus, "--report", report, "--resume", "--keep", "1", "--json"});
+  ASSERT_EQ(again.exit_code, 0) << again.errors;
+  const json resumed = json::parse(again.output);
+  EXPECT_NEAR(resumed["numbers"][0]["start"].get<double>(), 0.8, 1e-5);
+  EXPECT_NEAR(resumed["numbers"][0]["value"].get<double>(), 0.8, 1e-5);
+  EXPECT_EQ(resumed["kept"]["readings"], 1) << "the third, with its false dot";
+  const ProgramResult unsaid = run_program({"calibrate", "robot", folder.scene, dots, "--fit", modulus});
+  EXPECT_EQ(unsaid.exit_code, 2);
+  expect_words(unsaid.errors, {"dots.csv", "dots without names"});
+  EXPECT_EQ(unsaid.output, "");
+}
+
 TEST(CalibrateRobot, RefusesWithAReason) {
   const Poses folder;
   const auto expect_bad = [&](const std::vector<std::string>& more, const std::vector<std::string>& words) {
@@ -118,6 +167,9 @@ TEST(CalibrateRobot, RefusesWithAReason) {
   expect_bad({"--fit", modulus}, {"poses.csv:2", "tendon_N", "a command is missing"});
   folder.write("poses.csv", "air_kPa,tendon_N\n0,0\n");
   expect_bad({"--fit", modulus}, {"poses.csv:1", "no column is a reading"});
+  folder.write("poses.csv", "air_kPa,tendon_N,dot1_x_mm,dot1_y_mm\n0,0,20,3\n0,0,20,\n");
+  expect_bad({"--fit", modulus, "--match-within", "3"}, {"poses.csv:3", "dot1_y_mm"});
+  expect_bad({"--fit", modulus, "--match-within", "-3"}, {"--match-within", "-3"});
 }
 
 }  // namespace

@@ -74,6 +74,7 @@ def robot(
     deviation_force_N: float | None = None,
     deviation_angle_deg: float | None = None,
     deviation_direction: float | None = None,
+    match_within_mm: float | None = None,
     keep: int = 0,
     ordered: bool = False,
     threads: int = 0,
@@ -84,7 +85,7 @@ def robot(
     scene      YAML, physical formulation
     poses      CSV: commands as in a path, then tip_x_mm, ... of markers, air_pressure_kPa, tendon_tension_N, or
                air_volume_mm3, tendon_length_mm where loads are commanded, base_force_x_N, ... of supports on the robot;
-               empty cells were not read
+               dot1_x_mm, ... of dots that are markers nobody named; empty cells were not read
     fit        by path: a start, (start, low, high), "mean+-deviation" (known before) or None, the scene's; or texts as
                of --fit; base.x, base.rx, ...: where the robot stands in the measuring frame [mm, degrees]; camera.x, ...:
                the same, gravity turns along. Empty: the poses are foretold as the scene is
@@ -92,8 +93,10 @@ def robot(
     loss       'squares', 'huber' or 'cauchy', which wrong readings hardly move
     deviation  of a coordinate [mm], pressure [kPa], tension [N], length [mm], volume [mm^3], force [N], angle [deg],
                component of a direction as read; None: by what is left
+    match_within_mm   how far a dot without a name may be from the marker that it is [mm]
     keep       poses that are not fitted to but foretold, spread evenly
-    ordered    where something rubs: each pose goes on from the one before, the first from rest; else each from rest
+    ordered    where something rubs or a motor has play: each pose goes on from the one before, the first from rest;
+               else each from rest
     threads    poses side by side; 0: as many as the machine has
     progress   called with the iteration and the root mean square of the markers [mm], now and then
     raises     InvalidInput naming the file, line and column, or the number
@@ -113,6 +116,8 @@ def robot(
     for name, given in deviations.items():
         if given is not None and not given > 0:
             raise ValueError(f"{name} must be greater than 0, not {given}")
+    if match_within_mm is not None and not match_within_mm > 0:
+        raise ValueError(f"match_within_mm must be greater than 0, not {match_within_mm}")
     if keep < 0:
         raise ValueError(f"keep must be at least 0, not {keep}")
     task = _core.PosesTask()
@@ -123,5 +128,6 @@ def robot(
         task.numbers = list(fit)
     task.changes = [f"{path}={yaml_text(value)}" for path, value in (changes or {}).items()]
     task.deviations = [given or 0 for given in deviations.values()]
+    task.match_within_mm = match_within_mm or 0
     task.keep, task.threads, task.ordered = keep, threads, ordered
     return RobotFit(_core.calibrate_robot(task, progress), task.scene, changes or {})

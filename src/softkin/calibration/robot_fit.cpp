@@ -105,23 +105,69 @@ void tell_deviations(const RobotEquations& equations, RobotFit& fit) {
   }
 }
 
+/// Numbers that readings alone tell.
+std::size_t free_numbers(const NumberedRobot& robot) {
+  return static_cast<std::size_t>(std::count_if(robot.numbers().begin(), robot.numbers().end(),
+                                                [](const FittedNumber& n) { return !n.deviation; }));
+}
+
 void check(const NumberedRobot& robot, const MeasuredPoses& poses, const RobotProblem& problem, bool fits) {
   if (problem.readings() == 0) throw InvalidInput({poses.file}, "no reading is left to fit to");
   if (fits && robot.numbers().empty()) throw InvalidInput("there is no number to fit");
-  const auto free = static_cast<std::size_t>(std::count_if(robot.numbers().begin(), robot.numbers().end(),
-                                                           [](const FittedNumber& n) { return !n.deviation; }));
+  const std::size_t free = free_numbers(robot);
   if (fits && problem.readings() < free)
     throw InvalidInput({poses.file}, "there are fewer readings, " + std::to_string(problem.readings()) +
                                          ", than numbers to be fitted without a prior, " + std::to_string(free));
 }
 
-void finish(const RobotProblem& problem, const RobotPoint& point, RobotFit& fit) {
+void finish(RobotProblem& problem, const RobotPoint& point, RobotFit& fit) {
+  problem.match(point, true);
   fit.scales = problem.scales(point);
+  fit.named = problem.dots().poses();
+  fit.dots = problem.dots().matches(point.computed, fit.scales[static_cast<std::size_t>(Reading::coordinate)]);
   fit.values = point.values;
   fit.computed = {point.computed, point.equilibria};
   fit.markers_mm = problem.marker_misfit(point, false);
   fit.kept_mm = problem.marker_misfit(point, true);
   fit.without_equilibrium = point.without_equilibrium;
+}
+
+/// Where the search begins. None: the user stopped it.
+std::optional<RobotPoint> first_point(const NumberedRobot& robot, RobotProblem& problem) {
+  const VectorXd start = within_bounds(robot, robot.start());
+  std::optional<RobotPoint> point = problem.solve(start, nullptr, true);
+  if (!point) return point;
+  const VectorXd aligned = problem.aligned(*point);
+  if (aligned != start) {
+    std::optional<RobotPoint> next = problem.solve(aligned, &*point, true);
+    if (!next) return next;
+    const bool worse = !next->refusal.empty() || next->without_equilibrium > point->without_equilibrium;
+    if (!worse) point = std::move(next);
+  }
+  problem.match(*point, false);
+  return point;
+}
+
+/// What a fit is worth that ended.
+void conclude(const NumberedRobot& robot, const RobotPoint& point, const RobotFitOptions& options,
+              RobotProblem& problem, RobotFit& fit) {
+  if (fit.status == Status::interrupted && fit.iterations >= options.max_iterations) {
+    fit.status = Status::not_converged;
+    fit.remark = "its iterations were not enough";
+  }
+  finish(problem, point, fit);
+  tell_deviations(RobotEquations(robot, point.values, problem.linearised(point)), fit);
+  for (std::size_t i = 0; i < robot.numbers().size(); ++i)
+    fit.at_bound.push_back(side(robot.numbers()[i], point.values[static_cast<Index>(i)]));
+  if (fit.status == Status::converged && problem.matched_readings() < free_numbers(robot)) {
+    fit.status = Status::not_converged;
+    fit.remark = "no more than " + counted(problem.matched_readings(), "reading") + " left, as few dots are within " +
+                 number(options.match_within_mm) + " mm of a marker";
+  }
+  if (fit.status == Status::converged && fit.without_equilibrium > 0) {
+    fit.status = Status::not_converged;
+    fit.remark = std::to_string(fit.without_equilibrium) + " poses have no equilibrium";
+  }
 }
 
 }  // namespace
@@ -153,9 +199,10 @@ RobotFit fit_robot(const NumberedRobot& robot, const MeasuredPoses& poses, const
   RobotProblem problem(robot, poses, options, progress);
   check(robot, poses, problem, true);
   RobotFit fit;
-  std::optional<RobotPoint> point = problem.solve(within_bounds(robot, robot.start()), nullptr, true);
+  std::optional<RobotPoint> point = first_point(robot, problem);
   fit.status = Status::interrupted;
-  double damping = 1e-3;
+  constexpr double first_damping = 1e-3;
+  double damping = first_damping;
   while (point && fit.iterations < options.max_iterations) {
     const Linearised linear = problem.linearised(*point);
     ++fit.iterations;
@@ -178,26 +225,18 @@ RobotFit fit_robot(const NumberedRobot& robot, const MeasuredPoses& poses, const
       damping = std::max(damping / 64, least_damping);  // the loop multiplies it once more
     }
     if (stopped) break;
-    if (gained < enough) {
+    const bool settled = gained < enough, matched_anew = problem.match(*point, settled);
+    if (settled && matched_anew) {
+      damping = first_damping;
+      continue;
+    }
+    if (settled) {
       fit.status = refusal.empty() ? Status::converged : Status::not_converged;
       if (!refusal.empty()) fit.remark = "what would fit better is refused, so give bounds: " + refusal;
       break;
     }
   }
-  if (point && fit.status == Status::interrupted && fit.iterations >= options.max_iterations) {
-    fit.status = Status::not_converged;
-    fit.remark = "its iterations were not enough";
-  }
-  if (point) {
-    finish(problem, *point, fit);
-    tell_deviations(RobotEquations(robot, point->values, problem.linearised(*point)), fit);
-    for (std::size_t i = 0; i < robot.numbers().size(); ++i)
-      fit.at_bound.push_back(side(robot.numbers()[i], point->values[static_cast<Index>(i)]));
-  }
-  if (fit.status == Status::converged && fit.without_equilibrium > 0) {
-    fit.status = Status::not_converged;
-    fit.remark = std::to_string(fit.without_equilibrium) + " poses have no equilibrium";
-  }
+  if (point) conclude(robot, *point, options, problem, fit);
   fit.seconds = problem.seconds();
   return fit;
 }

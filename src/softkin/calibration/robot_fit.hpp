@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <softkin/calibration/robot_dots.hpp>
 #include <softkin/calibration/robot_parameters.hpp>
 #include <softkin/model/measured_poses.hpp>
 #include <softkin/statics/statics.hpp>
@@ -18,15 +19,16 @@ struct RobotFitOptions {
   Loss loss = Loss::squares;
   std::array<double, readings> deviations{};  // of each kind of reading; 0: told by what is left
   int max_iterations = 30;
-  int threads = 0;           // poses side by side; 0: as many as the machine has
-  bool ordered = false;      // where something rubs: each pose goes on from the one before, the first from rest; else
-                             // each from rest
-  std::vector<bool> kept{};  // per pose: not fitted to; empty: none
+  int threads = 0;             // poses side by side; 0: as many as the machine has
+  bool ordered = false;        // where something rubs or a motor has play: each pose goes on from the one before, the
+                               // first from rest; else each from rest
+  std::vector<bool> kept{};    // per pose: not fitted to; empty: none
+  double match_within_mm = 0;  // how far a dot without a name may be from its marker; 0: there are no such dots
 };
 
 /// What the robot does where numbers are as they are.
 struct ComputedPoses {
-  Eigen::MatrixXd values;               // as MeasuredPoses::values; NaN where a pose has no equilibrium
+  Eigen::MatrixXd values;               // as values of the named poses; NaN where a pose has no equilibrium
   std::vector<Equilibrium> equilibria;  // per pose
 };
 
@@ -42,6 +44,8 @@ struct RobotFit {
   Eigen::VectorXd values, deviations;     // deviation NaN: the poses do not tell it
   Eigen::MatrixXd correlations;           // of those that are told; else 0
   std::vector<int> at_bound;              // per number: -1 low, +1 high, else 0
+  MeasuredPoses named;                    // the poses, dots as readings of the markers that they are matched to
+  DotMatches dots;                        // which these are
   ComputedPoses computed;
   std::array<double, readings> scales{};  // deviation of each kind of reading: given, or by what is left; 0: none of it
   Misfit markers_mm;                      // distances of markers, of poses that were fitted to
@@ -67,9 +71,11 @@ using FitCallback = std::function<bool(const FitProgress&)>;
 /// with exact derivatives.
 ///
 /// minimises  sum over readings of loss((computed - measured) / scale) + sum over priors of
-///            ((value - mean) / deviation)^2 within the bounds; a marker's coordinates are one reading
+///            ((value - mean) / deviation)^2 within the bounds; a marker's coordinates are one reading; dots without
+///            names are matched anew after each step, until the match stays, and then as far off as was asked
 /// deviations of the normal equations at the end, scaled by the deviation of readings
-/// throws     InvalidInput: a target-shape robot, no pose to fit to, fewer readings than numbers
+/// throws     InvalidInput: a target-shape robot, no pose to fit to, fewer readings than numbers, what DotMatcher
+///            throws
 [[nodiscard]] RobotFit fit_robot(const NumberedRobot& robot, const MeasuredPoses& poses, const RobotFitOptions& options,
                                  const FitCallback& progress = {});
 

@@ -140,6 +140,10 @@ MeasuringFrame NumberedRobot::frame(const Eigen::VectorXd& values) const {
   return {rotation * turned(base.degrees), rotation * base.place + camera.place};
 }
 
+bool NumberedRobot::of_frame(std::size_t number) const {
+  return is_of_frame(numbers_[number].name);
+}
+
 bool NumberedRobot::of_camera(std::size_t number) const {
   return frame_part(numbers_[number].name, "camera").has_value() ||
          frame_part(numbers_[number].name, "base").value_or(5) < 3;

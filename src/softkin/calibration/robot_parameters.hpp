@@ -47,6 +47,8 @@ class NumberedRobot {
 
   [[nodiscard]] Model model(const Eigen::VectorXd& values) const;
   [[nodiscard]] MeasuringFrame frame(const Eigen::VectorXd& values) const;
+  /// Is it one of the measuring frame?
+  [[nodiscard]] bool of_frame(std::size_t number) const;
   /// Is it one of the frame alone, which the robot does not know of?
   [[nodiscard]] bool of_camera(std::size_t number) const;
 

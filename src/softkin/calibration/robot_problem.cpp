@@ -7,6 +7,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/kinematics/estimate/readings.hpp>
 #include <softkin/kinematics/jacobian.hpp>
+#include <softkin/model/backlash.hpp>
 #include <softkin/model/sensor.hpp>
 #include <softkin/statics/deformation.hpp>
 #include <thread>
@@ -18,6 +19,7 @@ namespace {
 constexpr double nan = std::numeric_limits<double>::quiet_NaN();
 /// By which numbers are perturbed, of what they are of the order of.
 constexpr double perturbation = 1e-5;
+constexpr double slopes_accuracy = 1e-8;
 /// Of the distances of readings whose deviation is not known: median over deviation, of one, two and three coordinates.
 constexpr double medians[3] = {0.6745, 1.1774, 1.5382};
 /// Distances over the deviation from which a reading counts less: 95 % efficiency where all errors are normal.
@@ -79,7 +81,8 @@ double measure_of(const Model& model, const PoseColumn& column, const State& sta
 struct RobotProblem::Changes {
   std::vector<Model> models;  // those of a number side by side
   std::vector<Perturbed> perturbed;
-  std::vector<Index> numbers;  // of which they are
+  std::vector<Index> numbers;                  // of which they are
+  std::vector<std::vector<Actuation>> acting;  // per such number, per pose: the derivative of what acts
   std::unique_ptr<Perturbations> perturbations;
   std::vector<double> differences;  // per number of the robot
   std::vector<MeasuringFrame> more, less;
@@ -108,9 +111,14 @@ struct RobotProblem::Changes {
 
 RobotProblem::RobotProblem(const NumberedRobot& robot, const MeasuredPoses& poses, const RobotFitOptions& options,
                            const FitCallback& progress)
-    : robot_(robot), poses_(poses), options_(options), progress_(progress) {
-  for (Index c = 0; c < static_cast<Index>(poses.columns.size()); ++c) {
-    const PoseColumn& column = poses.columns[static_cast<std::size_t>(c)];
+    : robot_(robot),
+      options_(options),
+      progress_(progress),
+      first_model_(std::make_shared<const Model>(robot.model(robot.start()))),
+      dots_(poses, *first_model_, options.match_within_mm),
+      poses_(dots_.poses()) {
+  for (Index c = 0; c < static_cast<Index>(poses_.columns.size()); ++c) {
+    const PoseColumn& column = poses_.columns[static_cast<std::size_t>(c)];
     const auto same = std::find_if(groups_.begin(), groups_.end(), [&](const Group& group) {
       return column.marker >= 0 && group.marker == column.marker;
     });
@@ -119,16 +127,31 @@ RobotProblem::RobotProblem(const NumberedRobot& robot, const MeasuredPoses& pose
     else
       same->columns.push_back(c);
   }
-  first_model_ = std::make_shared<const Model>(robot.model(robot.start()));
   if (first_model_->formulation != Formulation::physical)
     throw InvalidInput({.file = first_model_->name},
                        "a robot is fitted in the physical formulation; this scene is of target shapes");
   first_statics_ = std::make_shared<const Statics>(*first_model_);
+  for (Index pose = 0; pose < static_cast<Index>(poses_.commands.size()); ++pose)
+    if (fits(pose)) dots_seen_ += dots_.seen(pose);
+  count();
+}
+
+void RobotProblem::count() {
+  readings_ = rows_ = 0;
   each_reading([&](Index pose, const Group& group, Index) {
     ++readings_;
     for (const Index c : group.columns) rows_ += read(pose, c);
   });
-  for (const FittedNumber& number : robot.numbers()) rows_ += number.deviation.has_value();
+  for (const FittedNumber& number : robot_.numbers()) rows_ += number.deviation.has_value();
+}
+
+bool RobotProblem::match(const RobotPoint& point, bool strict) {
+  strict_ = strict_ || strict;
+  std::vector<bool> counts(poses_.commands.size());
+  for (std::size_t pose = 0; pose < counts.size(); ++pose) counts[pose] = fits(static_cast<Index>(pose));
+  const bool changed = dots_.match(point.computed, strict_ ? nullptr : &counts);
+  count();
+  return changed;
 }
 
 bool RobotProblem::reads_forces() const {
@@ -325,12 +348,44 @@ void RobotProblem::compute(RobotPoint& point, const Changes* changes, Index pose
   if (changes && found.report.status == Status::converged) add_slopes(point, *changes, pose, reactions.reactions);
 }
 
+/// Of the commands: one after another where the poses are, else each from rest.
+std::vector<Actuation> RobotProblem::acting(const Model& model) const {
+  if (options_.ordered) return acting_in_order(model, model.rest_actuation(), poses_.commands);
+  std::vector<Actuation> all;
+  for (const Actuation& told : poses_.commands) all.push_back(softkin::acting(model, model.rest_actuation(), told));
+  return all;
+}
+
+/// Numbers change what acts of commands, too, where there is backlash.
+void RobotProblem::add_changes_of_acting(ParameterSensitivity& found, const RobotPoint& point, const Changes& changes,
+                                         Index pose) const {
+  const auto p = static_cast<std::size_t>(pose);
+  std::vector<Actuation> along;
+  std::vector<std::size_t> of;
+  for (std::size_t k = 0; k < changes.acting.size(); ++k) {
+    if (changes.acting[k][p].isZero(0)) continue;
+    along.push_back(changes.acting[k][p]);
+    of.push_back(k);
+  }
+  if (along.empty()) return;
+  StaticsOptions solver = options_.solver;
+  solver.threads = 1;
+  const ParameterSensitivity more =
+      point.statics->sensitivity_along(point.equilibria[p].state, along, solver, slopes_accuracy, reads_forces());
+  for (std::size_t i = 0; i < of.size(); ++i) {
+    found.positions[of[i]] += more.positions[i];
+    found.multipliers.col(static_cast<Index>(of[i])) += more.multipliers.col(static_cast<Index>(i));
+    if (reads_forces()) found.reactions[of[i]] += more.reactions[i];
+  }
+  found.regular = more.regular;
+}
+
 void RobotProblem::add_slopes(RobotPoint& point, const Changes& changes, Index pose, const Points& reactions) const {
   const State& state = point.equilibria[static_cast<std::size_t>(pose)].state;
   StaticsOptions solver = options_.solver;
   solver.threads = 1;
-  constexpr double accuracy = 1e-8;
-  const ParameterSensitivity found = changes.perturbations->at(state, solver, accuracy, reads_forces());
+  ParameterSensitivity found = changes.perturbations->at(state, solver, slopes_accuracy, reads_forces());
+  if (found.regular) add_changes_of_acting(found, point, changes, pose);
   const auto count = static_cast<Index>(robot_.numbers().size());
   Eigen::MatrixXd& slopes = point.slopes[static_cast<std::size_t>(pose)];
   slopes.setZero(static_cast<Index>(poses_.columns.size()), count);
@@ -384,7 +439,15 @@ std::optional<RobotPoint> RobotProblem::solve(const Eigen::VectorXd& values, con
   try {
     point.model = std::make_shared<const Model>(robot_.model(values));
     point.statics = std::make_shared<const Statics>(*point.model, *first_statics_);
+    point.acting = acting(*point.model);
     if (slopes) changes.emplace(robot_, point);
+    for (std::size_t k = 0; changes && k < changes->perturbed.size(); ++k) {
+      const Perturbed& number = changes->perturbed[k];
+      changes->acting.push_back(acting(number.more));
+      const std::vector<Actuation> less = acting(number.less);
+      for (std::size_t pose = 0; pose < less.size(); ++pose)
+        changes->acting[k][pose] = (changes->acting[k][pose] - less[pose]) / number.difference;
+    }
   } catch (const InvalidInput& error) {
     if (!near) throw;
     point.refusal = error.what();
@@ -409,9 +472,9 @@ std::optional<RobotPoint> RobotProblem::solve(const Eigen::VectorXd& values, con
         const bool begun = from && from->report.status == Status::converged;
         State start = begun ? from->state : point.statics->rest();
         if (!chained) start.eyelets.clear(), start.anchors.clear();
-        point.equilibria[p] = point.statics->solve(poses_.commands[p], start, solver, progress);
+        point.equilibria[p] = point.statics->solve(point.acting[p], start, solver, progress);
         if (begun && point.equilibria[p].report.status != Status::converged && !point.equilibria[p].report.stopped)
-          point.equilibria[p] = point.statics->solve(poses_.commands[p], point.statics->rest(), solver, progress);
+          point.equilibria[p] = point.statics->solve(point.acting[p], point.statics->rest(), solver, progress);
         if (point.equilibria[p].report.stopped) return false;
         compute(point, changes ? &*changes : nullptr, pose);
         return true;

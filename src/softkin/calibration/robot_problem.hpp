@@ -1,6 +1,7 @@
 #pragma once
 
 #include <chrono>
+#include <softkin/calibration/robot_dots.hpp>
 #include <softkin/calibration/robot_fit.hpp>
 
 namespace softkin::calibration {
@@ -11,6 +12,7 @@ struct RobotPoint {
   std::shared_ptr<const Model> model;
   std::shared_ptr<const Statics> statics;
   MeasuringFrame frame;
+  std::vector<Actuation> acting;        // per pose: what acts of its commands
   std::vector<Equilibrium> equilibria;  // per pose
   Eigen::MatrixXd computed;             // as MeasuredPoses::values; NaN where a pose has no equilibrium
   std::vector<Eigen::MatrixXd> slopes;  // per pose: of the computed by the numbers; none: not asked for
@@ -35,8 +37,17 @@ class RobotProblem {
   RobotProblem(const NumberedRobot& robot, const MeasuredPoses& poses, const RobotFitOptions& options,
                const FitCallback& progress);
 
-  /// Readings that are fitted to; a marker's coordinates are one each.
-  [[nodiscard]] std::size_t readings() const { return readings_; }
+  /// Readings that are fitted to, a marker's coordinates are one each; with the dots that were seen, and with those
+  /// that are matched.
+  [[nodiscard]] std::size_t readings() const { return readings_ + dots_seen_; }
+  [[nodiscard]] std::size_t matched_readings() const { return readings_; }
+  /// Matches dots to the markers of a point, from then on no farther off than was asked if that is strict, else as far
+  /// as the markers are. Is it another match? What is told of points is by the last match.
+  bool match(const RobotPoint& point, bool strict);
+  [[nodiscard]] const DotMatcher& dots() const { return dots_; }
+  /// The numbers of a point with those of the measuring frame where its markers are nearest to what was seen, its
+  /// shapes as they are: with dots without names, which else are matched to wrong markers at first. Else as they are.
+  [[nodiscard]] Eigen::VectorXd aligned(const RobotPoint& point);
   /// near    a point from whose shapes the search begins; null: from rest
   /// none    the user stopped it
   /// throws  InvalidInput where it begins at rest and the scene refuses the values
@@ -77,18 +88,28 @@ class RobotProblem {
   void each_reading(const Visit& visit) const;
   [[nodiscard]] double scale(const RobotPoint& point, Reading kind) const;
   [[nodiscard]] Eigen::VectorXd residuals(const RobotPoint& point, const Eigen::VectorXd& weights) const;
+  struct MarkerMisses;
+  [[nodiscard]] MarkerMisses marker_misses(const RobotPoint& point, const std::vector<Index>& numbers) const;
+  void put(RobotPoint& point, const Eigen::VectorXd& values) const;
   struct Changes;
   void compute(RobotPoint& point, const Changes* changes, Index pose) const;
+  [[nodiscard]] std::vector<Actuation> acting(const Model& model) const;
+  void add_changes_of_acting(ParameterSensitivity& found, const RobotPoint& point, const Changes& changes,
+                             Index pose) const;
   void add_slopes(RobotPoint& point, const Changes& changes, Index pose, const Points& reactions) const;
   bool each_pose(int most_threads, const std::function<bool(Index, const ProgressCallback&)>& act);
 
+  void count();
+
   const NumberedRobot& robot_;
-  const MeasuredPoses& poses_;
   const RobotFitOptions& options_;
   const FitCallback& progress_;
-  std::vector<Group> groups_;
-  std::size_t readings_ = 0, rows_ = 0;
   std::shared_ptr<const Model> first_model_;  // whose patterns all others share
+  DotMatcher dots_;
+  const MeasuredPoses& poses_;  // of the matcher
+  std::vector<Group> groups_;
+  std::size_t readings_ = 0, dots_seen_ = 0, rows_ = 0;
+  bool strict_ = false;
   std::shared_ptr<const Statics> first_statics_;
   FitProgress progress_state_;
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();

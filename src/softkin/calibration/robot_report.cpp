@@ -1,5 +1,6 @@
 #include <cmath>
 #include <softkin/calibration/report_parts.hpp>
+#include <softkin/calibration/robot_dots_report.hpp>
 #include <softkin/calibration/robot_report.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
@@ -12,33 +13,17 @@ namespace {
 constexpr double alike = 0.95;  // correlation from which two numbers are said not to be told apart
 constexpr double vague = 0.5;   // deviation over the value from which a number is hardly told
 
-bool of_frame(const FittedNumber& number) {
-  return number.name.starts_with("base.") || number.name.starts_with("camera.");
-}
-
 /// Distance of a marker in a pose from where it was measured; NaN: it was not, or there is no equilibrium.
 double marker_error(const RobotFitReport& r, Index pose, Index marker) {
   double squares = 0;
   bool any = false;
-  for (Index c = 0; c < static_cast<Index>(r.poses.columns.size()); ++c) {
-    const double measured = r.poses.values(pose, c);
-    if (r.poses.columns[static_cast<std::size_t>(c)].marker != marker || std::isnan(measured)) continue;
+  for (Index c = 0; c < static_cast<Index>(r.fit.named.columns.size()); ++c) {
+    const double measured = r.fit.named.values(pose, c);
+    if (r.fit.named.columns[static_cast<std::size_t>(c)].marker != marker || std::isnan(measured)) continue;
     squares += std::pow(r.fit.computed.values(pose, c) - measured, 2);
     any = true;
   }
   return any ? std::sqrt(squares) : std::nan("");
-}
-
-std::vector<Index> markers_of(const RobotFitReport& r) {
-  std::vector<Index> markers;
-  for (const PoseColumn& column : r.poses.columns)
-    if (column.marker >= 0 && std::find(markers.begin(), markers.end(), column.marker) == markers.end())
-      markers.push_back(column.marker);
-  return markers;
-}
-
-bool kept(const RobotFitReport& r, Index pose) {
-  return !r.options.kept.empty() && r.options.kept[static_cast<std::size_t>(pose)];
 }
 
 double rms_of(const std::vector<double>& errors) {
@@ -49,7 +34,7 @@ double rms_of(const std::vector<double>& errors) {
   return count > 0 ? std::sqrt(squares / static_cast<double>(count)) : std::nan("");
 }
 
-Cell known(double value) {
+Cell known_cell(double value) {
   return std::isfinite(value) ? Cell(value) : Cell("-");
 }
 
@@ -70,9 +55,9 @@ std::string numbers_text(const RobotFitReport& r) {
       remark = r.fit.at_bound[i] < 0 ? "at its low bound" : "at its high bound";
     else if (!std::isfinite(deviation))
       remark = "the poses do not tell it";
-    else if (!number.deviation && deviation > vague * std::abs(value) && !of_frame(number))
+    else if (!number.deviation && deviation > vague * std::abs(value) && !r.robot.of_frame(i))
       remark = "hardly told";
-    table.rows.push_back({number.name, value, known(deviation), *number.start, remark});
+    table.rows.push_back({number.name, value, known_cell(deviation), *number.start, remark});
   }
   std::string text = text_of(table);
   if (untold > 1)
@@ -94,8 +79,7 @@ std::string errors_text(const RobotFitReport& r) {
   Table table{{{.key = "pose"}, {.key = "line"}}};
   for (const Actuator& actuator : r.model.actuators)
     table.columns.push_back({.key = actuator.name, .unit = command_unit(actuator), .digits = 4});
-  for (const Index m : markers)
-    table.columns.push_back(decimals(r.model.markers[static_cast<std::size_t>(m)].name + " off by", "mm", 2));
+  for (const Index m : markers) table.columns.push_back(decimals(marker_name(r, m) + " off by", "mm", 2));
   table.columns.push_back({.key = "", .left = true});
   std::vector<std::vector<double>> errors(markers.size());
   for (Index pose = 0; pose < static_cast<Index>(r.poses.commands.size()); ++pose) {
@@ -105,7 +89,7 @@ std::string errors_text(const RobotFitReport& r) {
     for (std::size_t m = 0; m < markers.size(); ++m) {
       const double error = marker_error(r, pose, markers[m]);
       if (!kept(r, pose)) errors[m].push_back(error);
-      row.push_back(known(error));
+      row.push_back(known_cell(error));
     }
     const Equilibrium& found = r.fit.computed.equilibria[p];
     row.emplace_back(found.report.status != Status::converged ? std::string(name_of(found.report.status))
@@ -121,8 +105,7 @@ std::string errors_text(const RobotFitReport& r) {
     if (std::isnan(rms)) continue;  // in poses that were kept aside alone
     sum += rms;
     ++seen;
-    text += "marker " + r.model.markers[static_cast<std::size_t>(markers[m])].name + ": " + decimal(rms, 2) +
-            " mm root mean square\n";
+    text += "marker " + marker_name(r, markers[m]) + ": " + decimal(rms, 2) + " mm root mean square\n";
   }
   if (seen > 1) text += "mean over the markers: " + decimal(sum / seen, 2) + " mm\n";
   return text;
@@ -132,7 +115,7 @@ std::string errors_text(const RobotFitReport& r) {
 std::string scene_text(const RobotFitReport& r) {
   std::string text;
   for (std::size_t i = 0; i < r.robot.numbers().size(); ++i)
-    if (!of_frame(r.robot.numbers()[i]))
+    if (!r.robot.of_frame(i))
       text += "  " + r.robot.numbers()[i].name + "=" + number(r.fit.values[static_cast<Index>(i)], 6) + "\n";
   return text.empty() ? "" : "for the scene, by path:\n" + text;
 }
@@ -159,7 +142,7 @@ std::string robot_fit_text(const RobotFitReport& r) {
                      counted(static_cast<std::size_t>(fit.iterations), "iteration") + ", " + decimal(fit.seconds, 1) +
                      " s\n\n";
   if (!r.robot.numbers().empty() && fit.deviations.size() > 0) text += numbers_text(r) + "\n";
-  text += errors_text(r);
+  text += errors_text(r) + dots_text(r);
   for (std::size_t kind = 0; kind < readings; ++kind)
     text += scale_text(reading_names[kind], fit.scales[kind], r.options.deviations[kind], reading_units[kind]);
   if (fit.markers_mm.readings > 0)
@@ -189,8 +172,7 @@ std::string robot_fit_json(const RobotFitReport& r) {
   for (Index pose = 0; pose < static_cast<Index>(r.poses.commands.size()); ++pose) {
     const auto p = static_cast<std::size_t>(pose);
     Json errors = Json::object(), commands = Json::object();
-    for (const Index m : markers_of(r))
-      errors[r.model.markers[static_cast<std::size_t>(m)].name] = finite(marker_error(r, pose, m));
+    for (const Index m : markers_of(r)) errors[marker_name(r, m)] = finite(marker_error(r, pose, m));
     for (std::size_t a = 0; a < r.model.actuators.size(); ++a)
       commands[r.model.actuators[a].name] = r.poses.commands[p][static_cast<Index>(a)];
     poses.push_back({{"line", r.poses.lines[p]},
@@ -198,80 +180,59 @@ std::string robot_fit_json(const RobotFitReport& r) {
                      {"status", name_of(r.fit.computed.equilibria[p].report.status)},
                      {"kept", kept(r, pose)},
                      {"error_mm", errors}});
+    if (has_dots(r)) poses.back()["dots"] = dots_json(r, p);
   }
-  return text_of(Json{{"softkin_robot_fit", 1},
-                      {"status", name_of(r.fit.status)},
-                      {"remark", r.fit.remark},
-                      {"iterations", r.fit.iterations},
-                      {"seconds", r.fit.seconds},
-                      {"numbers", numbers},
-                      {"poses", poses},
-                      {"deviation_mm", r.fit.scales[0]},
-                      {"deviation_kPa", r.fit.scales[1]},
-                      {"deviation_N", r.fit.scales[2]},
-                      {"deviation_length_mm", r.fit.scales[3]},
-                      {"deviation_volume_mm3", r.fit.scales[4]},
-                      {"deviation_force_N", r.fit.scales[5]},
-                      {"markers", misfit_json(r.fit.markers_mm)},
-                      {"kept", misfit_json(r.fit.kept_mm)}});
+  Json json{{"softkin_robot_fit", 1},
+            {"status", name_of(r.fit.status)},
+            {"remark", r.fit.remark},
+            {"iterations", r.fit.iterations},
+            {"seconds", r.fit.seconds},
+            {"numbers", numbers},
+            {"poses", poses},
+            {"deviation_mm", r.fit.scales[0]},
+            {"deviation_kPa", r.fit.scales[1]},
+            {"deviation_N", r.fit.scales[2]},
+            {"deviation_length_mm", r.fit.scales[3]},
+            {"deviation_volume_mm3", r.fit.scales[4]},
+            {"deviation_force_N", r.fit.scales[5]},
+            {"markers", misfit_json(r.fit.markers_mm)},
+            {"kept", misfit_json(r.fit.kept_mm)}};
+  if (has_dots(r)) json["dots"] = dot_counts_json(r);
+  return text_of(json);
 }
 
 Table robot_fit_table(const RobotFitReport& r) {
   Table table = csv_table({"pose", "line", "column", "measured", "computed", "difference", "kept"});
-  for (Index pose = 0; pose < static_cast<Index>(r.poses.commands.size()); ++pose)
-    for (Index c = 0; c < static_cast<Index>(r.poses.columns.size()); ++c) {
-      const double measured = r.poses.values(pose, c), computed = r.fit.computed.values(pose, c);
-      if (std::isnan(measured)) continue;
+  if (has_dots(r))
+    for (const char* key : {"marker", "may_be"}) table.columns.push_back({.key = key});
+  for (Index pose = 0; pose < static_cast<Index>(r.poses.commands.size()); ++pose) {
+    const auto add = [&](const std::string& column, double measured, double computed) -> Row& {
       const bool found = std::isfinite(computed);
-      table.rows.push_back({static_cast<std::int64_t>(pose + 1),
-                            count_cell(r.poses.lines[static_cast<std::size_t>(pose)]),
-                            r.poses.columns[static_cast<std::size_t>(c)].name, ten_digits(measured),
-                            found ? ten_digits(computed) : Cell(), found ? ten_digits(computed - measured) : Cell(),
-                            std::int64_t{kept(r, pose)}});
+      return table.rows.emplace_back(
+          Row{static_cast<std::int64_t>(pose + 1), count_cell(r.poses.lines[static_cast<std::size_t>(pose)]), column,
+              ten_digits(measured), found ? ten_digits(computed) : Cell(),
+              found ? ten_digits(computed - measured) : Cell(), std::int64_t{kept(r, pose)}});
+    };
+    for (Index c = 0; c < static_cast<Index>(r.poses.columns.size()); ++c) {
+      const PoseColumn& column = r.poses.columns[static_cast<std::size_t>(c)];
+      if (std::isnan(r.poses.values(pose, c))) continue;
+      Row& row = add(column.name, r.poses.values(pose, c), r.fit.computed.values(pose, c));
+      if (has_dots(r))
+        row.insert(row.end(), {column.marker >= 0 ? Cell(marker_name(r, column.marker)) : Cell(), Cell()});
     }
-  return table;
-}
-
-Plot robot_fit_plot(const RobotFitReport& r) {
-  const std::vector<Index> markers = markers_of(r);
-  if (markers.empty()) throw InvalidInput("a plot shows markers, and none was measured");
-  Plot plot;
-  plot.title = "measured and computed markers";
-  plot.panel_height = 320;
-  plot.rows.emplace_back();
-  for (const auto& [across, up] : {std::pair{0, 2}, std::pair{1, 2}, std::pair{0, 1}}) {
-    constexpr const char* names[3] = {"x [mm]", "y [mm]", "z [mm]"};
-    PlotPanel panel = panel_of("", names[across], names[up]);
-    panel.equal = true;
-    PlotSeries measured, computed, apart;
-    measured.label = "measured";
-    computed.label = "computed";
-    measured.line = computed.line = apart.marks = false;
-    apart.pairs = apart.pale = true;
-    for (Index pose = 0; pose < static_cast<Index>(r.poses.commands.size()); ++pose)
-      for (const Index m : markers) {
-        Vec3 there = Vec3::Constant(std::nan("")), here = there;
-        for (Index c = 0; c < static_cast<Index>(r.poses.columns.size()); ++c) {
-          const PoseColumn& column = r.poses.columns[static_cast<std::size_t>(c)];
-          if (column.marker != m) continue;
-          there[column.axis] = r.poses.values(pose, c);
-          here[column.axis] = r.fit.computed.values(pose, c);
-        }
-        const double all = there[across] + there[up] + here[across] + here[up];
-        if (!std::isfinite(all)) continue;
-        for (const auto& [series, point] : {std::pair{&measured, &there}, std::pair{&computed, &here},
-                                            std::pair{&apart, &there}, std::pair{&apart, &here}}) {
-          series->x.push_back((*point)[across]);
-          series->y.push_back((*point)[up]);
-        }
+    for (std::size_t d = 0; d < r.poses.dots.names.size(); ++d) {
+      const DotMatch& match = r.fit.dots[static_cast<std::size_t>(pose)][d];
+      const Vec3 seen = dot_place(r, pose, d);
+      const Vec3 computed =
+          match.marker < 0 ? Vec3(Vec3::Constant(std::nan(""))) : places_of(r, pose, match.marker).second;
+      for (const int axis : r.poses.dots.axes) {
+        if (!match.seen) continue;
+        Row& row = add(r.poses.dots.names[d] + "_" + axis_names[axis] + "_mm", seen[axis], computed[axis]);
+        for (const Cell& cell : dot_cells(r, match)) row.push_back(cell);
       }
-    if (measured.x.empty()) continue;
-    panel.series = {apart, measured, computed};
-    plot.rows.back().push_back(std::move(panel));
+    }
   }
-  if (plot.rows.back().empty())
-    throw InvalidInput("no marker was measured along two axes in any pose: nothing to plot");
-  return plot;
+  return table;
 }
 
 Eigen::VectorXd fitted_values(const std::string& file, const std::vector<FittedNumber>& numbers) {

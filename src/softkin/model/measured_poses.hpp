@@ -32,6 +32,13 @@ struct PoseColumn {
   Index sensor = -1;   // the same
 };
 
+/// Points that a camera saw without knowing which markers they are.
+struct UnnamedDots {
+  std::vector<std::string> names{};  // as in the file: dot1
+  std::vector<int> axes{};           // that were seen of each of them, ascending
+  Eigen::MatrixXd places{};          // [mm], poses by the axes of the first dot, of the second, ...; NaN: not seen
+};
+
 /// Poses of a real robot: what it was told, and what was read.
 struct MeasuredPoses {
   std::string file;
@@ -41,6 +48,7 @@ struct MeasuredPoses {
   std::vector<double> times{};      // per pose [s], ascending; empty: the file has none
   std::vector<std::size_t> lines;   // of the file, per pose
   Eigen::MatrixXd values;           // poses by columns; NaN: not read
+  UnnamedDots dots{};
 };
 
 }  // namespace softkin

@@ -140,6 +140,7 @@ class Hash {
     add(a.name, a.kind, a.control, a.rest, a.weight, a.distribution == Distribution::least_norm, a.tetrahedra, a.cavity,
         a.prisms, a.points, a.surface, a.gaps, a.other, a.axis, a.rest_measure);
     if (a.factor != 1 || a.offset != 0) add(a.factor, a.offset);
+    if (a.backlash != 0) add(a.backlash);
     if (a.friction != 0 || a.sheath != 0) add(a.friction, a.sheath);
     if (under_voltage(a)) add(a.shares, a.prestretch);
     if (a.distribution == Distribution::proportional) add(a.distribution);

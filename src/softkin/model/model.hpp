@@ -83,6 +83,7 @@ struct Actuator {
   bool pushes = false;                      // cable: held to its length whatever that takes, as a rod would be
   double friction = 0, sheath = 0;  // cable, physical: where it turns; of its sheath, times the sheath's turns [-]
   double factor = 1, offset = 0;    // load control: what acts is factor times the command plus offset [N, kPa]
+  double backlash = 0;              // the same: by how much a command falls before what acts does, see acting()
   double rest_measure = 0;          // length [mm], mean area of top and bottom [mm^2] or volume [mm^3] at rest; at
                                     // a dea's ratio 1; where a chamber is flat 1 mL
   bool flat = false;                // pneumatic: encloses nothing at rest, as an empty bag does

@@ -161,6 +161,7 @@ struct ActuatorSpec {
                                   // by compile(); else 1
   double factor = 1, offset = 0;  // tension and pressure: of a command, what acts is this times it plus that
                                   // [N, kPa]; factor > 0
+  double backlash = 0;            // the same: by how much a command falls before what acts does [N, kPa], >= 0
   double prestretch = 1;          // dea under voltage: area that its layer has without force, over that in the
                                   // mesh [-], > 0
   double weight = 5;              // w of Eq. (9), > 0

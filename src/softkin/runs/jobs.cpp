@@ -2,6 +2,7 @@
 #include <nlohmann/json.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
+#include <softkin/model/backlash.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/jobs.hpp>
 #include <softkin/runs/records_json.hpp>
@@ -28,6 +29,15 @@ Codec<Record> codec_of(std::function<Json(const Record&)> write, Read read) {
           }};
 }
 
+/// A start knows what acted; else it is where its first command led.
+std::vector<Actuation> acting_along(const Model& model, const std::vector<ActuationStep>& steps,
+                                    const std::optional<State>& start) {
+  std::vector<Actuation> told;
+  for (const ActuationStep& step : steps) told.push_back(step.actuation);
+  const bool known = start && start->knows(model.rest_actuation().size());
+  return acting_in_order(model, !start ? model.rest_actuation() : known ? start->actuation : told.front(), told);
+}
+
 }  // namespace
 
 PathJob::PathJob(const Model& model, const Statics& statics, const std::vector<ActuationStep>& steps, std::string file,
@@ -35,6 +45,7 @@ PathJob::PathJob(const Model& model, const Statics& statics, const std::vector<A
     : model_(model),
       statics_(statics),
       steps_(steps),
+      acting_(acting_along(model, steps, start)),
       file_(std::move(file)),
       options_(options),
       clock_(statics),
@@ -64,7 +75,8 @@ std::string PathJob::mismatch(std::size_t number, const StepRecord& record) cons
 
 PathJob::Made PathJob::make(std::size_t number, const ProgressCallback& progress) {
   clock_.set(steps_[number].time, options_);
-  Equilibrium found = statics_.solve(steps_[number].actuation, state_, options_, progress);
+  Equilibrium found = statics_.solve(acting_[number], state_, options_, progress);
+  found.actuation = steps_[number].actuation;
   const bool stopped = found.report.stopped;
   ElementDeformation deformation = statics_.measured(found.state);
   StepRecord record = step_record(model_, found, deformation);
@@ -77,7 +89,8 @@ PathJob::Made PathJob::make(std::size_t number, const ProgressCallback& progress
 }
 
 void PathJob::recall(const StepRecord& record, const Points& positions) {
-  if (record.status == Status::converged) clock_.recall(record.time_s, {positions, record.actuation});
+  if (record.status == Status::converged)
+    clock_.recall(record.time_s, {positions, record.shape_actuation.value_or(record.actuation)});
 }
 
 void PathJob::go_on(std::size_t, const StepRecord& before, Points positions) {

@@ -180,6 +180,7 @@ class PathJob : public Job<StepRecord> {
   const Model& model_;
   const Statics& statics_;
   const std::vector<ActuationStep>& steps_;
+  std::vector<Actuation> acting_;  // of each step, by its commands and those before
   std::string file_;
   StaticsOptions options_;
   ViscousClock clock_;

@@ -315,9 +315,11 @@ std::vector<Finding> findings(const Model& model, const StepRecord& record) {
 std::vector<Shortfall> shortfalls(const Model& model, const StepRecord& record) {
   std::vector<Shortfall> short_of;
   if (!record.shape_actuation) return short_of;
-  for (Index a = 0; a < static_cast<Index>(model.actuators.size()); ++a)
-    if ((*record.shape_actuation)[a] != record.actuation[a])
-      short_of.push_back({a, (*record.shape_actuation)[a], record.actuation[a]});
+  for (Index a = 0; a < static_cast<Index>(model.actuators.size()); ++a) {
+    const double told = record.actuation[a], acts = (*record.shape_actuation)[a];
+    if (!(acts >= told && acts <= told + model.actuators[static_cast<std::size_t>(a)].backlash))
+      short_of.push_back({a, acts, told});
+  }
   return short_of;
 }
 

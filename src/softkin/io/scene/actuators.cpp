@@ -17,9 +17,9 @@ struct Kind {
 };
 
 const Keys common_keys{"name", "kind", "control", "range", "weight", "distribution"};
-const Keys kind_keys{"region", "surface",  "connected",  "source",       "liquid",        "points",
-                     "apexes", "spacing",  "prestretch", "curve",        "voltage_share", "factor",
-                     "offset", "friction", "sheath",     "keeps_volume", "temperature",   "also"};
+const Keys kind_keys{"region",   "surface",    "connected",    "source",        "liquid", "points",   "apexes",
+                     "spacing",  "prestretch", "curve",        "voltage_share", "factor", "backlash", "offset",
+                     "friction", "sheath",     "keeps_volume", "temperature",   "also"};
 
 Keys all_kind_keys() {
   Keys all = kind_keys;
@@ -32,11 +32,11 @@ const std::vector<Kind>& kinds() {
       {ActuatorKind::pneumatic,
        "pneumatic",
        {"volume", "pressure", "gas", "liquid"},
-       {"region", "surface", "connected", "source", "liquid", "curve", "factor", "offset"}},
+       {"region", "surface", "connected", "source", "liquid", "curve", "factor", "offset", "backlash"}},
       {ActuatorKind::cable,
        "cable",
        {"length", "tension"},
-       {"points", "apexes", "spacing", "factor", "offset", "friction", "sheath"}},
+       {"points", "apexes", "spacing", "factor", "offset", "backlash", "friction", "sheath"}},
       {ActuatorKind::dea, "dea", {"area", "voltage"}, {"region", "prestretch", "curve", "voltage_share"}},
       {ActuatorKind::magnetic, "magnetic", {}, field_keys()},
       {ActuatorKind::growth, "growth", {}, growth_keys()}};
@@ -222,12 +222,13 @@ PrismValues read_shares(const Context& context, const Node& node, const Actuator
 
 /// What of a commanded tension or pressure acts.
 void read_share(const Map& map, ActuatorSpec& actuator) {
-  const Node *factor = map.find("factor"), *offset = map.find("offset");
-  for (const Node* node : {factor, offset})
+  const Node *factor = map.find("factor"), *offset = map.find("offset"), *backlash = map.find("backlash");
+  for (const Node* node : {factor, offset, backlash})
     if (node != nullptr && actuator.control != Control::load)
       fail(*node, node->name + " belongs to 'control: tension' and 'control: pressure'");
   if (factor != nullptr) actuator.factor = positive(*factor);
   if (offset != nullptr) actuator.offset = number(*offset);
+  if (backlash != nullptr) actuator.backlash = not_negative(*backlash);
 }
 
 /// Where a cable turns inside the robot, and in a sheath before that.

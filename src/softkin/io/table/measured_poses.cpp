@@ -1,3 +1,5 @@
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <optional>
 #include <softkin/core/text.hpp>
@@ -12,10 +14,98 @@ namespace softkin {
 
 namespace {
 
+/// The name of a dot: "dot" and a number.
+bool names_dot(const std::string& name) {
+  return name.size() > 3 && name.starts_with("dot") && name[3] != '0' &&
+         name.find_first_not_of("0123456789", 3) == std::string::npos;
+}
+
+/// The columns of dots that are not named.
+class DotColumns {
+ public:
+  DotColumns(const CsvTable& table, const Model& model) : table_(table) {
+    any_marker_ = !model.markers.empty();
+    for (const Marker& marker : model.markers) of_markers_ = of_markers_ || names_dot(marker.name);
+  }
+
+  /// Is it one of them, where no marker is called like a dot?
+  [[nodiscard]] bool take(std::size_t at) {
+    const std::string& column = table_.columns[at];
+    for (int axis = 0; axis < 3 && !of_markers_; ++axis) {
+      const std::string end = std::string("_") + axis_names[axis] + "_mm";
+      if (!column.ends_with(end) || !names_dot(column.substr(0, column.size() - end.size()))) continue;
+      if (!any_marker_)
+        table_.fail_header("column " + excerpt(column) + ": dots are matched to the scene's markers, and it has none");
+      add(column.substr(0, column.size() - end.size()), axis, at);
+      return true;
+    }
+    return false;
+  }
+
+  [[nodiscard]] bool any() const { return !names_.empty(); }
+
+  [[nodiscard]] UnnamedDots dots() const {
+    UnnamedDots dots;
+    for (int axis = 0; axis < 3; ++axis)
+      if (std::any_of(at_.begin(), at_.end(),
+                      [&](const auto& dot) { return dot[static_cast<std::size_t>(axis)].has_value(); }))
+        dots.axes.push_back(axis);
+    dots.names = names_;
+    dots.places.resize(static_cast<Index>(table_.rows.size()), static_cast<Index>(names_.size() * dots.axes.size()));
+    Index c = 0;
+    for (std::size_t d = 0; d < names_.size(); ++d) {
+      for (const int axis : dots.axes) {
+        if (!at_[d][static_cast<std::size_t>(axis)])
+          table_.fail_header("column '" + name_of(d, axis) + "' is missing: all dots have the same coordinates");
+        for (std::size_t row = 0; row < table_.rows.size(); ++row)
+          dots.places(static_cast<Index>(row), c) = table_.rows[row][*at_[d][static_cast<std::size_t>(axis)]];
+        ++c;
+      }
+      check(d, dots);
+    }
+    return dots;
+  }
+
+ private:
+  void add(const std::string& name, int axis, std::size_t at) {
+    const auto known = std::find(names_.begin(), names_.end(), name);
+    const auto d = static_cast<std::size_t>(known - names_.begin());
+    if (known == names_.end()) {
+      names_.push_back(name);
+      at_.emplace_back();
+    }
+    at_[d][static_cast<std::size_t>(axis)] = at;
+  }
+
+  [[nodiscard]] std::string name_of(std::size_t dot, int axis) const {
+    return names_[dot] + "_" + axis_names[axis] + "_mm";
+  }
+
+  /// A dot is seen whole or not at all.
+  void check(std::size_t dot, const UnnamedDots& dots) const {
+    for (std::size_t row = 0; row < table_.rows.size(); ++row) {
+      const auto empty = [&](int axis) {
+        return std::isnan(table_.rows[row][*at_[dot][static_cast<std::size_t>(axis)]]);
+      };
+      const auto gap = std::find_if(dots.axes.begin(), dots.axes.end(), empty);
+      if (gap != dots.axes.end() && !std::all_of(dots.axes.begin(), dots.axes.end(), empty))
+        table_.fail(row, "column '" + name_of(dot, *gap) + "' is empty: a dot is seen whole or not at all");
+    }
+  }
+
+  const CsvTable& table_;
+  bool any_marker_ = false, of_markers_ = false;
+  std::vector<std::string> names_;
+  std::vector<std::array<std::optional<std::size_t>, 3>> at_;  // column of the table, per dot and axis
+};
+
 class Columns {
  public:
-  Columns(const CsvTable& table, const Model& model) : table_(table), model_(model) {
+  /// dots  may it have them?
+  Columns(const CsvTable& table, const Model& model, bool dots = false)
+      : table_(table), model_(model), dots_(table, model) {
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
+      if (dots && dots_.take(c)) continue;
       if (const auto read = reading(table.columns[c])) {
         readings_.push_back(*read);
         at_.push_back(c);
@@ -23,7 +113,7 @@ class Columns {
         commands_.push_back(c);
       }
     }
-    if (readings_.empty())
+    if (readings_.empty() && !dots_.any())
       table.fail_header(
           "no column is a reading: a coordinate such as tip_x_mm, a pressure or volume such as air_pressure_kPa or "
           "air_volume_mm3, a tension or length such as tendon_tension_N or tendon_length_mm, a support's force such as "
@@ -41,7 +131,9 @@ class Columns {
     for (std::size_t row = 0; row < table_.rows.size(); ++row)
       for (std::size_t c = 0; c < at_.size(); ++c)
         poses.values(static_cast<Index>(row), static_cast<Index>(c)) = table_.rows[row][at_[c]];
-    if (!(poses.values.array() == poses.values.array()).any()) table_.fail_header("every reading is missing");
+    poses.dots = dots_.dots();
+    const auto any_read = [](const Eigen::MatrixXd& values) { return (values.array() == values.array()).any(); };
+    if (!any_read(poses.values) && !any_read(poses.dots.places)) table_.fail_header("every reading is missing");
     return poses;
   }
 
@@ -144,6 +236,7 @@ class Columns {
 
   const CsvTable& table_;
   const Model& model_;
+  DotColumns dots_;
   std::vector<PoseColumn> readings_;
   std::vector<std::size_t> at_, commands_;
 };
@@ -178,9 +271,9 @@ std::vector<PoseColumn> possible_readings(const Model& model) {
   return reading_columns(model, names);
 }
 
-MeasuredPoses read_measured_poses(const std::filesystem::path& file, const Model& model) {
+MeasuredPoses read_measured_poses(const std::filesystem::path& file, const Model& model, bool dots) {
   const CsvTable table = read_csv_with_gaps(file);
-  return Columns(table, model).poses();
+  return Columns(table, model, dots).poses();
 }
 
 }  // namespace softkin

@@ -10,8 +10,11 @@ namespace softkin {
 /// coordinates of markers as those of targets (tip_x_mm; x_mm of the only marker), and of what actuators answer with,
 /// air_pressure_kPa, tendon_tension_N. A reading that is missing is an empty cell. Without a command the robot rests.
 ///
-/// throws  InvalidInput naming file, line and column: what these refuse; a command that is missing; no reading
-[[nodiscard]] MeasuredPoses read_measured_poses(const std::filesystem::path& file, const Model& model);
+/// dots    may it have places of dots that are not named, dot1_x_mm, dot2_x_mm, ..., where no marker is called so?
+/// throws  InvalidInput naming file, line and column: what these refuse; a command that is missing; no reading; dots
+///         of which some coordinates are missing, or of a scene without markers
+[[nodiscard]] MeasuredPoses read_measured_poses(const std::filesystem::path& file, const Model& model,
+                                                bool dots = false);
 
 /// What readings of these names are.
 ///

@@ -107,6 +107,10 @@ void check_members(const ActuatorSpec& spec, Formulation formulation) {
       spec.control == Control::load && (spec.kind == ActuatorKind::cable || spec.kind == ActuatorKind::pneumatic);
   if (!acts && (spec.factor != 1 || spec.offset != 0))
     refuse(spec, "takes no factor and no offset: only a cable by tension and a chamber by pressure do");
+  if (!acts && spec.backlash != 0)
+    refuse(spec, "takes no backlash: only a cable by tension and a chamber by pressure do");
+  if (!(spec.backlash >= 0 && std::isfinite(spec.backlash)))
+    refuse(spec, "needs a backlash of 0 or more, not " + number(spec.backlash));
   if (!(spec.factor > 0 && std::isfinite(spec.factor) && std::isfinite(spec.offset)))
     refuse(spec,
            "needs a factor above 0 and a finite offset, not " + number(spec.factor) + " and " + number(spec.offset));
@@ -307,6 +311,7 @@ void compile_actuator_elements(Compilation& c) {
     actuator.prestretch = spec.prestretch;
     actuator.factor = spec.factor;
     actuator.offset = spec.offset;
+    actuator.backlash = spec.backlash;
     actuator.friction = spec.friction;
     actuator.sheath = spec.sheath_friction * spec.sheath_turns_degrees * std::numbers::pi / 180;
     actuator.curve = spec.curve;
