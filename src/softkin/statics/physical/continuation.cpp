@@ -41,8 +41,8 @@ constexpr double least_jump = 0.9, finest = 0.02;
 /// A longer step that inverts an element is made shorter: laws that have an energy for it have a mirrored equilibrium.
 constexpr double most_inverting = 0.01;
 /// How smoothly sheets that were flat wrinkle at last, and from one solve to the next; how pressures fall from one to
-/// the next, and by how little where that leads nowhere.
-constexpr double narrowest_barrier = 1e-11, narrower = 0.1, fall = 0.2, gentlest = 0.9;
+/// the next; both less boldly where that leads nowhere.
+constexpr double narrowest_barrier = 1e-11, narrower = 0.1, hardly_narrower = 0.6, fall = 0.2, gentlest_fall = 0.9;
 /// Share of normal forces whose friction gives way, from which on it is told where the way ends.
 constexpr double worth_telling = 0.5;
 
@@ -74,42 +74,41 @@ Demand Continuation::pressed(Demand demand, double times) const {
   return demand;
 }
 
-/// Of sheets that were flat: first what wrinkles does so without kinks, then with ever sharper ones, at last with its
-/// own; under pressures that stretch it, which fall to those that are asked for: from a shape that leads nowhere, back
-/// to the one before, by less.
-Newton::Outcome Continuation::settle_swollen(const Demand& there, Swelling how, Iterate& trial) {
+/// Of sheets that were flat, where something touches a second time, less boldly.
+Newton::Outcome Continuation::settle_swollen(const Demand& there, const Swelling& how, Iterate& trial) {
+  const Iterate begin = trial;
+  const auto outcome = sharpen_swollen(there, how, narrower, trial);
+  if (outcome != Newton::Outcome::stuck || !system_.contact()) return outcome;
+  trial = begin;
+  return sharpen_swollen(there, how, hardly_narrower, trial);
+}
+
+/// First what wrinkles does so without kinks, then with ever sharper ones, at last with its own; under pressures that
+/// stretch it, which fall to those that are asked for: from a shape that leads nowhere, back to the one before, by
+/// less.
+Newton::Outcome Continuation::sharpen_swollen(const Demand& there, Swelling how, double by, Iterate& trial) {
   const auto settled = [&](double barrier, double times) {
     work_.layers->barrier = barrier;
     const auto outcome = settle(pressed(there, times), Newton::Policy::descend, trial);
     work_.layers->barrier = 0;
     return outcome;
   };
-  double sharper = narrower;
-  for (double barrier = how.barrier; barrier > narrowest_barrier;) {
-    const Iterate last = trial;
-    const auto outcome = settled(barrier, how.boost);
-    if (outcome == Newton::Outcome::interrupted) return outcome;
-    if (outcome == Newton::Outcome::stuck && system_.contact() && barrier < how.barrier && sharper < gentlest) {
-      barrier /= sharper;
-      sharper = std::sqrt(sharper);
-      trial = last;
-    }
-    barrier *= sharper;
-  }
+  for (double barrier = how.barrier; barrier > narrowest_barrier; barrier *= by)
+    if (settled(barrier, how.boost) == Newton::Outcome::interrupted) return Newton::Outcome::interrupted;
   auto outcome = settled(0, how.boost);
-  double by = fall;
-  while (how.boost > 1 && outcome != Newton::Outcome::stuck && outcome != Newton::Outcome::interrupted) {
+  for (double falls = fall; how.boost > 1;) {
+    if (outcome == Newton::Outcome::stuck || outcome == Newton::Outcome::interrupted) return outcome;
     const Iterate last = trial;
-    const double next = std::max(1.0, by * how.boost);
+    const double next = std::max(1.0, falls * how.boost);
     outcome = settled(0, next);
-    if (outcome == Newton::Outcome::stuck && by < gentlest) {
+    if (outcome == Newton::Outcome::stuck && falls < gentlest_fall) {
       trial = last;
       outcome = Newton::Outcome::converged;
-      by = std::sqrt(by);
+      falls = std::sqrt(falls);
       continue;
     }
     how.boost = next;
-    by = std::max(fall, by * by);
+    falls = std::max(fall, falls * falls);
   }
   return outcome;
 }

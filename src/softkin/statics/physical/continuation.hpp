@@ -136,7 +136,8 @@ class Continuation {
   void pass(const Demand& demand, double done);
   std::optional<Status> out_of_patience(const Iterate& at);
   bool release(const Demand& there, Iterate& at, bool contradicting);
-  Newton::Outcome settle_swollen(const Demand& there, Swelling how, Iterate& trial);
+  Newton::Outcome settle_swollen(const Demand& there, const Swelling& how, Iterate& trial);
+  Newton::Outcome sharpen_swollen(const Demand& there, Swelling how, double by, Iterate& trial);
   [[nodiscard]] bool runs_into_flat(const Demand& there, const Iterate& at);
   [[nodiscard]] Demand pressed(Demand demand, double times) const;
   void give_loads(const Demand& demand, Iterate& at) const;
