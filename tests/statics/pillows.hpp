@@ -73,21 +73,26 @@ inline double across(const Pillow& made, const Points& positions) {
   return (positions.row(made.top) - positions.row(made.bottom)).norm();
 }
 
+/// An isotropic film on a region that wrinkles [mm, MPa].
+inline std::shared_ptr<const LayerSpec> film_layer(const std::string& region, double thickness_mm, double modulus) {
+  LayerSpec film;
+  film.name = "film";
+  film.where = RegionRef{region, {}};
+  film.thickness_mm = thickness_mm;
+  film.e1 = film.e2 = modulus;
+  film.nu12 = 0.3;
+  film.g12 = film.e1 / 2.6;
+  film.tension_only = true;
+  return std::make_shared<const LayerSpec>(film);
+}
+
 /// Film of E t = 250 N/mm that wrinkles, held at the middle of its underside and so that it cannot turn.
 inline RobotSpec film_robot(const Pillow& made, Control control = Control::load, double high = 5) {
   RobotSpec spec;
   spec.name = "pillow.yaml";
   spec.formulation = Formulation::physical;
   spec.mesh = made.mesh;
-  LayerSpec film;
-  film.name = "film";
-  film.where = RegionRef{std::string("all"), {}};
-  film.thickness_mm = 0.05;
-  film.e1 = film.e2 = 5000;
-  film.nu12 = 0.3;
-  film.g12 = film.e1 / 2.6;
-  film.tension_only = true;
-  spec.layers.push_back(std::make_shared<const LayerSpec>(film));
+  spec.layers.push_back(film_layer("all", 0.05, 5000));
   const auto one = [](Index v) { return RegionRef{Selector(VertexList{{v}}), {}}; };
   spec.fixed = {{one(made.bottom), {true, true, true}},
                 {one(made.rim[0]), {false, true, true}},

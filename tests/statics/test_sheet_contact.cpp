@@ -229,15 +229,7 @@ TEST(SheetContact, AFilmOnABodyLiftsWhatLiesOnIt) {
   }
   mesh.regions.push_back(film);
   mesh.regions.push_back(pouch);
-  LayerSpec layer;
-  layer.name = "film";
-  layer.where = RegionRef{std::string("film"), {}};
-  layer.thickness_mm = 0.1;
-  layer.e1 = layer.e2 = 200;
-  layer.nu12 = 0.3;
-  layer.g12 = layer.e1 / 2.6;
-  layer.tension_only = true;
-  spec.layers.push_back(std::make_shared<const LayerSpec>(layer));
+  spec.layers.push_back(film_layer("film", 0.1, 200));
   spec.fixed = {{{Selector(Box{{-1, -1, -1}, {81, 81, 1e-6}}), {}}, {true, true, true}}};
   ActuatorSpec air;
   air.name = "air";

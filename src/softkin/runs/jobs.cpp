@@ -34,6 +34,7 @@ std::vector<Actuation> acting_along(const Model& model, const std::vector<Actuat
                                     const std::optional<State>& start) {
   std::vector<Actuation> told;
   for (const ActuationStep& step : steps) told.push_back(step.actuation);
+  if (told.empty()) return told;
   const bool known = start && start->knows(model.rest_actuation().size());
   return acting_in_order(model, !start ? model.rest_actuation() : known ? start->actuation : told.front(), told);
 }

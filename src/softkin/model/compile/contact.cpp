@@ -96,9 +96,9 @@ double softest(const Compilation& c) {
   for (const auto* roles : {&model.tetrahedron_roles, &model.prism_roles})
     for (const ElementRole& role : *roles)
       least = std::min(least, stiffness_at_rest(model.materials[role.material].elastic).youngs_modulus_MPa);
+  if (c.sheets.empty()) return least;
   for (const auto& layer : c.spec.layers)
-    if (!c.sheets.empty())
-      least = std::min(least, std::min(layer->e1, layer->e2) * layer->thickness_mm / model.diagonal_mm);
+    least = std::min(least, std::min(layer->e1, layer->e2) * layer->thickness_mm / model.diagonal_mm);
   return least;
 }
 

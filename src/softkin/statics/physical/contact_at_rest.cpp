@@ -72,7 +72,11 @@ class RestingSurfaces {
   [[nodiscard]] bool sheet_on_own(Index triangle, Index other) const {
     return (sheet(triangle) || sheet(other)) && solid(triangle) == solid(other);
   }
-  /// Is a side, by its place, as near to a triangle at rest as what does not feel each other is?
+  /// Must they be apart at rest?
+  [[nodiscard]] bool kept_apart(Index triangle, Index other) const {
+    return may_touch(triangle, other) && !sheet_on_own(triangle, other);
+  }
+  /// Is a side as near to a triangle at rest as what does not feel each other is?
   [[nodiscard]] bool near_at_rest(const contact::Ends& side, Index triangle) const {
     const contact::Corners& c = corners(triangle);
     double least = std::numeric_limits<double>::infinity();
@@ -250,14 +254,14 @@ void refuse_touching(RestingSurfaces& at) {
   at.broad->find(at.points, least, at.team, near);
   for (const contact::Pair& pair : near.vertex_triangle) {
     const Index own = at.at_vertex(pair.first);
-    if (!at.may_touch(own, pair.second) || at.sheet_on_own(own, pair.second)) continue;
+    if (!at.kept_apart(own, pair.second)) continue;
     const auto nodes = contact::nodes_of_vertex_triangle(at.surface, pair);
     if (contact::vertex_triangle(contact::points_of(at.points, nodes)).squared <= least * least)
       refuse_crossing(at, own, pair.second, at.rest(nodes[0]));
   }
   for (const contact::Pair& pair : near.edge_edge) {
     const Index own = at.at_edge(pair.first), other = at.at_edge(pair.second);
-    if (!at.may_touch(own, other) || at.sheet_on_own(own, other)) continue;
+    if (!at.kept_apart(own, other)) continue;
     const auto x = contact::points_of(at.points, contact::nodes_of_edge_edge(at.surface, pair));
     const contact::Separation separation = contact::edge_edge(x);
     if (separation.squared <= least * least)
@@ -375,8 +379,7 @@ void refuse_narrow_gaps(RestingSurfaces& at) {
   std::optional<Vec3> where;
   for (const contact::Pair& pair : near.vertex_triangle) {
     const Index own = at.at_vertex(pair.first);
-    if (!at.of_robot(own) || at.solid(own) != at.solid(pair.second) || !at.may_touch(own, pair.second)) continue;
-    if (at.sheet_on_own(own, pair.second)) continue;
+    if (!at.of_robot(own) || at.solid(own) != at.solid(pair.second) || !at.kept_apart(own, pair.second)) continue;
     const auto nodes = contact::nodes_of_vertex_triangle(at.surface, pair);
     const contact::FourPoints x = contact::points_of(at.points, nodes);
     const contact::Separation separation = contact::vertex_triangle(x);

@@ -72,12 +72,30 @@ void sort_candidates(Candidates& candidates) {
   std::sort(candidates.edge_edge.begin(), candidates.edge_edge.end());
 }
 
-contact::Lists lying_together(const Points& rest, contact::BroadPhase& broad, Team& team,
-                              const ContactSurfaces& surfaces) {
+namespace {
+
+/// Of the same robot what is nearer at rest than twice the reach.
+Candidates near_at_rest(const Points& rest, contact::BroadPhase& broad, Team& team, const ContactSurfaces& surfaces) {
   const contact::Surface& surface = surfaces.surface;
   const double near = 4 * surfaces.reach_mm * surfaces.reach_mm;
   Candidates close;
   broad.find(rest, 2 * surfaces.reach_mm, team, close);
+  std::erase_if(close.vertex_triangle, [&](const Pair& pair) {
+    return !(same_robot(surfaces, surfaces.vertex_part, pair.first, surfaces.triangle_part, pair.second) &&
+             contact::vertex_triangle(points_of(rest, nodes_of_vertex_triangle(surface, pair))).squared < near);
+  });
+  std::erase_if(close.edge_edge, [&](const Pair& pair) {
+    return !(same_robot(surfaces, surfaces.edge_part, pair.first, surfaces.edge_part, pair.second) &&
+             contact::edge_edge(points_of(rest, nodes_of_edge_edge(surface, pair))).squared < near);
+  });
+  return close;
+}
+
+}  // namespace
+
+contact::Lists lying_together(const Points& rest, contact::BroadPhase& broad, Team& team,
+                              const ContactSurfaces& surfaces) {
+  const contact::Surface& surface = surfaces.surface;
   std::vector<Pair> together;
   const auto add = [&](const contact::Nodes& nodes, int of_first) {
     for (int i = 0; i < of_first; ++i)
@@ -91,20 +109,13 @@ contact::Lists lying_together(const Points& rest, contact::BroadPhase& broad, Te
     return surfaces.rules->sheet(
         triangles.items[static_cast<std::size_t>(triangles.begin[static_cast<std::size_t>(i)])]);
   };
-  for (const Pair& pair : close.vertex_triangle) {
-    const contact::Nodes nodes = nodes_of_vertex_triangle(surface, pair);
-    if ((sheet_at(surface.vertex_triangles, pair.first) || surfaces.rules->sheet(pair.second)) &&
-        same_robot(surfaces, surfaces.vertex_part, pair.first, surfaces.triangle_part, pair.second) &&
-        contact::vertex_triangle(points_of(rest, nodes)).squared < near)
-      add(nodes, 1);
-  }
-  for (const Pair& pair : close.edge_edge) {
-    const contact::Nodes nodes = nodes_of_edge_edge(surface, pair);
-    if ((sheet_at(surface.edge_triangles, pair.first) || sheet_at(surface.edge_triangles, pair.second)) &&
-        same_robot(surfaces, surfaces.edge_part, pair.first, surfaces.edge_part, pair.second) &&
-        contact::edge_edge(points_of(rest, nodes)).squared < near)
-      add(nodes, 2);
-  }
+  const Candidates close = near_at_rest(rest, broad, team, surfaces);
+  for (const Pair& pair : close.vertex_triangle)
+    if (sheet_at(surface.vertex_triangles, pair.first) || surfaces.rules->sheet(pair.second))
+      add(nodes_of_vertex_triangle(surface, pair), 1);
+  for (const Pair& pair : close.edge_edge)
+    if (sheet_at(surface.edge_triangles, pair.first) || sheet_at(surface.edge_triangles, pair.second))
+      add(nodes_of_edge_edge(surface, pair), 2);
   return lists_of(static_cast<std::size_t>(rest.rows()), together);
 }
 
@@ -143,21 +154,11 @@ void add_lying_together(const contact::Surface& surface, const contact::Lists& t
 void leave_out_neighbours(const Points& rest, contact::BroadPhase& broad, Team& team, ContactSurfaces& surfaces,
                           const contact::Lists& together) {
   const contact::Surface& surface = surfaces.surface;
-  const double near = 4 * surfaces.reach_mm * surfaces.reach_mm;
-  Candidates close;
-  broad.find(rest, 2 * surfaces.reach_mm, team, close);
-  std::vector<Pair> triangles, edges;
-  for (const Pair& pair : close.vertex_triangle)
-    if (same_robot(surfaces, surfaces.vertex_part, pair.first, surfaces.triangle_part, pair.second) &&
-        contact::vertex_triangle(points_of(rest, nodes_of_vertex_triangle(surface, pair))).squared < near)
-      triangles.push_back(pair);
+  Candidates close = near_at_rest(rest, broad, team, surfaces);
+  std::vector<Pair>&triangles = close.vertex_triangle, &edges = close.edge_edge;
   for (std::size_t v = 0; v < surface.vertices.size(); ++v)
     for (Index i = surface.vertex_triangles.begin[v]; i < surface.vertex_triangles.begin[v + 1]; ++i)
       triangles.push_back({static_cast<Index>(v), surface.vertex_triangles.items[static_cast<std::size_t>(i)]});
-  for (const Pair& pair : close.edge_edge)
-    if (same_robot(surfaces, surfaces.edge_part, pair.first, surfaces.edge_part, pair.second) &&
-        contact::edge_edge(points_of(rest, nodes_of_edge_edge(surface, pair))).squared < near)
-      edges.push_back(pair);
   add_lying_together(surface, together, triangles, edges);
   surfaces.unfelt_triangles = lists_of(surface.vertices.size(), triangles);
   surfaces.unfelt_edges = lists_of(surface.edges.size(), edges);
