@@ -94,7 +94,7 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
   if (!prediction()) return Newton::Outcome::blocked;
   if (whole && !led && leads_too_far(here, there, at)) return Newton::Outcome::too_far;
   const bool follows = last_.modes > 0 && !stable_ && length <= 1.001 * follow_below;
-  const auto policy = follows ? Newton::Policy::follow : Newton::Policy::descend;
+  const auto policy = follows ? Newton::Policy::follow : led ? Newton::Policy::near : Newton::Policy::descend;
   const bool again = system_.contact() && !system_.friction() && !follows;  // what rubs is stuck where it slips, too
   const Iterate begun = again ? trial : Iterate{};
   auto outcome = settle(there, policy, trial, whole && factorised_nearby(trial.positions));

@@ -80,7 +80,7 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
   negative_ = negative;
   doubtful_ = !work_.saddle.factor().trusted();
   const Precision closer = doubtful_ ? Precision::good : usual;
-  if (end == Advance::made || policy == Policy::follow) return Advance::made;
+  if (end == Advance::made || policy != Policy::descend) return Advance::made;
   for (double shift = std::max(slight_shift, last_shift_); slow_ && end == Advance::none && shift < clear_shift;
        shift *= 8) {
     ++report_.shifts;
@@ -339,6 +339,14 @@ Newton::Advance Newton::steps_from_here(Iterate& at, double& damping) {
   return quasi_newton_steps(at);
 }
 
+/// One step with an exact stiffness that is not stable, from near a stable equilibrium.
+Newton::Advance Newton::step_to_stable(Iterate& at, double& damping) {
+  const Advance advance = damped_step(at, damping);
+  damping = 1;
+  if (advance == Advance::none) return reject(at);
+  return advance == Advance::arrived ? Advance::made : advance;
+}
+
 /// Do steps shrink so fast that a new factor costs more than they do?
 bool Newton::shrink_fast() const {
   const double rate = next_.size.largest / step_.size.largest;
@@ -458,7 +466,8 @@ Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
         why_ = "no shift makes the stiffness positive";
         return Outcome::stuck;
       }
-      advance = steps_from_here(at, damping);
+      advance = policy == Policy::near && negative_ > 0 ? step_to_stable(at, damping) : steps_from_here(at, damping);
+      if (policy == Policy::near) policy = Policy::descend;
     }
     if (advance == Advance::arrived && (improve_balance() || improve_constraints())) {
       advance = Advance::made;

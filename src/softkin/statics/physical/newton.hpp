@@ -27,8 +27,9 @@ class Newton {
          SolveReport& report);
 
   /// descend: with a stiffness made positive where it is not, towards stable equilibria. follow: with the exact one,
-  /// towards the nearest equilibrium, stable or not.
-  enum class Policy { descend, follow };
+  /// towards the nearest equilibrium, stable or not. near: descend, but for the first step, which is of the exact one:
+  /// begun so near a stable equilibrium, what is unstable are mostly elements that a foretold shape presses.
+  enum class Policy { descend, follow, near };
 
   /// Moves `at` to equilibrium. Multipliers that are not active are given. The workspace is left with the last
   /// factorisation. What gets stuck with factors in single precision is tried again with others.
@@ -86,6 +87,7 @@ class Newton {
   [[nodiscard]] bool shrink_fast() const;
   Advance quasi_newton_steps(Iterate& at);
   Advance steps_from_here(Iterate& at, double& damping);
+  Advance step_to_stable(Iterate& at, double& damping);
   Advance steps_from_nearby(Iterate& at);
   [[nodiscard]] bool meets_constraints() const;
   bool improve_balance();
