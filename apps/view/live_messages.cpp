@@ -200,6 +200,13 @@ void check_command(const Actuator& actuator, double value, std::optional<Request
     throw Refusal(actuator.name + ": " + command_text(actuator, value) + " is outside " + range_text(actuator), id);
 }
 
+std::optional<RequestId> id_of(const ClientMessage& message) {
+  if (const auto* command = std::get_if<CommandRequest>(&message)) return command->id;
+  if (const auto* target = std::get_if<TargetRequest>(&message)) return target->id;
+  if (const auto* readings = std::get_if<ReadingsRequest>(&message)) return readings->id;
+  return std::nullopt;
+}
+
 ClientMessage read_client_message(std::string_view text, const Model& model, std::size_t readings) {
   if (const std::size_t longest = longest_message_of(readings); text.size() > longest)
     throw Refusal("a message is at most " + std::to_string(longest) + " bytes long");

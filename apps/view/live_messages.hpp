@@ -50,6 +50,9 @@ struct Take {};
 struct Release {};
 using ClientMessage = std::variant<Hello, CommandRequest, TargetRequest, ReadingsRequest, Take, Release>;
 
+/// Of a request; none: of what is none.
+[[nodiscard]] std::optional<RequestId> id_of(const ClientMessage& message);
+
 /// A reading is no larger than this, in its unit: so far the squares of what readings miss can be added up.
 inline constexpr double largest_reading = 1e9;
 

@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
@@ -195,6 +196,45 @@ class Solving:
             )
             for name, (value, positions, markers, loads) in zip(names, found)
         }
+
+    def gradient(
+        self,
+        shape: Shape,
+        numbers: str | Sequence[str],
+        *,
+        positions: ArrayLike | None = None,
+        markers: Mapping[str, ArrayLike] | None = None,
+        loads: Mapping[str, float] | None = None,
+    ) -> dict[str, float]:
+        """Derivatives of one value that an equilibrium is given, such as a loss, by numbers of the robot, commands
+        held: the chain rule by the adjoint, one solution however many numbers there are (where something rubs one
+        each).
+
+        shape      an equilibrium that a solve of this robot returned; physical
+        numbers    as of sensitivity()
+        positions  (n, 3), the value's derivatives by the vertices' places [1/mm]; none: it does not depend on them
+        markers    by name, (3,): the same by markers [1/mm]
+        loads      by actuator: by its pressure [1/kPa] or tension [1/N]
+        returns    by number
+        raises     InvalidInput as sensitivity(); ValueError on an unknown marker or actuator
+        """
+        robot = self._owner
+        if shape.robot is not robot:
+            raise ValueError("shape is one of another robot")
+        names = [numbers] if isinstance(numbers, str) else list(numbers)
+        count = len(robot.rest)
+        by_positions = np.zeros((count, 3)) if positions is None else floats("positions", positions, (count, 3))
+        by_markers = np.zeros((len(robot.markers), 3))
+        for name, by in (markers or {}).items():
+            by_markers[robot._core.marker(name)] = floats(f"markers {name!r}", by, (3,))
+        actuators = [info.name for info in robot.actuator_infos]
+        by_loads = np.zeros(len(actuators))
+        for name, load in (loads or {}).items():
+            if name not in actuators:
+                raise ValueError(f"loads names {name!r}, which is no actuator; there are {', '.join(actuators)}")
+            by_loads[actuators.index(name)] = load
+        found = _core.gradient(shape._core, names, by_positions, by_markers, by_loads)
+        return dict(zip(names, found.tolist()))
 
 
 def _solved(

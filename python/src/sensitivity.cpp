@@ -5,6 +5,7 @@
 #include <cmath>
 #include <softkin/core/text.hpp>
 #include <softkin/io/scene/changes.hpp>
+#include <softkin/kinematics/estimate/readings.hpp>
 #include <softkin/kinematics/jacobian.hpp>
 
 #include "bindings.hpp"
@@ -60,6 +61,24 @@ struct Changed {
   [[nodiscard]] double half() const { return perturbation * (value != 0 ? std::abs(value) : 1); }
 };
 
+/// The numbers of a robot that are asked for.
+struct Numbers {
+  std::vector<std::unique_ptr<Changed>> all;
+  std::vector<Perturbed> perturbed;
+
+  Numbers(const Source& source, const std::vector<std::string>& names) {
+    Description robot(source);
+    for (const std::string& name : names) {
+      const Changed& each = *all.emplace_back(std::make_unique<Changed>(robot, name));
+      perturbed.push_back({each.more, each.less, each.difference});
+    }
+  }
+};
+
+[[noreturn]] void refuse_singular() {
+  throw InvalidInput("the shape stands at a limit of existence or a branch, where it has no derivatives");
+}
+
 /// A number as it is, and per unit of it: moves (n, 3), those of markers (k, 3), loads of actuators (m,).
 using NumberSlopes = std::tuple<double, TableOut, TableOut, VectorOut>;
 
@@ -71,24 +90,18 @@ std::vector<NumberSlopes> sensitivity_of(const Shape& shape, const std::vector<s
   {
     const nb::gil_scoped_release released;
     const State& state = shape.found().state;
-    Description robot(shape.robot()->source());
-    std::vector<std::unique_ptr<Changed>> all;
-    std::vector<Perturbed> perturbed;
-    for (const std::string& number : numbers) {
-      const Changed& each = *all.emplace_back(std::make_unique<Changed>(robot, number));
-      perturbed.push_back({each.more, each.less, each.difference});
-    }
-    const ParameterSensitivity found = Perturbations(shape.robot()->statics(), perturbed).at(state, shape.options());
-    if (!found.regular)
-      throw InvalidInput("the shape stands at a limit of existence or a branch, where it has no derivatives");
+    const Numbers asked(shape.robot()->source(), numbers);
+    const ParameterSensitivity found =
+        Perturbations(shape.robot()->statics(), asked.perturbed).at(state, shape.options());
+    if (!found.regular) refuse_singular();
     for (std::size_t p = 0; p < numbers.size(); ++p) {
-      values.push_back(all[p]->value);
+      values.push_back(asked.all[p]->value);
       moves.emplace_back(found.positions[p]);
       loads.emplace_back(found.multipliers.col(static_cast<Index>(p)));
       Rows& rows = markers.emplace_back(static_cast<Eigen::Index>(shape.model().markers.size()), 3);
       for (Eigen::Index m = 0; m < rows.rows(); ++m)
-        rows.row(m) =
-            marker_slope(shape.model(), perturbed[p], static_cast<std::size_t>(m), state.positions, found.positions[p]);
+        rows.row(m) = marker_slope(shape.model(), asked.perturbed[p], static_cast<std::size_t>(m), state.positions,
+                                   found.positions[p]);
     }
   }
   const auto table = [](const Rows& rows) {
@@ -100,11 +113,49 @@ std::vector<NumberSlopes> sensitivity_of(const Shape& shape, const std::vector<s
   return out;
 }
 
+/// By the places of the vertices what a number changes by that it is told of by markers, (k, 3).
+Points by_places(const Shape& shape, const Points& by_markers) {
+  Points sum = Points::Zero(shape.positions().rows(), 3);
+  for (Eigen::Index m = 0; m < by_markers.rows(); ++m)
+    for (int axis = 0; axis < 3; ++axis)
+      if (const double by = by_markers(m, axis); by != 0)
+        sum += by * estimate::reading_gradient(shape.model(), {{}, static_cast<Index>(m), axis}, shape.positions());
+  return sum;
+}
+
+VectorOut gradient_of(const Shape& shape, const std::vector<std::string>& numbers, const PointsIn& by_positions,
+                      const PointsIn& by_markers, const VectorIn& by_loads) {
+  Eigen::VectorXd gradient;
+  {
+    const Points markers = points_of(by_markers);
+    ShapeGradient told{points_of(by_positions), vector_of(by_loads)};
+    const nb::gil_scoped_release released;
+    const State& state = shape.found().state;
+    const Numbers asked(shape.robot()->source(), numbers);
+    told.by_places += by_places(shape, markers);
+    const Eigen::MatrixXd found =
+        Perturbations(shape.robot()->statics(), asked.perturbed).gradients(state, {told}, shape.options());
+    if (found.cols() != static_cast<Eigen::Index>(numbers.size())) refuse_singular();
+    gradient = found.row(0).transpose();
+    const Points still = Points::Zero(state.positions.rows(), 3);  // how markers move in the shape as it is
+    for (std::size_t p = 0; p < numbers.size(); ++p)
+      for (Eigen::Index m = 0; m < markers.rows(); ++m)
+        if (!markers.row(m).isZero(0))
+          gradient[static_cast<Eigen::Index>(p)] +=
+              markers.row(m) *
+              marker_slope(shape.model(), asked.perturbed[p], static_cast<std::size_t>(m), state.positions, still);
+  }
+  return vector_out(gradient);
+}
+
 }  // namespace
 
 void bind_sensitivity(nb::module_& module) {
   module.def("sensitivity", &sensitivity_of, nb::arg("shape"), nb::arg("numbers"),
              "Per number: its value, and by it the moves (n, 3), those of markers (k, 3) and loads (m,).");
+  module.def("gradient", &gradient_of, nb::arg("shape"), nb::arg("numbers"), nb::arg("by_positions"),
+             nb::arg("by_markers"), nb::arg("by_loads"),
+             "Derivatives by the numbers of what has these by positions (n, 3), markers (k, 3) and loads (m,).");
 }
 
 }  // namespace softkin::python

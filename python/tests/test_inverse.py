@@ -155,6 +155,13 @@ def test_sensitivity(robot: softkin.Robot) -> None:
         positions = (more[0].positions - less[0].positions) / step
         np.testing.assert_allclose(by[number].positions, positions, atol=1e-4 * abs(positions).max())
         assert by[number].loads["pull"] == pytest.approx((more[1] - less[1]) / step, rel=1e-4)
+    away = np.random.default_rng(1).normal(size=shape.positions.shape)
+    found = loaded.gradient(shape, [force, modulus], positions=away, markers={"tip": (1, -2, 3)}, loads={"pull": 0.5})
+    for number, value in found.items():
+        expected = (away * by[number].positions).sum() + by[number].markers["tip"] @ (1, -2, 3)
+        assert value == pytest.approx(expected + 0.5 * by[number].loads["pull"], rel=1e-6)
+    with pytest.raises(ValueError, match="loads names 'push', which is no actuator; there are pull"):
+        loaded.gradient(shape, force, loads={"push": 1})
     with pytest.raises(softkin.InvalidInput, match="youngs_modulus"):
         loaded.sensitivity(shape, "materials.1.youngs_modulos")
     with pytest.raises(ValueError, match="another robot"):

@@ -77,6 +77,38 @@ void expect_derivatives(const RobotSpec& spec, const Actuation& actuation, const
   }
 }
 
+/// What is told of the shape by a few lopsided weights, against differences of equilibria.
+void expect_gradients(const RobotSpec& spec, const Actuation& actuation, const std::vector<Number>& numbers,
+                      double tolerance = 1e-6) {
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Equilibrium found = settled(statics, actuation, tight(1e-10));
+  std::vector<Model> models;
+  models.reserve(2 * numbers.size());
+  std::vector<Perturbed> perturbed;
+  for (const Number& number : numbers) {
+    const double half = 1e-5 * number.size;
+    const Model& more = models.emplace_back(changed(spec, number, half));
+    const Model& less = models.emplace_back(changed(spec, number, -half));
+    perturbed.push_back({more, less, 2 * half});
+  }
+  Points weights(model.rest.rows(), 3);
+  for (Eigen::Index i = 0; i < weights.size(); ++i) weights.data()[i] = std::sin(1 + 0.7 * static_cast<double>(i));
+  const Eigen::VectorXd by_loads = Eigen::VectorXd::LinSpaced(actuation.size(), 0.5, -1.5);
+  const Eigen::MatrixXd slopes =
+      Perturbations(statics, perturbed).gradients(found.state, {{weights, {}}, {{}, by_loads}, {weights, by_loads}});
+  ASSERT_EQ(slopes.cols(), static_cast<Eigen::Index>(numbers.size()));
+  for (std::size_t p = 0; p < numbers.size(); ++p) {
+    const NumberDifference by = difference_by(spec, numbers[p], found.state);
+    const double places = weights.cwiseProduct(by.positions).sum(), loads = by_loads.dot(by.multipliers);
+    const double size = by.positions.cwiseAbs().sum(), load_size = by.multipliers.cwiseAbs().sum();
+    const auto row = slopes.col(static_cast<Eigen::Index>(p));
+    EXPECT_NEAR(row[0], places, tolerance * size) << numbers[p].name;
+    EXPECT_NEAR(row[1], loads, tolerance * load_size + 1e-9 / numbers[p].size) << numbers[p].name;
+    EXPECT_NEAR(row[2], row[0] + row[1], 1e-7 * (size + load_size)) << numbers[p].name;
+  }
+}
+
 RobotSpec loaded_finger() {
   RobotSpec spec = bending_finger();
   spec.actuators.push_back(cable("tendon", {{2, 6, 14}, {31.4, 6.3, 13.2}, {58, 6, 14}}));
@@ -121,6 +153,15 @@ TEST(Parameters, OfARobotDrivenByPressureAndTension) {
   expect_derivatives(spec, values({20, 0.2}), numbers);
 }
 
+TEST(Parameters, ByTheAdjoint) {
+  expect_gradients(loaded_finger(), values({1.4, 0.93}), numbers_of_finger);
+  RobotSpec spec = loaded_finger();
+  for (ActuatorSpec& actuator : spec.actuators) actuator = by_load(actuator);
+  std::vector<Number> numbers = numbers_of_finger;
+  numbers.push_back({"factor", [](RobotSpec& s, double by) { s.actuators[1].factor += by; }, 1});
+  expect_gradients(spec, values({20, 0.2}), numbers);
+}
+
 TEST(Parameters, OfATendonThatRubs) {
   RobotSpec spec = physical_robot(block_mesh({8, 1, 2}, {80, 6, 8}));
   spec.quadratic = true;
@@ -138,6 +179,11 @@ TEST(Parameters, OfATendonThatRubs) {
       {"factor", [](RobotSpec& s, double by) { s.actuators[0].factor += by; }, 1},
       {"cable", [](RobotSpec& s, double by) { std::get<Vec3>(s.actuators[0].points[0].point).z() += by; }, 1}};
   expect_derivatives(spec, values({3}), numbers);
+  expect_gradients(spec, values({3}), {numbers[0], numbers[1]});
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const State at = settled(statics, values({3}), tight(1e-10)).state;
+  EXPECT_TRUE(statics.reciprocal_moves(at, {Points::Ones(at.positions.rows(), 3)}).empty());  // no adjoint of itself
   spec.actuators[0].control = by_length.control;
   spec.actuators[0].low = by_length.low;
   spec.actuators[0].high = by_length.high;

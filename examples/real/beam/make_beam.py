@@ -102,9 +102,10 @@ def settled(file: Path) -> dict[str, Vector]:
     return places
 
 
-def poses(folder: Path) -> str:
-    """A row for the beam under its weight, and one for that which bears 52 g, 100 mm to its side."""
-    header, rows = [], []
+def poses(folder: Path) -> list[list[str]]:
+    """The header, a row for the beam under its weight, and one for that which bears 52 g, 100 mm to its side."""
+    header: list[str] = []
+    rows: list[list[str]] = []
     for beam, file, aside in (("free", "gravity.csv", 0), ("loaded", "load_52g.csv", 100)):
         places, cells = settled(folder / file), []
         for marker in TIPS:
@@ -112,12 +113,24 @@ def poses(folder: Path) -> str:
             cells += [f"{place + shift:.3f}" for place, shift in zip(places[marker], (0, aside, 0))]
         rows.append(cells)
     empty = [""] * len(rows[0])
-    return "\n".join(",".join(cells) for cells in (header, rows[0] + empty, empty + rows[1])) + "\n"
+    return [header, rows[0] + empty, empty + rows[1]]
+
+
+def at_once(poses: list[list[str]]) -> list[list[str]]:
+    """Both beams in one row: what is told of one tells of the other."""
+    header, free, loaded = poses
+    return [header, [a or b for a, b in zip(free, loaded)]]
+
+
+def table(rows: list[list[str]]) -> str:
+    return "\n".join(",".join(cells) for cells in rows) + "\n"
 
 
 if __name__ == "__main__":
     (HERE / "beam.mesh").write_text(mesh())
     print("beam.mesh")
     if len(sys.argv) > 1:
-        (HERE / "poses.csv").write_text(poses(Path(sys.argv[1])))
-        print("poses.csv")
+        measured = poses(Path(sys.argv[1]))
+        for name, rows in (("poses.csv", measured), ("at_once.csv", at_once(measured))):
+            (HERE / name).write_text(table(rows))
+            print(name)

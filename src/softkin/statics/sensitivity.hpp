@@ -29,6 +29,12 @@ struct ParameterSensitivity {
   std::vector<Points> reactions{};  // per number where asked for, #V by 3: of what supports exert [N per unit of it]
 };
 
+/// How a number that is told of an equilibrium changes with its shape and loads.
+struct ShapeGradient {
+  Points by_places;          // #V by 3 [per mm]; no rows: not at all
+  Eigen::VectorXd by_loads;  // m: by tensions [per N] and pressures [per kPa]; no rows: not at all
+};
+
 /// Zeros, not regular.
 [[nodiscard]] inline Sensitivity no_sensitivity(Index vertices, Index actuators) {
   return {std::vector<Points>(static_cast<std::size_t>(actuators), Points::Zero(vertices, 3)),

@@ -209,6 +209,16 @@ class Perturbations {
   [[nodiscard]] ParameterSensitivity at(const State& at, const StaticsOptions& options = {}, double accuracy = 1e-8,
                                         bool reactions = false) const;
 
+  /// What is told of an equilibrium by all numbers: K Y = G^T in place of K X = F, a solution for each that is told,
+  /// however many numbers there are. Where the equations are not their own adjoint (friction, tendons that rub) by a
+  /// solution for each number.
+  ///
+  /// told     k gradients by the vertices' places and the loads
+  /// returns  k by numbers; no columns at a limit of existence or a branch
+  /// throws   InvalidInput as at(), and on gradients of another size or that are not finite
+  [[nodiscard]] Eigen::MatrixXd gradients(const State& at, const std::vector<ShapeGradient>& told,
+                                          const StaticsOptions& options = {}, double accuracy = 1e-8) const;
+
  private:
   struct Parts;
   std::unique_ptr<Parts> parts_;

@@ -253,6 +253,23 @@ Perturbation::Perturbation(const Perturbed& perturbed, const System& like)
       less(std::make_unique<const System>(perturbed.less, like)),
       difference(perturbed.difference) {}
 
+/// The right-hand side of a number.
+Derivative::Direct Derivative::ask_number(const Iterate& at, const Demand& demand, Index column,
+                                          const Perturbation& number,
+                                          const std::shared_ptr<const ViscousHistory>& history, double elapsed_s) {
+  Found more = found_by(*number.more, at, demand, active_, balance_.slips, history, elapsed_s, team_);
+  const Found less = found_by(*number.less, at, demand, active_, balance_.slips, history, elapsed_s, team_);
+  const Direct direct{(more.gradient - less.gradient) / number.difference,
+                      (more.multipliers - less.multipliers) / number.difference};
+  Points moves = (more.held - less.held) / number.difference, force = direct.force;
+  for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)
+    right_.multipliers(i, column) = -system_.measures().sign(held_[i]) *
+                                    (more.constraint[held_[i]] - less.constraint[held_[i]]) / number.difference;
+  if (!moves.isZero(0)) system_.add_pull(at, demand, balance_, moves, work_, force, team_);
+  ask(at, column, force, std::move(moves));
+  return direct;
+}
+
 ParameterSensitivity Derivative::of(const Iterate& at, const Demand& demand,
                                     const std::vector<Perturbation>& perturbations,
                                     const std::shared_ptr<const ViscousHistory>& history, double elapsed_s,
@@ -260,34 +277,58 @@ ParameterSensitivity Derivative::of(const Iterate& at, const Demand& demand,
   const auto count = static_cast<Index>(perturbations.size());
   hold(at, demand);
   make_room(count);
-  Eigen::MatrixXd loads(system_.actuators(), count);  // those that are given
-  std::vector<Points> forces;                         // of the shape as it is
-  for (Index p = 0; p < count; ++p) {
-    const Perturbation& each = perturbations[static_cast<std::size_t>(p)];
-    Found more = found_by(*each.more, at, demand, active_, balance_.slips, history, elapsed_s, team_);
-    const Found less = found_by(*each.less, at, demand, active_, balance_.slips, history, elapsed_s, team_);
-    Points force = (more.gradient - less.gradient) / each.difference;
-    Points moves = (more.held - less.held) / each.difference;
-    loads.col(p) = (more.multipliers - less.multipliers) / each.difference;
-    for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)
-      right_.multipliers(i, p) = -system_.measures().sign(held_[i]) *
-                                 (more.constraint[held_[i]] - less.constraint[held_[i]]) / each.difference;
-    if (reactions) forces.push_back(force);
-    if (!moves.isZero(0)) system_.add_pull(at, demand, balance_, moves, work_, force, team_);
-    ask(at, p, force, std::move(moves));
-  }
+  std::vector<Direct> direct;
+  for (Index p = 0; p < count; ++p)
+    direct.push_back(ask_number(at, demand, p, perturbations[static_cast<std::size_t>(p)], history, elapsed_s));
   ParameterSensitivity result{{}, Eigen::MatrixXd::Zero(system_.actuators(), count), false};
   result.regular = count == 0 || find(at, demand);
   for (Index p = 0; p < count; ++p) {
     result.positions.push_back(result.regular ? positions(at, p) : Points(Points::Zero(at.positions.rows(), 3)));
     if (result.regular) result.multipliers.col(p) = multipliers(p);
     for (Index a = 0; result.regular && a < system_.actuators(); ++a)
-      result.multipliers(a, p) += loads(a, p) / system_.measures().unit(a);
+      result.multipliers(a, p) += direct[static_cast<std::size_t>(p)].loads[a] / system_.measures().unit(a);
   }
   for (Index p = 0; reactions && p < count; ++p)
-    result.reactions.push_back(result.regular
-                                   ? this->reactions(at, demand, p, std::move(forces[static_cast<std::size_t>(p)]))
-                                   : Points(Points::Zero(at.positions.rows(), 3)));
+    result.reactions.push_back(
+        result.regular ? this->reactions(at, demand, p, std::move(direct[static_cast<std::size_t>(p)].force))
+                       : Points(Points::Zero(at.positions.rows(), 3)));
+  return result;
+}
+
+/// The right-hand side of the adjoint: K Y + G M = by_places, G^T Y - C M = by_multipliers.
+void Derivative::ask_adjoint(const Iterate& at, Index column, const ShapeGradient& told) {
+  if (told.by_places.rows() > 0) system_.freedoms().reduce(told.by_places, at.positions, right_.moves.col(column));
+  if (told.by_loads.size() == 0) return;
+  for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)
+    right_.multipliers(i, column) = told.by_loads[held_[i]] / system_.measures().unit(held_[i]);
+}
+
+/// With K X + G L = F and G^T X - C L = T of a number: by_places . X + by_multipliers . L = Y . F + M . T, and what the
+/// number changes without them.
+Eigen::MatrixXd Derivative::of(const Iterate& at, const Demand& demand, const std::vector<Perturbation>& perturbations,
+                               const std::shared_ptr<const ViscousHistory>& history, double elapsed_s,
+                               const std::vector<ShapeGradient>& told) {
+  const auto rows = static_cast<Index>(told.size()), count = static_cast<Index>(perturbations.size());
+  hold(at, demand);
+  make_room(rows);
+  for (Index r = 0; r < rows; ++r) ask_adjoint(at, r, told[static_cast<std::size_t>(r)]);
+  if (rows > 0 && !find(at, demand)) return {};
+  const Columns adjoint = std::move(found_);
+  Eigen::MatrixXd result(rows, count);
+  for (Index p = 0; p < count; ++p) {
+    make_room(1);
+    moves_[0].resize(0, 3);
+    const Direct direct = ask_number(at, demand, 0, perturbations[static_cast<std::size_t>(p)], history, elapsed_s);
+    for (Index r = 0; r < rows; ++r) {
+      const ShapeGradient& each = told[static_cast<std::size_t>(r)];
+      double sum =
+          adjoint.moves.col(r).dot(right_.moves.col(0)) + adjoint.multipliers.col(r).dot(right_.multipliers.col(0));
+      if (each.by_places.rows() > 0 && moves_[0].rows() > 0) sum += each.by_places.cwiseProduct(moves_[0]).sum();
+      for (Index a = 0; a < static_cast<Index>(each.by_loads.size()); ++a)
+        sum += each.by_loads[a] * direct.loads[a] / system_.measures().unit(a);
+      result(r, p) = sum;
+    }
+  }
   return result;
 }
 
@@ -338,6 +379,24 @@ ParameterSensitivity Equilibria::sensitivity(const State& state, const std::vect
   for (Points& moves : found.positions) drop_vertices(moves);
   for (Points& forces : found.reactions) drop_vertices(forces);
   return found;
+}
+
+Eigen::MatrixXd Equilibria::gradients(const State& state, const std::vector<Perturbation>& perturbations,
+                                      const std::vector<ShapeGradient>& told, bool reuse_factor, double accuracy,
+                                      Team& team) const {
+  const Inside at(*this, state, team);
+  Lease lease(*this, at->positions, reuse_factor);
+  system_.set_time(at->history, at->elapsed_s, lease.work(), team);
+  const Points none = Points::Zero(at->positions.rows() - state.positions.rows(), 3);  // of what is no vertex
+  std::vector<ShapeGradient> all = told;
+  for (ShapeGradient& each : all) {
+    if (each.by_places.rows() == 0) continue;
+    Points places(at->positions.rows(), 3);
+    places << each.by_places, none;
+    each.by_places = std::move(places);
+  }
+  return Derivative(system_, lease.work(), accuracy, team)
+      .of(system_.iterate(*at), {at->actuation, at->share}, perturbations, at->history, at->elapsed_s, all);
 }
 
 }  // namespace softkin::physical

@@ -35,12 +35,27 @@ class Derivative {
                                         const std::vector<Perturbation>& perturbations,
                                         const std::shared_ptr<const ViscousHistory>& history, double elapsed_s,
                                         bool reactions);
+  /// Of what is told of the equilibrium, a row each, by numbers of the robot, by the adjoint: a solution for each row.
+  /// The stiffness must be symmetric. No columns where there is no solution.
+  [[nodiscard]] Eigen::MatrixXd of(const Iterate& at, const Demand& demand,
+                                   const std::vector<Perturbation>& perturbations,
+                                   const std::shared_ptr<const ViscousHistory>& history, double elapsed_s,
+                                   const std::vector<ShapeGradient>& told);
 
  private:
+  /// What a number changes in the shape as it is.
+  struct Direct {
+    Points force;           // gradient of the Lagrangian
+    Eigen::VectorXd loads;  // those that are given, in internal units
+  };
+
   void hold(const Iterate& at, const Demand& demand);
   void make_room(Index columns);
   void ask(const Iterate& at, const Demand& demand);
   void ask(const Iterate& at, Index column, const Points& force, Points moves);
+  Direct ask_number(const Iterate& at, const Demand& demand, Index column, const Perturbation& number,
+                    const std::shared_ptr<const ViscousHistory>& history, double elapsed_s);
+  void ask_adjoint(const Iterate& at, Index column, const ShapeGradient& told);
   Points ask_along(const Iterate& at, const Demand& demand, Index column, const Actuation& change);
   bool find(const Iterate& at, const Demand& demand);
   bool solve(const Iterate& at, bool exact_factor);

@@ -52,6 +52,11 @@ class Equilibria {
   [[nodiscard]] ParameterSensitivity sensitivity(const State& at, const std::vector<Actuation>& changes,
                                                  bool reuse_factor, double accuracy, bool reactions, Team& team) const;
 
+  /// See Perturbations::gradients. The system must be reciprocal.
+  [[nodiscard]] Eigen::MatrixXd gradients(const State& at, const std::vector<Perturbation>& perturbations,
+                                          const std::vector<ShapeGradient>& told, bool reuse_factor, double accuracy,
+                                          Team& team) const;
+
   /// See Statics::reciprocal_moves.
   [[nodiscard]] std::vector<Points> moves_under(const State& at, const std::vector<Points>& forces, bool reuse_factor,
                                                 double accuracy, Team& team) const;

@@ -283,7 +283,7 @@ void System::measure(const Iterate& at, const Demand& demand, Workspace& work, E
 }
 
 bool System::multiplies_unknowns(const Workspace& work) const {
-  return symmetric() && !tendons().any() && work.layout->reduced.in_order();
+  return reciprocal() && work.layout->reduced.in_order();
 }
 
 void System::gather(const Iterate& at, const Balance& balance, Workspace& work, Team& team) const {

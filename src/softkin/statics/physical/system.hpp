@@ -166,6 +166,8 @@ class System {
   /// Is the derivative of the terms' gradient by the shape symmetric? What tendons that rub add is not, but factors
   /// hold it.
   [[nodiscard]] bool symmetric() const;
+  /// Are the equations of a Newton step those of their adjoint?
+  [[nodiscard]] bool reciprocal() const { return symmetric() && !tendons().any(); }
   /// Has all that loads it an energy?
   [[nodiscard]] bool conservative() const;
   /// Does the stiffness of any term come and go within a step?

@@ -1,0 +1,72 @@
+#include <cmath>
+#include <softkin/core/error.hpp>
+#include <softkin/statics/statics_parts.hpp>
+
+namespace softkin {
+
+namespace {
+
+double change_of(const ShapeGradient& told, const ParameterSensitivity& found, Index number) {
+  double sum = 0;
+  if (told.by_places.rows() > 0)
+    sum += told.by_places.cwiseProduct(found.positions[static_cast<std::size_t>(number)]).sum();
+  if (told.by_loads.size() > 0) sum += told.by_loads.dot(found.multipliers.col(number));
+  return sum;
+}
+
+}  // namespace
+
+struct Perturbations::Parts {
+  const Statics& statics;
+  std::vector<physical::Perturbation> perturbations{};
+};
+
+Perturbations::Perturbations(const Statics& statics, const std::vector<Perturbed>& perturbed)
+    : parts_(std::make_unique<Parts>(Parts{statics})) {
+  if (!statics.parts_->physical)
+    throw InvalidInput("derivatives by numbers of the robot are for the physical formulation");
+  for (const Perturbed& each : perturbed) {
+    if (!(each.difference != 0 && std::isfinite(each.difference)))
+      throw InvalidInput("a number is not perturbed, or by a difference that is not finite");
+    parts_->perturbations.emplace_back(each, statics.parts_->physical->system());
+  }
+}
+
+Perturbations::~Perturbations() = default;
+Perturbations::Perturbations(Perturbations&&) noexcept = default;
+Perturbations& Perturbations::operator=(Perturbations&&) noexcept = default;
+
+ParameterSensitivity Perturbations::at(const State& at, const StaticsOptions& options, double accuracy,
+                                       bool reactions) const {
+  Statics::Parts& statics = *parts_->statics.parts_;
+  statics.check_known(at, options, "the sensitivity of a shape");
+  const TeamPool::Lent team = statics.team(options);
+  return statics.physical->sensitivity(at, parts_->perturbations, options.reuse_factor, accuracy, reactions, *team);
+}
+
+Eigen::MatrixXd Perturbations::gradients(const State& at, const std::vector<ShapeGradient>& told,
+                                         const StaticsOptions& options, double accuracy) const {
+  Statics::Parts& statics = *parts_->statics.parts_;
+  statics.check_known(at, options, "the sensitivity of a shape");
+  for (const ShapeGradient& each : told) {
+    const bool places = each.by_places.rows() == 0 || each.by_places.rows() == at.positions.rows();
+    const bool loads = each.by_loads.size() == 0 || each.by_loads.size() == at.multipliers.size();
+    if (!places || !loads || !each.by_places.allFinite() || !each.by_loads.allFinite())
+      throw InvalidInput(
+          "a gradient must be of three finite values for each of the robot's vertices, and of one for "
+          "each of its actuators");
+  }
+  if (statics.physical->system().reciprocal()) {
+    const TeamPool::Lent team = statics.team(options);
+    return statics.physical->gradients(at, parts_->perturbations, told, options.reuse_factor, accuracy, *team);
+  }
+  const ParameterSensitivity found = this->at(at, options, accuracy);
+  if (!found.regular) return {};
+  Eigen::MatrixXd result(static_cast<Index>(told.size()), static_cast<Index>(found.positions.size()));
+  for (Index p = 0; p < static_cast<Index>(result.cols()); ++p)
+    for (Index r = 0; r < static_cast<Index>(result.rows()); ++r)
+      result(r, p) = change_of(told[static_cast<std::size_t>(r)], found, p);
+  return result;
+}
+
+}  // namespace softkin
