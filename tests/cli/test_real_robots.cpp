@@ -69,10 +69,10 @@ TEST(RealRobots, ABeamsModulusForetellsItsLoad) {
 TEST(RealRobots, ABeamTellsWhatHangsFromIt) {
   const RealRobot beam("beam");
   if (!beam.is_there()) GTEST_SKIP() << absent;
-  const json found = beam.estimated(
-      "at_once.csv", {"--change", "forces.mass.range=[[0, 0], [0, 0], [-2, 0]]", "--material",
-                      "all.youngs_modulus=0.269", "--unknown", "mass=-0.5+-1", "--unknown",
-                      "materials.all.stiffness=1+-0.5", "--deviation", "0.5"});
+  const json found =
+      beam.estimated("at_once.csv", {"--change", "forces.mass.range=[[0, 0], [0, 0], [-2, 0]]", "--material",
+                                     "all.youngs_modulus=0.269", "--unknown", "mass=-0.5+-1", "--unknown",
+                                     "materials.all.stiffness=1+-0.5", "--deviation", "0.5"});
   const json& mass = found["rows"][0]["numbers"][0];
   const double deviation = mass["deviation"].get<double>();
   EXPECT_NEAR(mass["value"].get<double>(), -0.510, 1.6 * deviation);

@@ -272,23 +272,6 @@ energy::LengthLaw law_of(const Separation& separation, double reach, const Conta
   return {firmness.modulus * law.value, firmness.modulus * law.slope, firmness.modulus * law.curvature};
 }
 
-/// The gap at which a barrier pushes so much.
-double gap_of_push(double push, double reach, double modulus) {
-  double nearer = 0, farther = reach;
-  const double wanted = push / modulus;
-  double gap = reach * (1 - std::sqrt(std::min(wanted, 0.5) / 3));
-  constexpr int most = 60;
-  for (int i = 0; i < most && farther - nearer > 1e-12 * reach; ++i) {
-    const energy::LengthLaw law = energy::barrier(gap, reach);
-    const double miss = -law.slope - wanted;
-    (miss > 0 ? nearer : farther) = gap;
-    const double next = law.curvature > 0 ? gap + miss / law.curvature : farther;
-    if (std::abs(next - gap) <= 1e-12 * reach) break;
-    gap = next > nearer && next < farther ? next : 0.5 * (nearer + farther);
-  }
-  return gap;
-}
-
 }  // namespace
 
 void ContactPotential::add_vertex(const Points& positions, const Candidates& candidates, std::size_t begin,
@@ -351,109 +334,6 @@ void ContactPotential::find(const Points& positions, const Candidates& candidate
     if (!(std::sqrt(found.squared) < firmness.foresight * reach)) continue;
     terms.push_back({nodes, found, surfaces_.modulus_MPa * surfaces_.area_of_edges(pair.first, pair.second),
                      contact::mollifier_threshold(points_of(rest_, nodes)), pair, law_of(found, reach, firmness)});
-  }
-}
-
-ContactPush ContactPotential::push_of(const Term& term) const {
-  const bool edges = term.threshold > 0;
-  const Index part = edges || surfaces_.triangle_part.empty()
-                         ? 0
-                         : surfaces_.triangle_part[static_cast<std::size_t>(term.pair.second)];
-  return {term.pair.first, edges ? term.pair.second : part, edges, -term.law.slope};
-}
-
-namespace {
-
-bool push_before(const ContactPush& a, const ContactPush& b) {
-  return std::tie(a.edges, a.first, a.second) < std::tie(b.edges, b.first, b.second);
-}
-
-/// Of one vertex and part, or two edges, the one that pushes most comes first.
-bool strongest_first(const ContactPush& a, const ContactPush& b) {
-  if (push_before(a, b) || push_before(b, a)) return push_before(a, b);
-  return a.push > b.push;
-}
-
-/// The one of the same vertex and part, or edges; none: null.
-ContactPush* same_push(std::vector<ContactPush>& sorted, const ContactPush& as) {
-  const auto found = std::lower_bound(sorted.begin(), sorted.end(), as, push_before);
-  return found == sorted.end() || push_before(as, *found) ? nullptr : &*found;
-}
-
-}  // namespace
-
-std::vector<ContactPush> ContactPotential::pushes(const std::vector<Term>& terms) const {
-  std::vector<ContactPush> all, nearest;
-  for (std::size_t i = 0; i < terms.size(); ++i) {
-    if (!(terms[i].weight > 0)) continue;
-    all.push_back(push_of(terms[i]));
-    all.back().term = static_cast<Index>(i);
-  }
-  std::sort(all.begin(), all.end(), strongest_first);
-  for (const ContactPush& push : all) {
-    if (!nearest.empty() && !push_before(nearest.back(), push)) continue;
-    nearest.push_back(push);
-    nearest.back().stiffness = terms[static_cast<std::size_t>(push.term)].law.curvature;
-  }
-  std::erase_if(nearest, [](const ContactPush& push) { return !(push.push > 0); });
-  return nearest;
-}
-
-/// Of gap and push of a law one is right where shapes change: the push where something rests, the gap where it does
-/// not. The line has the slope of the law where it pushes so, or where the gap for that is far below the gap at hand,
-/// the one with which the push vanishes where the gap does not change.
-void ContactPotential::straighten(std::vector<Term>& terms, std::vector<ContactPush>& known_pushes) const {
-  double most = 0;
-  for (ContactPush& push : known_pushes) {
-    push.term = -1;
-    most = std::max(most, push.push);
-  }
-  std::vector<ContactPush> fresh;
-  for (std::size_t i = 0; i < terms.size(); ++i) {
-    if (!(terms[i].weight > 0)) continue;
-    ContactPush as = push_of(terms[i]);
-    ContactPush* known = same_push(known_pushes, as);
-    as.term = static_cast<Index>(i);
-    if (known == nullptr && as.push > 0)
-      fresh.push_back(as);
-    else if (known != nullptr &&
-             (known->term < 0 ||
-              terms[i].separation.squared < terms[static_cast<std::size_t>(known->term)].separation.squared))
-      known->term = as.term;
-  }
-  std::sort(fresh.begin(), fresh.end(), strongest_first);
-  fresh.erase(std::unique(fresh.begin(), fresh.end(),
-                          [](const ContactPush& a, const ContactPush& b) { return !push_before(a, b); }),
-              fresh.end());
-  for (ContactPush& push : fresh)  // how deep it came is by chance
-    if (most > 0) push.push = std::min(push.push, most);
-  known_pushes.insert(known_pushes.end(), fresh.begin(), fresh.end());
-  std::erase_if(known_pushes, [](const ContactPush& push) { return push.term < 0; });
-  std::sort(known_pushes.begin(), known_pushes.end(), push_before);
-  for (ContactPush& push : known_pushes) {
-    const Term& term = terms[static_cast<std::size_t>(push.term)];
-    push.shift = gap_of_push(push.push, surfaces_.reach_mm, 1) - std::sqrt(term.separation.squared);
-  }
-  for (std::size_t i = 0; i < terms.size(); ++i) {
-    ContactPush* push = same_push(known_pushes, push_of(terms[i]));
-    if (push == nullptr) continue;
-    energy::LengthLaw& law = terms[i].law;
-    law = energy::barrier(std::sqrt(terms[i].separation.squared) + push->shift, surfaces_.reach_mm);
-    if (push->shift < 0) law.curvature = std::min(law.curvature, law.slope / push->shift);
-    law.slope -= law.curvature * push->shift;
-    if (push->term == static_cast<Index>(i)) push->stiffness = law.curvature;
-  }
-}
-
-void ContactPotential::follow(const std::vector<Term>& terms, const Points& moves, double share,
-                              std::vector<ContactPush>& known_pushes) const {
-  constexpr double least = 0.1;  // that one step leaves of a push
-  for (ContactPush& push : known_pushes) {
-    const Term& term = terms[static_cast<std::size_t>(push.term)];
-    const Vec3 normal = term.separation.vector / std::sqrt(term.separation.squared);
-    const double wider = normal.dot(points_of(moves, term.nodes) * term.separation.weights);
-    const double next = push.push + share * push.stiffness * (push.shift - wider);
-    push.push = std::max(next, least * push.push);
   }
 }
 

@@ -40,8 +40,6 @@ constexpr double most_correction = 0.5, least_snap = 0.01;
 constexpr double least_jump = 0.9, finest = 0.02;
 /// A longer step that inverts an element is made shorter: laws that have an energy for it have a mirrored equilibrium.
 constexpr double most_inverting = 0.01;
-/// Share of normal forces whose friction gives way, from which on it is told where the way ends.
-constexpr double worth_telling = 0.5;
 
 }  // namespace
 
@@ -177,35 +175,6 @@ void Continuation::set_out(const Demand& from, const Demand& to) {
 /// Share of all that was asked.
 double Continuation::whole(double done) const {
   return way_.then ? way_.before : way_.before + (1 - way_.before) * done;
-}
-
-/// Where loads change beside weights, prestretch and supports: these first, so that the loads alone are left, of which
-/// one can be climbed.
-bool Continuation::loads_at_last(const Iterate& at) {
-  if (way_.load >= 0 || together_ || way_.here.share == way_.to.share) return false;
-  Demand rest = way_.to;
-  rest.actuation = way_.here.actuation;
-  if (!change_loads(rest, way_.to)) return false;
-  together_ = Together{way_, at, active_, last_};
-  const Demand to = way_.to;
-  way_.before = way_.done;
-  set_out(way_.here, rest);
-  way_.then = to;
-  return true;
-}
-
-/// Weights alone lead nowhere: loads may carry them.
-void Continuation::go_together(Iterate& at) {
-  Together& before = *together_;
-  way_ = std::move(before.way);
-  at = std::move(before.at);
-  active_ = std::move(before.active);
-  last_ = before.last;
-  from_ = at.positions;
-  way_.advance *= 0.4;
-  way_.factorised = false;
-  way_.marked_iterations = report_.iterations;
-  report_.remark.clear();
 }
 
 /// Tries one step and takes it, or chooses a shorter one; a status where the way ends.
@@ -410,49 +379,6 @@ double Continuation::longest_step(bool snap, bool unstable) const {
   return snap ? finest : unstable && stable_ ? follow_below : 1;
 }
 
-bool Continuation::change_loads(const Demand& from, const Demand& to) const {
-  if (from.fading != to.fading || (system_.any_dead_load() && from.share != to.share)) return true;
-  for (Index a = 0; a < system_.actuators(); ++a)
-    if (from.actuation[a] != to.actuation[a] && (system_.loads(a) || system_.measures().given_load(a))) return true;
-  return false;
-}
-
-/// What to command instead of loads that change, which may have come to a maximum; "" where none does.
-std::string Continuation::instead_of_loads() const {
-  bool pressures = false, tensions = false, fillings = false;
-  for (Index a = 0; a < system_.actuators(); ++a) {
-    const Actuator& actuator = system_.model().actuators[a];
-    fillings = fillings || (actuator.filling && way_.from.actuation[a] != way_.to.actuation[a]);
-    if (actuator.control != Control::load || !system_.measures().measures(a) ||
-        way_.from.actuation[a] == way_.to.actuation[a])
-      continue;
-    tensions = tensions || actuator.kind == ActuatorKind::cable;
-    pressures = pressures || actuator.kind == ActuatorKind::pneumatic;
-  }
-  if (fillings) return "; where what fills a chamber has its maximum, command its volume (control: volume) to go on";
-  if (!pressures && !tensions) return "";
-  return std::string("; where a ") + (pressures ? "pressure" : "tension") + " has its maximum, command " +
-         (pressures ? "volumes (control: volume)" : "") + (pressures && tensions ? " and " : "") +
-         (tensions ? "lengths (control: length)" : "") + " to go on beyond it";
-}
-
-void Continuation::tell_balance() {
-  report_.residual_N = last_.forces.residual;
-  report_.pull_N = last_.forces.pull;
-}
-
-/// at: the last equilibrium
-Status Continuation::limit(double done, const std::string& why, const Iterate& at) {
-  tell_balance();
-  report_.reached = whole(done);
-  report_.remark = why + pull_in_text(system_.model(), way_.from, between(way_.from, way_.to, done), at.positions);
-  if (system_.limp()) report_.remark += "; sheets that nothing keeps taut have no shape of their own";
-  const double slipping = slipping_share(system_, at, work_, team_);
-  if (slipping >= worth_telling)
-    report_.remark += "; there " + number(100 * slipping, 3) + " % of what rubs slips, or nearly";
-  return Status::limit;
-}
-
 /// Slackens cables that may be longer than they are and carry nothing: held to their length they would push the body
 /// there before they are found to be slack. contradicting: those too that carry something, against another one.
 bool Continuation::release(const Demand& there, Iterate& at, bool contradicting) {
@@ -465,41 +391,6 @@ bool Continuation::release(const Demand& there, Iterate& at, bool contradicting)
     changed = true;
   }
   return changed;
-}
-
-void Continuation::tell_snap(double move_mm, double from) {
-  if (move_mm <= report_.snapped_mm) return;
-  report_.snapped_mm = move_mm;
-  report_.snapped_from = from;
-}
-
-/// What the last shape is.
-Status Continuation::arrive(const Demand& demand, Iterate& at) {
-  if (stable_ && !buckle(demand, at)) return Status::interrupted;
-  if (last_.modes > 0) tell_stability(demand, at);
-  tell_balance();
-  if (report_.friction_change > frictions_agree) {
-    report_.remark = "friction and the normal forces that limit it do not agree: it changed by " +
-                     number(100 * report_.friction_change, 2) + " % when they were found anew";
-    return Status::not_converged;
-  }
-  if (last_.balanced) {
-    if (report_.snapped_mm > 0) work_.trail.clear();
-    work_.trail.add(demand, active_, at);
-    return Status::converged;
-  }
-  report_.remark = "the steps have become small, but " + number(last_.forces.residual, 2) +
-                   " N are out of balance, where elements pull with at most " + number(last_.forces.pull, 2) +
-                   " N at a vertex";
-  return Status::not_converged;
-}
-
-/// Counts the ways in which the last shape itself is unstable.
-void Continuation::tell_stability(const Demand& demand, const Iterate& at) {
-  report_.unstable_modes = std::max(0, prepare(demand, at));
-  if (report_.unstable_modes > 0)
-    report_.remark = "this equilibrium is unstable in " + std::to_string(report_.unstable_modes) +
-                     (report_.unstable_modes == 1 ? " way" : " ways") + ": the robot would buckle or snap away from it";
 }
 
 /// Factorises at an equilibrium, for the predictor. Returns in how many ways it is unstable; -1: it is none.

@@ -10,24 +10,6 @@ namespace softkin::physical {
 
 namespace {
 
-constexpr double least_damping = 1e-3;
-/// Of the merit function's slope, that a step must bring.
-constexpr double worthwhile_descent = 1e-4;
-/// Of the steepest slope, that one must have to be followed for its own sake where nothing touches.
-constexpr double worthwhile_slope = 1e-4;
-/// By which it may rise, over its value.
-constexpr double most_rise = 1e-8;
-/// Quasi-Newton steps with one factor: each must be so much shorter than the one before, and so many cost as much as a
-/// factorisation.
-constexpr double worthwhile_contraction = 0.6;
-constexpr int most_updates = 8;
-/// Of a step, that may be left to do along it.
-constexpr double most_along = 0.5;
-/// The same where rounding has made a factor too stiff along few directions, which these steps find: a new factor would
-/// be so again. Not where things touch: steps lead to other equilibria when they are followed for too long.
-constexpr double much_rounded = 5e-3, rounded_contraction = 0.8, rounded_along = 0.8;
-/// In steps with one that is there.
-constexpr double cost_of_factor = 6;
 /// By which a stiffness that is hardly unstable is made positive, over its mean diagonal.
 constexpr double slight_shift = 1e-7, clear_shift = 1;
 /// Where steps are small but forces are not in balance, each iteration must bring them so much nearer to it.
@@ -98,31 +80,6 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
   return end;
 }
 
-/// Is a step the last? What it leaves is what it is of the one before, or with a factor in double precision nothing.
-///
-/// before  the whole step that it follows; 0: none
-bool Newton::last(const Step& step, double before) const {
-  constexpr double most_left = 0.02;  // of the tolerance
-  const double size = step.size.largest, share = before > 0 ? std::min(1.0, size / before) : 1;
-  return size < settings_.tolerance_mm &&
-         (work_.saddle.factor().in_double() || share * size < most_left * settings_.tolerance_mm);
-}
-
-/// Moves by `damping` times a step, less where something is in the way. False where the law has no energy, or where
-/// there is no way.
-bool Newton::attempt(const Step& step, double& damping, const Iterate& from) {
-  trial_ = from;
-  if (!advance_clear(system_, step.move, damping, work_, trial_.positions, team_)) return false;
-  trial_.multipliers += damping * step.change;
-  system_.evaluate(trial_, *demand_, *active_, work_, trial_balance_, team_);
-  return !trial_balance_.forbidden && trial_balance_.force.allFinite();
-}
-
-bool Newton::attempt_whole(const Step& step, const Iterate& from) {
-  double damping = 1;
-  return attempt(step, damping, from) && damping == 1;
-}
-
 /// What a step of Newton's makes less where the stiffness is positive: potential, and constraints that are missed.
 double Newton::merit(const Balance& balance) const {
   double missed = constraint_weights_.dot(balance.constraint.cwiseAbs());
@@ -167,47 +124,6 @@ double Newton::weigh_pressures(const Iterate& at, double above) {
   return slope;
 }
 
-/// Step that what was factorised last asks for, closer than the factor's precision gives it.
-///
-/// returns  how far from it the factor's own is, over that; 0 where none comes out
-double Newton::refine(const Balance& balance, const Iterate& at, Step& step) {
-  constexpr double accuracy = 0.03, worthwhile = 0.3;
-  constexpr int rounds = 6;
-  Bordered equations(system_, work_, team_);
-  equations.set_factorised(at);
-  Step found;
-  const linear::Remainder remainder = equations.step(balance, accuracy, rounds, found.move, found.change);
-  if (!(remainder.left < worthwhile)) return 0;
-  found.size = system_.freedoms().size_of(found.move, at.positions);
-  step = std::move(found);
-  return remainder.apart;
-}
-
-/// Where rounding of the factor may be why step_ leads no farther, refines it; and so all that follow with this factor,
-/// if that is why, and the next factors are in double precision.
-bool Newton::refine_first(const Iterate& at) {
-  constexpr double slow = 0.25, much = 0.15;
-  if (rounding_looked_at_ || work_.saddle.factor().in_double() || system_.contact() || system_.tendons().any())
-    return false;
-  if (next_.size.mean < slow * step_.size.mean) return false;
-  rounding_looked_at_ = true;
-  refines_ = refine(balance_, at, step_) > much;
-  if (refines_) work_.saddle.factor().distrust();
-  return refines_;
-}
-
-/// Step that the factor at hand asks for.
-void Newton::find(const Balance& balance, const Iterate& at, Step& step) {
-  const bool refined = refines_ && !work_.saddle.factor().in_double() && refine(balance, at, step) > 0;
-  if (!refined) work_.saddle.step(balance, step.move, step.change, team_);
-  for (const Secant& secant : secants_) {
-    const double part = secant.step.dot(step.move);
-    step.move += part * secant.left;
-    step.change += part * secant.left_change;
-  }
-  step.size = system_.freedoms().size_of(step.move, at.positions);
-}
-
 bool Newton::accept(double moved_mm, Iterate& at) {
   record(moved_mm);
   std::swap(at, trial_);
@@ -215,159 +131,10 @@ bool Newton::accept(double moved_mm, Iterate& at) {
   return goes_on();
 }
 
-/// Where contacts or threads cut step after step, a way with less to go is shorter; where what slides has nothing to
-/// stop it, step after whole step is as long as the last; where there is no equilibrium a stiffness that was made
-/// positive leads down, but nowhere.
-bool Newton::labours(double damping) {
-  constexpr double poor = 0.2, same = 0.9;
-  constexpr int most_poor = 8, most_same = 12, most_downhill = 5;  // in a row
-  poor_ = damping < poor ? poor_ + 1 : 0;
-  same_ = damping == 1 && next_.size.mean > same * step_.size.mean ? same_ + 1 : 0;
-  if (!system_.kinked()) return downhill_ >= most_downhill;
-  return poor_ >= most_poor || (system_.friction() && same_ >= most_same);
-}
-
-/// Where hardly anything is unstable, a stiffness that was made positive element by element is far too stiff along it:
-/// steps are many, each nearly as long as the one before.
-void Newton::note_pace(double damping) {
-  constexpr double slow = 0.5;
-  constexpr int few = 2;
-  if (negative_ == 0)
-    slow_ = system_.limp();
-  else if (system_.contact() && negative_ <= few && damping == 1)
-    slow_ |= next_.size.mean > slow * step_.size.mean;
-}
-
-/// Newton step, as long as the simplified step that follows it is shorter. next_ is that step.
-Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
-  work_.saddle.first_step(balance_, step_.move, step_.change);
-  step_.size = system_.freedoms().size_of(step_.move, at.positions);
-  if (refines_ && !work_.saddle.factor().in_double()) (void)refine(balance_, at, step_);
-  if (!std::isfinite(step_.size.mean)) {
-    why_ = "the stiffness is singular";
-    return Advance::none;
-  }
-  damping = system_.contact() ? 1 : std::min(1.0, 2 * damping);  // what was in the way may be out of it now
-  // where a gap closes the factor at hand knows nothing of what will push there, but the potential does
-  // forces that follow their normal forces have none
-  // a stiffness that was made positive leads down, if not straight; where little is left it leads to no unstable shape
-  const bool potential = (system_.kinked() || !work_.exact) && system_.conservative() &&
-                         !(work_.contacts && work_.contacts->friction_follows);
-  double slope = potential ? weigh_constraints(at) : 0;
-  steepest_ = std::min(steepest_, slope);
-  if (!system_.contact() && !system_.limp() && slope > worthwhile_slope * steepest_) slope = 0;
-  const double before = slope < 0 ? merit(balance_) : 0;
-  for (;;) {
-    double factor = 0.5;
-    if (attempt(step_, damping, at)) {
-      if (last(step_, 0)) return accept(damping * step_.size.largest, at) ? Advance::made : Advance::interrupted;
-      find(trial_balance_, trial_, next_);
-      if (refine_first(at)) continue;
-      const double rise = slope < 0 ? merit(trial_balance_) - before : 0;
-      // near a singular stiffness the next step may be long although little is left
-      const bool nearer =
-          next_.size.mean < step_.size.mean || trial_balance_.force.norm() < 0.5 * balance_.force.norm();
-      const bool lower = rise < worthwhile_descent * damping * slope;
-      downhill_ = nearer ? 0 : downhill_ + lower;
-      // up to rounding: what is nearer by its steps and yet costs more goes round in circles where things touch
-      if (lower || (nearer && !(system_.contact() && rise > most_rise * std::abs(before)))) break;
-      if (!system_.contact() && !system_.limp() &&
-          std::isfinite(next_.size.mean)) {  // the length at which a quadratic model is just good enough
-        const double residue = (next_.move - (1 - damping) * step_.move).norm() / step_.move.norm();
-        factor = std::min(0.5, damping / (2 * residue));
-      }
-    }
-    damping *= factor;
-    if (!(damping >= least_damping)) {
-      why_ = "no length of a step comes nearer";
-      return Advance::none;
-    }
-  }
-  note_pace(damping);
-  if (labours(damping)) {
-    why_ = "step after step hardly comes nearer";
-    return Advance::none;
-  }
-  return accept(damping * step_.size.largest, at) ? Advance::made : Advance::interrupted;
-}
-
 /// The workspace is back at the iterate, as the next factorisation wants it.
 Newton::Advance Newton::reject(const Iterate& at) {
   system_.evaluate(at, *demand_, *active_, work_, balance_, team_);
   return Advance::made;
-}
-
-/// Turns the simplified step next_ that follows a whole step into Broyden's. False where it does not fit.
-bool Newton::update_next() {
-  const double square = step_.move.squaredNorm(), part = step_.move.dot(next_.move) / square;
-  const double size = next_.size.mean / step_.size.mean;
-  const bool rounded = work_.saddle.factor().rounded() > much_rounded;
-  if (rounded && !system_.contact() ? !(part < rounded_along && size < rounded_contraction)
-                                    : !(part < most_along && size < worthwhile_contraction * (1 - part)))
-    return false;
-  const double scale = 1 / (square * (1 - part));
-  secants_.push_back({step_.move, scale * next_.move, scale * next_.change});
-  next_.move /= 1 - part;
-  next_.change /= 1 - part;
-  next_.size = system_.freedoms().size_of(next_.move, trial_.positions);
-  return true;
-}
-
-/// Broyden's steps after the whole step step_, with next_ the simplified one that follows it.
-///
-/// source  Deuflhard 2011, QNERR: the "good" rank-1 updates, which serve as long as the factor does
-Newton::Advance Newton::quasi_newton_steps(Iterate& at) {
-  for (int made = 1; made <= most_updates && update_next(); ++made) {
-    std::swap(step_, next_);
-    if (!attempt_whole(step_, at)) return reject(at);
-    const bool arrives = last(step_, next_.size.largest);
-    if (!arrives) {
-      find(trial_balance_, trial_, next_);
-      if (!(next_.size.mean < step_.size.mean)) return reject(at);
-    }
-    if (!accept(step_.size.largest, at)) return Advance::interrupted;
-    if (arrives) return Advance::arrived;
-  }
-  return Advance::made;
-}
-
-/// Steps with the factor of the iterate.
-Newton::Advance Newton::steps_from_here(Iterate& at, double& damping) {
-  const Advance advance = damped_step(at, damping);
-  if (advance != Advance::made || damping < 1) return advance;
-  if (last(step_, 0)) return Advance::arrived;
-  return quasi_newton_steps(at);
-}
-
-/// One step with an exact stiffness that is not stable, from near a stable equilibrium.
-Newton::Advance Newton::step_to_stable(Iterate& at, double& damping) {
-  const Advance advance = damped_step(at, damping);
-  damping = 1;
-  if (advance == Advance::none) return reject(at);
-  return advance == Advance::arrived ? Advance::made : advance;
-}
-
-/// Do steps shrink so fast that a new factor costs more than they do?
-bool Newton::shrink_fast() const {
-  const double rate = next_.size.largest / step_.size.largest;
-  if (!(rate < worthwhile_contraction)) return false;
-  const double left = std::log(settings_.tolerance_mm / next_.size.largest) / std::log(rate);
-  return left < cost_of_factor;
-}
-
-/// Steps with the factor of a shape close by, as long as they shrink fast enough.
-Newton::Advance Newton::steps_from_nearby(Iterate& at) {
-  if (!as_stiff_as_factorised(system_, at, *demand_, *active_, balance_, work_, team_)) return reject(at);
-  find(balance_, at, step_);
-  if (!std::isfinite(step_.size.mean) || !attempt_whole(step_, at)) return reject(at);
-  const bool arrives = last(step_, 0);
-  if (!arrives) {
-    find(trial_balance_, trial_, next_);
-    if (!shrink_fast()) return reject(at);
-  }
-  if (!accept(step_.size.largest, at)) return Advance::interrupted;
-  if (arrives) return Advance::arrived;
-  return quasi_newton_steps(at);
 }
 
 /// Does no constraint miss its demand by more than steps that are small enough can close?
