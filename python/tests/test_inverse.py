@@ -2,7 +2,9 @@ from __future__ import annotations
 
 import json
 import pickle
+import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -160,6 +162,12 @@ def test_sensitivity(robot: softkin.Robot) -> None:
     for number, value in found.items():
         expected = (away * by[number].positions).sum() + by[number].markers["tip"] @ (1, -2, 3)
         assert value == pytest.approx(expected + 0.5 * by[number].loads["pull"], rel=1e-6)
+    text = (Path(__file__).resolve().parents[2] / "docs/python.md").read_text()
+    (shown,) = [each for each in re.findall(r"^```python\n(.*?)^```", text, re.M | re.S) if "robot.gradient(" in each]
+    names: dict[str, Any] = {"robot": loaded, "shape": shape}
+    exec(compile(shown, "docs/python.md", "exec"), names)
+    miss = shape["tip"] - [40, 0, -80]
+    assert names["slopes"][modulus] == pytest.approx(2 * miss @ by[modulus].markers["tip"], rel=1e-6)
     with pytest.raises(ValueError, match="loads names 'push', which is no actuator; there are pull"):
         loaded.gradient(shape, force, loads={"push": 1})
     with pytest.raises(softkin.InvalidInput, match="youngs_modulus"):

@@ -87,6 +87,78 @@ TEST(Sheet, WrinklesToTheLeastEnergy) {
   for (const int times : seen) EXPECT_GT(times, 5);
 }
 
+namespace {
+
+SheetLaw rubber(const SheetRubber& constants, bool tension_only) {
+  const double modulus = constants.youngs_modulus();
+  SheetLaw law = orthotropic(modulus, modulus, modulus / 3, 0.5, tension_only);
+  law.rubber = constants;
+  return law;
+}
+
+/// By the principal stretches, the third of which keeps the volume.
+double energy_of(const SheetRubber& rubber, double first, double second) {
+  const double third = 1 / (first * second);
+  const double i1 = first * first + second * second + third * third - 3;
+  const double i2 = 1 / (first * first) + 1 / (second * second) + 1 / (third * third) - 3;
+  return rubber.c10 * i1 + rubber.c01 * i2 + rubber.c20 * i1 * i1 + rubber.c30 * i1 * i1 * i1;
+}
+
+Vec3 strain_of(double first, double second, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  const double e1 = (first * first - 1) / 2, e2 = (second * second - 1) / 2;
+  return {c * c * e1 + s * s * e2, s * s * e1 + c * c * e2, 2 * c * s * (e1 - e2)};
+}
+
+}  // namespace
+
+TEST(Sheet, RubberStoresTheLeastThatItsStretchesAllow) {
+  std::mt19937 engine(6);
+  std::uniform_real_distribution<double> stretch(0.6, 1.8), angle(0, 3);
+  int seen[3] = {};
+  for (const SheetRubber& constants :
+       {SheetRubber{0.2, 0, 0, 0}, SheetRubber{0.1, 0.05, 0, 0}, SheetRubber{0.15, 0, -0.002, 0.0004}})
+    for (int i = 0; i < 60; ++i) {
+      const double a = stretch(engine), b = stretch(engine), at = angle(engine);
+      const double first = std::max(a, b), second = std::min(a, b);
+      const double plain = energy_of(constants, first, second);
+      const Vec3 strain = strain_of(first, second, at);
+      EXPECT_NEAR(sheet_response(rubber(constants, false), strain).energy, plain, 1e-12);
+      double least = plain;  // over all wider shapes, of which the wrinkles take what is too much
+      for (double wide = second; wide < 2; wide += 1e-4) {
+        least = std::min(least, energy_of(constants, first, wide));
+        if (first < 1) least = 0;
+      }
+      const SheetResponse found = sheet_response(rubber(constants, true), strain);
+      EXPECT_NEAR(found.energy, least + 1e-6 * (plain - least), 1e-6) << first << ' ' << second;
+      ++seen[static_cast<int>(found.state)];
+    }
+  for (const int times : seen) EXPECT_GT(times, 5);
+}
+
+TEST(Sheet, DerivativesOfRubberAreThoseOfItsEnergy) {
+  std::mt19937 engine(7);
+  std::uniform_real_distribution<double> stretch(0.6, 1.8), angle(0, 3);
+  constexpr double little = 1e-6;
+  for (const bool tension_only : {false, true})
+    for (int i = 0; i < 100; ++i) {
+      const SheetLaw law = rubber({0.1, 0.04, -0.001, 0.0003}, tension_only);
+      const Vec3 strain = strain_of(stretch(engine), stretch(engine), angle(engine));
+      const SheetResponse at = sheet_response(law, strain);
+      for (int k = 0; k < 3; ++k) {
+        const auto high = sheet_response(law, strain + little * Vec3::Unit(k));
+        const auto low = sheet_response(law, strain - little * Vec3::Unit(k));
+        EXPECT_NEAR(at.stress[k], (high.energy - low.energy) / (2 * little), 1e-7);
+        if (high.state == low.state) {
+          EXPECT_LT((at.tangent.col(k) - (high.stress - low.stress) / (2 * little)).norm(), 1e-6);
+        }
+      }
+    }
+  const SheetLaw law = rubber({0.1, 0.04, 0, 0}, false);
+  EXPECT_LT((sheet_response(law, Vec3::Zero()).tangent - law.stiffness).norm(), 1e-12);
+  EXPECT_FALSE(std::isfinite(sheet_response(law, Vec3(0.1, -0.5, 0)).energy));
+}
+
 TEST(Sheet, DerivativesAreThoseOfTheEnergy) {
   std::mt19937 engine(4);
   std::uniform_real_distribution<double> any(-0.1, 0.1);

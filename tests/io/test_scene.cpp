@@ -528,8 +528,13 @@ TEST(Scene, Layers) {
       "softkin: 1\nunits: {length: cm}\nmesh: {file: a.msh}\nlayers:\n"
       "  - {name: paper, region: belly, thickness: 0.01, youngs_modulus: 2000, poisson_ratio: 0.25, bending: true}\n"
       "  - {name: cloth, region: back, thickness: 0.05, tension_only: true, direction: [0, 2, 0], density: 900,\n"
-      "     orthotropic: {e1: 30, e2: 2, g12: 0.6, nu12: 0.3}}\n");
-  ASSERT_EQ(spec.layers.size(), 2u);
+      "     orthotropic: {e1: 30, e2: 2, g12: 0.6, nu12: 0.3}}\n"
+      "  - {name: latex, region: back, thickness: 0.05, law: neo-hookean, youngs_modulus: 1.2}\n"
+      "  - {name: silicone, region: back, thickness: 0.05, law: yeoh, c10: 0.1, c30: 0.002, tension_only: true}\n");
+  ASSERT_EQ(spec.layers.size(), 4u);
+  EXPECT_NEAR(spec.layers[2]->rubber.value().c10, 0.2, 1e-15);  // E / 6
+  EXPECT_EQ(spec.layers[3]->rubber.value().c30, 0.002);
+  EXPECT_TRUE(spec.layers[3]->tension_only);
   const LayerSpec &paper = *spec.layers[0], &cloth = *spec.layers[1];
   EXPECT_EQ(paper.name, "paper");
   EXPECT_EQ(paper.origin.line, 5u);

@@ -1,3 +1,4 @@
+#include <Eigen/Eigenvalues>
 #include <Eigen/Geometry>
 #include <softkin/model/layer.hpp>
 
@@ -48,7 +49,38 @@ RealVec3 wrinkled_stress(const SheetLaw& law, const RealVec3& strain) {
   return best;
 }
 
+/// Of rubber, by its principal stretches: S of each is its force over the stretch.
+RealVec3 rubber_stress(const SheetLaw& law, const RealVec3& strain) {
+  const SheetRubber& rubber = *law.rubber;
+  Plane c;
+  c << 2 * strain[0] + 1, strain[2], strain[2], 2 * strain[1] + 1;
+  const Eigen::SelfAdjointEigenSolver<Plane> principal(c);
+  const Real a = std::sqrt(principal.eigenvalues()[1]), b = std::sqrt(principal.eigenvalues()[0]);
+  const auto slope_of = [&](Real first) {  // of the energy, by I1
+    const Real over = first - 3;
+    return static_cast<Real>(rubber.c10) + 2 * static_cast<Real>(rubber.c20) * over +
+           3 * static_cast<Real>(rubber.c30) * over * over;
+  };
+  const auto c01 = static_cast<Real>(rubber.c01);
+  const auto force = [&](Real along, Real across) {  // by the stretch along, the third keeps the volume
+    const Real third = 1 / (along * across), by_first = slope_of(along * along + across * across + third * third);
+    return 2 * by_first * (along - third * third / along) +
+           2 * c01 * (along * across * across - 1 / (along * along * along));
+  };
+  const auto stress_of = [&](Real most, Real least) {
+    const Plane s = most / a * principal.eigenvectors().col(1) * principal.eigenvectors().col(1).transpose() +
+                    least / b * principal.eigenvectors().col(0) * principal.eigenvectors().col(0).transpose();
+    return RealVec3(s(0, 0), s(1, 1), s(0, 1));
+  };
+  const RealVec3 plain = stress_of(force(a, b), force(b, a));
+  if (!law.tension_only || b * b * a >= 1) return plain;
+  const Real pull = a > 1 ? force(a, 1 / std::sqrt(a)) : 0;
+  const RealVec3 relaxed = stress_of(pull, 0);
+  return relaxed + Real(1e-6) * (plain - relaxed);
+}
+
 RealVec3 sheet_stress(const SheetLaw& law, const RealVec3& strain) {
+  if (law.rubber) return rubber_stress(law, strain);
   const RealVec3 plain = law.stiffness.cast<Real>() * strain;
   const auto presses = [](Real x, Real y, Real xy) { return x + y < 0 || x * y < xy * xy; };
   if (!law.tension_only || !presses(plain[0], plain[1], plain[2])) return plain;

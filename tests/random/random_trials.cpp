@@ -156,6 +156,10 @@ void make_layers(Making& m) {
     if (layer.e1 != layer.e2) layer.direction = Vec3(1, 0.7, 0.4);
     layer.tension_only = draw.chance(0.3);
     layer.bending = m.made.spec.quadratic && draw.chance(0.6);
+    if (layer.nu12 < -0.1 && !layer.bending) {  // drawn for another sheet: rubber in its place
+      const double share = layer.thickness_mm / (0.05 * across);
+      layer.rubber = SheetRubber{layer.e1 / 6 * (1 - share), layer.e1 / 6 * share, 0.05 * share * layer.e1, 0};
+    }
     m.made.spec.layers.push_back(std::make_shared<const LayerSpec>(layer));
   }
 }

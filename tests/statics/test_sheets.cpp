@@ -1,5 +1,6 @@
 #include <softkin/statics/deformation.hpp>
 
+#include "contact/sphere.hpp"
 #include "statics/physical_equations.hpp"
 #include "statics/physical_samples.hpp"
 #include "statics/pillows.hpp"
@@ -11,6 +12,8 @@ namespace softkin {
 namespace {
 
 using namespace testing;
+using contact::testing::make_sphere;
+using Ball = contact::testing::Sphere;
 
 /// Of two discs of radius 1 that do not stretch: what Paulsen's surface of revolution has, along whose meridians alone
 /// the film is pulled. Its profile has dy/dx = - x^2 / sqrt(r^4 - x^4).
@@ -71,6 +74,52 @@ TEST(Sheets, GasOfABagFollowsBoyle) {
   EXPECT_GT(found.state.multipliers[0], 1);
   EXPECT_NEAR((found.state.multipliers[0] + atmosphere_kPa) * volume_mL, atmosphere_kPa * amount_mL,
               1e-6 * atmosphere_kPa * amount_mL);
+}
+
+/// A balloon of rubber, held so that it neither moves nor turns.
+RobotSpec balloon(const Ball& sphere, const SheetRubber& rubber, double thickness_mm) {
+  RobotSpec spec;
+  spec.name = "balloon.yaml";
+  spec.formulation = Formulation::physical;
+  spec.mesh.vertices = sphere.points;
+  for (const auto& t : sphere.triangles) spec.mesh.triangles.push_back(t);
+  LayerSpec skin;
+  skin.name = "skin";
+  skin.where = RegionRef{std::string("all"), {}};
+  skin.thickness_mm = thickness_mm;
+  skin.rubber = rubber;
+  spec.layers.push_back(std::make_shared<const LayerSpec>(skin));
+  const auto one = [](Index v) { return RegionRef{Selector(VertexList{{v}}), {}}; };
+  spec.fixed = {{one(5), {true, true, true}}, {one(2), {true, true, false}}, {one(0), {false, true, false}}};
+  ActuatorSpec air;
+  air.name = "air";
+  air.wall = "all";
+  air.low = 1;
+  air.high = 30;
+  spec.actuators.push_back(air);
+  return spec;
+}
+
+/// p = 2 h S / (r l) of a sphere that is stretched by l, S the second Piola-Kirchhoff stress along either direction.
+TEST(Sheets, ABalloonOfRubberBearsWhatItsLawSays) {
+  constexpr double radius = 50, thickness = 0.4;
+  const Ball sphere = make_sphere(4, radius);
+  for (const SheetRubber& rubber :
+       {SheetRubber{0.1, 0, 0, 0}, SheetRubber{0.08, 0.01, 0, 0}, SheetRubber{0.1, 0, 0, 1e-4}}) {
+    const Model model = compile(balloon(sphere, rubber, thickness));
+    const Statics statics(model);
+    State from = statics.rest();
+    for (const double stretch : {1.05, std::pow(7.0, 1.0 / 6), 2.0, 2.9}) {
+      const Equilibrium found = statics.solve(Actuation::Constant(1, std::pow(stretch, 3)), from);
+      ASSERT_EQ(found.report.status, Status::converged) << stretch << ": " << found.report.remark;
+      const double second = stretch * stretch, over = 2 * second + 1 / (second * second) - 3;
+      const double by_first = rubber.c10 + 3 * rubber.c30 * over * over;
+      const double tension = 2 * (by_first + rubber.c01 * second) * (1 - std::pow(stretch, -6));  // S of each axis
+      const double pressure_kPa = 2 * thickness * tension / (radius * stretch) * 1000;
+      EXPECT_NEAR(found.state.multipliers[0], pressure_kPa, 5e-3 * pressure_kPa) << stretch;
+      from = found.state;
+    }
+  }
 }
 
 TEST(Sheets, HangOnABodyAndPullIt) {

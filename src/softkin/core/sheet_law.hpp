@@ -1,9 +1,18 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <softkin/core/types.hpp>
 
 namespace softkin {
+
+/// Of rubber that keeps its volume: W = c10 (I1 - 3) + c01 (I2 - 3) + c20 (I1 - 3)^2 + c30 (I1 - 3)^3 per volume, with
+/// the stretch across the sheet that its area leaves. c10 + c01 > 0, c01 >= 0.
+struct SheetRubber {
+  double c10 = 0, c01 = 0, c20 = 0, c30 = 0;  // [MPa]
+
+  [[nodiscard]] double youngs_modulus() const { return 6 * (c10 + c01); }  // at rest [MPa]
+};
 
 /// Of a sheet in plane stress: S = stiffness E, E = (C - I) / 2 as (E11, E22, 2 E12); W = E . S / 2 per volume. One
 /// that takes tension only wrinkles instead of being pressed: its W is the least of all E + P, P positive semidefinite.
@@ -13,6 +22,7 @@ struct SheetLaw {
   Mat3 stiffness = Mat3::Zero();   // [MPa]
   Mat3 compliance = Mat3::Zero();  // its inverse [1/MPa]
   bool tension_only = false;
+  std::optional<SheetRubber> rubber{};  // in place of the stiffness, which is that at rest
 };
 
 /// What bending at a place stores: (k - k0) . stiffness (k - k0) / 2, k = (n . x_11, n . x_22, 2 n . x_12), n the unit

@@ -11,6 +11,7 @@ namespace {
 constexpr double pressed_share = 1e-6;
 
 SheetResponse unrelaxed(const SheetLaw& law, const Vec3& strain) {
+  if (law.rubber) return taut_rubber(*law.rubber, strain);
   const Vec3 stress = law.stiffness * strain;
   return {strain.dot(stress) / 2, stress, law.stiffness, SheetState::taut};
 }
@@ -69,6 +70,7 @@ double taut_direction(const SheetLaw& law, const Vec3& strain) {
 }
 
 SheetResponse wrinkled(const SheetLaw& law, const Vec3& strain) {
+  if (law.rubber) return wrinkled_rubber(*law.rubber, strain);
   const Uniaxial at(law, strain, taut_direction(law, strain));
   SheetResponse out{at.energy(), at.a / at.m * at.along, at.along * at.along.transpose() / at.m, SheetState::wrinkled};
   const Vec3 turning = (at.a1 / at.m - at.a * at.m1 / (at.m * at.m)) * at.along + at.a / at.m * at.turned;
@@ -104,6 +106,7 @@ SheetResponse smooth_sheet_response(const SheetLaw& law, const Vec3& strain, dou
   constexpr int most_steps = 100;
   constexpr double inside = 0.9, near = 1e-13;  // of the way to where a stress is singular; of the decrement
   if (!law.tension_only) return unrelaxed(law, strain);
+  if (law.rubber) return smooth_sheet_response({law.stiffness, law.compliance, true}, strain, barrier);
   const double scale = law.stiffness(0, 0), mu = barrier * scale;
   const auto det = [](const Vec3& s) { return s[0] * s[1] - s[2] * s[2]; };
   Vec3 stress = sheet_response(law, strain).stress + Vec3(1, 1, 0) * (std::sqrt(barrier) * scale);

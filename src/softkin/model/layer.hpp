@@ -12,6 +12,7 @@ struct LayerSpec {
   double thickness_mm = 0;                         // > 0
   double e1 = 0, e2 = 0, g12 = 0;                  // [MPa], > 0, along and across the direction
   double nu12 = 0;                                 // strain across over that along, pulled along [-]
+  std::optional<SheetRubber> rubber{};             // in place of these
   std::optional<Vec3> direction;                   // laid onto the faces; none: it does not matter, e1 = e2
   bool tension_only = false;                       // wrinkles instead of being pressed
   bool bending = false;

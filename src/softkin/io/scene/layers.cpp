@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <softkin/io/scene/parts.hpp>
 #include <softkin/model/layer.hpp>
 
@@ -5,7 +6,46 @@ namespace softkin::scene {
 
 namespace {
 
+const Keys constants_of_laws{"shear_modulus", "c10", "c01", "c20", "c30"};
+
+/// Of a skin of rubber, which keeps its volume.
+SheetRubber read_rubber(const Map& map, const Node& law) {
+  const Keys names{"neo-hookean", "mooney-rivlin", "yeoh"};
+  const std::vector<Keys> required{{}, {"c10", "c01"}, {"c10"}}, optional{{}, {}, {"c20", "c30"}};
+  const std::size_t which = choice(law, names);
+  const auto has = [](const Keys& keys, const std::string& key) {
+    return std::find(keys.begin(), keys.end(), key) != keys.end();
+  };
+  const Keys moduli{"youngs_modulus", "shear_modulus"};
+  for (const std::string& key : Keys{"youngs_modulus", "shear_modulus", "c10", "c01", "c20", "c30", "orthotropic"}) {
+    const Node* found = map.find(key);
+    const bool taken = which == 0 ? has(moduli, key) : has(required[which], key) || has(optional[which], key);
+    if (found != nullptr && !taken) fail(*found, "'" + key + "' does not belong to law '" + names[which] + "'");
+  }
+  if (const Node* ratio = map.find("poisson_ratio"); ratio != nullptr && number(*ratio) != 0.5)
+    fail(*ratio, "a skin of a rubber law keeps its volume: 'poisson_ratio' is 0.5, or left out");
+  if (which == 0) {
+    const Node::Entry& given = map.one_of(moduli);
+    return {positive(*given.value) / (given.key == "youngs_modulus" ? 6 : 2), 0, 0, 0};
+  }
+  const auto constant = [&](const char* key) {
+    const Node* found = map.find(key);
+    return found == nullptr ? 0.0 : number(*found);
+  };
+  for (const std::string& key : required[which]) (void)map.at(key);
+  const SheetRubber rubber{constant("c10"), constant("c01"), constant("c20"), constant("c30")};
+  if (!(rubber.c10 + rubber.c01 > 0)) fail(map.at("c10"), "'c10' + 'c01' must be greater than 0");
+  if (rubber.c01 < 0) fail(map.at("c01"), "'c01' must be 0 or more");
+  return rubber;
+}
+
 void read_stiffness(const Map& map, LayerSpec& layer) {
+  if (const Node* law = map.find("law")) {
+    layer.rubber = read_rubber(map, *law);
+    return;
+  }
+  for (const std::string& key : constants_of_laws)
+    if (const Node* found = map.find(key)) fail(*found, "'" + key + "' is of a 'law'; name it");
   const Node::Entry& given = map.one_of({"youngs_modulus", "orthotropic"});
   const Node* ratio = map.find("poisson_ratio");
   if (given.key == "youngs_modulus") {
@@ -28,8 +68,9 @@ void read_stiffness(const Map& map, LayerSpec& layer) {
 }  // namespace
 
 std::shared_ptr<const LayerSpec> read_layer(const Context& context, const Node& node, Names& names) {
-  const Map map(node, {"name", "region", "surface", "unit", "thickness", "youngs_modulus", "poisson_ratio",
-                       "orthotropic", "direction", "tension_only", "bending", "density"});
+  const Map map(node, {"name", "region", "surface", "unit", "thickness", "law", "youngs_modulus", "poisson_ratio",
+                       "shear_modulus", "c10", "c01", "c20", "c30", "orthotropic", "direction", "tension_only",
+                       "bending", "density"});
   auto layer = std::make_shared<LayerSpec>();
   layer->name = names.add_label(map.at("name"));
   layer->origin = node.origin;
@@ -46,6 +87,8 @@ std::shared_ptr<const LayerSpec> read_layer(const Context& context, const Node& 
   }
   layer->tension_only = is_true(map, "tension_only");
   layer->bending = is_true(map, "bending");
+  if (layer->bending && layer->rubber)
+    fail(map.at("bending"), "a skin of a rubber law does not bend: 'bending' takes 'youngs_modulus' or 'orthotropic'");
   if (const Node* density = map.find("density")) layer->density = read_density(*density);
   return layer;
 }

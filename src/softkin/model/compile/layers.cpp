@@ -22,25 +22,40 @@ constexpr std::size_t most_layer_triangles = 200000;
   throw InvalidInput(spec.origin, "layer '" + spec.name + "' " + what);
 }
 
+void check_rubber(const LayerSpec& spec) {
+  const SheetRubber& rubber = *spec.rubber;
+  for (const double value : {rubber.c10, rubber.c01, rubber.c20, rubber.c30})
+    if (!std::isfinite(value)) refuse_layer(spec, "has a law with a constant that is not finite");
+  if (!(rubber.c01 >= 0))
+    refuse_layer(spec, "needs a c01 of 0 or more: rubber that is pressed across would gain by it");
+  if (!(rubber.youngs_modulus() > 0)) refuse_layer(spec, "needs c10 + c01 above 0");
+  if (spec.bending)
+    refuse_layer(spec, "bends, which takes a Young's modulus or orthotropic constants: skins of a rubber law do not");
+}
+
 void check_layer(const LayerSpec& spec) {
   const auto above_0 = [&](double value, const std::string& name) {
     if (!(value > 0) || !std::isfinite(value)) refuse_layer(spec, "needs " + name + " above 0");
   };
   above_0(spec.thickness_mm, "a thickness");
+  if (!(spec.density >= 0) || !std::isfinite(spec.density)) refuse_layer(spec, "needs a density of 0 or more");
+  if (spec.direction && (!spec.direction->allFinite() || !(spec.direction->norm() > 0)))
+    refuse_layer(spec, "needs a direction that is not 0");
+  if (spec.rubber) return check_rubber(spec);
   above_0(spec.e1, "a Young's modulus along its direction");
   above_0(spec.e2, "a Young's modulus across its direction");
   above_0(spec.g12, "a shear modulus");
   if (!std::isfinite(spec.nu12) || spec.nu12 * spec.nu12 >= spec.e1 / spec.e2)
     refuse_layer(spec, "has a Poisson's ratio of " + number(spec.nu12) + ": its square must be below e1 / e2, " +
                            number(spec.e1 / spec.e2) + ", or it would have no stiffness");
-  if (!(spec.density >= 0) || !std::isfinite(spec.density)) refuse_layer(spec, "needs a density of 0 or more");
-  if (spec.direction && (!spec.direction->allFinite() || !(spec.direction->norm() > 0)))
-    refuse_layer(spec, "needs a direction that is not 0");
 }
 
 SheetLaw law_of(const LayerSpec& spec) {
-  SheetLaw law;
-  law.compliance << 1 / spec.e1, -spec.nu12 / spec.e1, 0, -spec.nu12 / spec.e1, 1 / spec.e2, 0, 0, 0, 1 / spec.g12;
+  const double soft = spec.rubber ? spec.rubber->youngs_modulus() : 0;  // keeps its volume
+  const double e1 = spec.rubber ? soft : spec.e1, e2 = spec.rubber ? soft : spec.e2;
+  const double nu12 = spec.rubber ? 0.5 : spec.nu12, g12 = spec.rubber ? soft / 3 : spec.g12;
+  SheetLaw law{Mat3::Zero(), Mat3::Zero(), false, spec.rubber};
+  law.compliance << 1 / e1, -nu12 / e1, 0, -nu12 / e1, 1 / e2, 0, 0, 0, 1 / g12;
   law.stiffness = law.compliance.inverse();
   law.tension_only = spec.tension_only;
   return law;

@@ -197,6 +197,10 @@ void Layers::evaluate(const Iterate& at, const Demand& /*demand*/, Term::Scratch
       const Sheet f = sheet_gradient(*place, at.positions);
       const energy::SheetResponse response = respond(*face.law, green_strain(f), barrier);
       const double volume = place->area_mm2 * face.thickness_mm;
+      if (!std::isfinite(response.energy) || !response.stress.allFinite()) {  // rubber without area
+        sum.forbidden = true;
+        return;
+      }
       sum.energy += volume * response.energy;
       const Sheet pull = volume * f * as_matrix(response.stress);
       for (std::size_t i = 0; i < place->vertices.size(); ++i) {
@@ -228,15 +232,17 @@ void Layers::add_cliques(linear::Cliques& cliques) {
 namespace {
 
 /// Of a place, added to blocks of its vertices: those in order have these places among the place's own.
-void add_sheet_stiffness(const LayerPlace& place, const energy::SheetResponse& response, const Sheet& f,
+void add_sheet_stiffness(const LayerPlace& place, const SheetLaw& law, double barrier, const Sheet& f,
                          double thickness_mm, bool projected, const std::vector<std::size_t>& order, double* out) {
   const double volume = place.area_mm2 * thickness_mm;
+  const energy::SheetResponse response = respond(law, green_strain(f), barrier);
   Eigen::Matrix2d stress = as_matrix(response.stress);
   if (projected) stress = pulling(stress);
+  const Mat3 tangent = projected && law.rubber ? positive(response.tangent) : response.tangent;
   std::vector<Mat3> slopes;
   for (const std::size_t i : order) slopes.push_back(strain_slope(f, place.slopes[i]));
   for (std::size_t i = 0; i < order.size(); ++i) {
-    const Mat3 left = volume * slopes[i].transpose() * response.tangent;
+    const Mat3 left = volume * slopes[i].transpose() * tangent;
     for (std::size_t j = 0; j <= i; ++j, out += 9) {
       Mat3 block = left * slopes[j];
       block.diagonal().array() += volume * place.slopes[order[i]].dot(stress * place.slopes[order[j]]);
@@ -261,8 +267,8 @@ void Layers::stiffness(const Iterate& at, const Demand& /*demand*/, bool project
       double* const first = room(face.slot, face.vertices.size());
       for (std::size_t p = 0; p < face.places.size(); ++p) {
         const Sheet f = sheet_gradient(*face.places[p], at.positions);
-        add_sheet_stiffness(*face.places[p], respond(*face.law, green_strain(f), barrier), f, face.thickness_mm,
-                            projected, face.orders[p], first);
+        add_sheet_stiffness(*face.places[p], *face.law, barrier, f, face.thickness_mm, projected, face.orders[p],
+                            first);
       }
     }
   });
