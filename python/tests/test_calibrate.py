@@ -258,6 +258,36 @@ def test_dots_without_names(examples: Path, command: str, tmp_path: Path) -> Non
         calibrate.robot(scene, poses, match_within_mm=0)
 
 
+def test_outlines_in_pictures(examples: Path, tmp_path: Path) -> None:
+    scenes = examples.parent / "docs" / "scenes"
+    scene, table = scenes / "finger_pressure.yaml", tmp_path / "outlines.csv"
+    poses = scenes / "finger_pictures.csv"
+    bent = softkin.load(scene, changes={"materials.body.youngs_modulus": 38})
+    # the lower side of the finger, which is flat at rest, with its gap where the teeth would be
+    lines = ["picture,x_mm,y_mm"]
+    below = [bent.vertices[:, 2] < 1e-6][0] & (abs(bent.vertices[:, 1]) < 1e-6)
+    for number, pressure in enumerate((0, 700, 1200), 1):
+        places = bent.solve({"air": pressure}).vertices[below]
+        places = places[bent.vertices[below, 0].argsort()]
+        lines += [f"{number},{x!r},{z!r}" for x, _, z in places.tolist()]
+    table.write_text("\n".join(lines) + "\n")
+    fit = {"materials.body.youngs_modulus": (45, 10, 100), "base.z": None}
+    given = {"camera.rx": -90}
+    found = calibrate.robot(scene, poses, fit=fit, outlines=table, outline_points=20, outline_within_mm=3, given=given)
+    assert found.converged
+    assert found.values["materials.body.youngs_modulus"] == pytest.approx(38, rel=0.01)
+    assert found.report["given"] == {"camera.rx": -90.0} and found.report["outlines"]["within_mm"] == 3
+    assert found.report["poses"][1]["outline"]["picture"] == 2
+    found.save_plot(tmp_path / "fit.svg")
+    assert "computed outline" in (tmp_path / "fit.svg").read_text()
+    with pytest.raises(softkin.InvalidInput, match="no column 'picture'"):
+        calibrate.robot(scene, scenes / "finger_poses.csv", outlines=table)
+    with pytest.raises(ValueError, match="outline_points"):
+        calibrate.robot(scene, poses, outlines=table, outline_points=0)
+    with pytest.raises(ValueError, match="outline_within_mm"):
+        calibrate.robot(scene, poses, outlines=table, outline_within_mm=0)
+
+
 def test_a_robot_from_its_poses_refuses(examples: Path, tmp_path: Path) -> None:
     scenes = examples.parent / "docs" / "scenes"
     scene, poses = scenes / "finger_order_1.yaml", scenes / "finger_poses.csv"
