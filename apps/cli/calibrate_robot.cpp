@@ -68,25 +68,14 @@ void check_options(const RobotOptions& options) {
     throw CLI::ValidationError("--outline-within", "give --outlines too, which are matched");
 }
 
-/// Begun where an earlier fit ended if that is to go on.
-std::vector<calibration::FittedNumber> asked_numbers(const RobotOptions& options) {
-  std::vector<calibration::FittedNumber> numbers;
-  for (const std::string& text : options.numbers) numbers.push_back(calibration::parse_fitted_number("--fit", text));
-  if (!options.resume) return numbers;
-  const Eigen::VectorXd values = calibration::fitted_values(options.report, numbers);
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-    if (!numbers[i].deviation) numbers[i].start = values[static_cast<Index>(i)];
-  return numbers;
-}
-
 int calibrate_robot(const RobotOptions& options) {
   check_options(options);
   std::vector<fs::path> inputs{options.robot.scene, options.poses};
   if (!options.outlines.empty()) inputs.emplace_back(options.outlines);
-  const std::vector<calibration::FittedNumber> numbers = asked_numbers(options);
-  std::vector<calibration::GivenNumber> given;
-  for (const std::string& text : options.given) given.push_back(calibration::parse_given_number("--given", text));
-  const calibration::NumberedRobot robot(options.robot, numbers, inputs, given);
+  std::vector<calibration::FittedNumber> numbers = calibration::parse_fitted_numbers("--fit", options.numbers);
+  if (options.resume) calibration::begin_where_fit_ended(options.report, numbers);
+  const calibration::NumberedRobot robot(options.robot, numbers, inputs,
+                                         calibration::parse_given_numbers("--given", options.given));
   std::vector<Output> outputs = options.outputs();
   if (options.resume) leave_to_resume(outputs, options.report);
   check_outputs(outputs, inputs, options.may_replace);

@@ -53,11 +53,8 @@ calibration::NumberedRobot robot_of(const PosesTask& task) {
   asked.scene = task.scene;
   asked.changes = task.changes;
   std::vector<std::filesystem::path> inputs;
-  std::vector<calibration::FittedNumber> numbers;
-  for (const std::string& text : task.numbers) numbers.push_back(calibration::parse_fitted_number("fit", text));
-  std::vector<calibration::GivenNumber> given;
-  for (const std::string& text : task.given) given.push_back(calibration::parse_given_number("given", text));
-  return {asked, numbers, inputs, given};
+  return {asked, calibration::parse_fitted_numbers("fit", task.numbers), inputs,
+          calibration::parse_given_numbers("given", task.given)};
 }
 
 RobotCalibration fit(const PosesTask& task,

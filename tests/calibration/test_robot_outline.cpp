@@ -8,6 +8,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/io/table/measured_outlines.hpp>
 #include <softkin/io/table/measured_poses.hpp>
+#include <softkin/model/mesh/mesh_order.hpp>
 
 #include "calibration/arm_poses.hpp"
 #include "calibration/outline_samples.hpp"
@@ -41,6 +42,63 @@ MeasuredPoses outlines_of(const Arm& arm, const std::vector<std::string>& number
 
 const std::vector<std::string> made_outlines{"materials.body.youngs_modulus=0.2", "base.ry=4", "base.z=2"},
     fitted_to_outlines{"materials.body.youngs_modulus=0.3,0.05,2", "base.ry", "base.z"};
+
+/// Which points of a grid of a quarter of a mm triangles cover, from (-60, -60) on, row by row.
+class Covered {
+ public:
+  Covered(const std::vector<Triangle>& triangles, const Points& seen) : cells_(side * side) {
+    for (const Triangle& t : triangles) {
+      const Vector2d a = seen.row(t[0]).head<2>(), b = seen.row(t[1]).head<2>(), c = seen.row(t[2]).head<2>();
+      const Vector2d low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
+      for (int j = at(low.y()); j <= at(high.y()) + 1; ++j)
+        for (int i = at(low.x()); i <= at(high.x()) + 1; ++i) {
+          const auto left_of = [&](const Vector2d& from, const Vector2d& to) {
+            const Vector2d arm = Vector2d(i * step - 60, j * step - 60) - from, along = to - from;
+            return along.x() * arm.y() - along.y() * arm.x() > 0;
+          };
+          const bool ab = left_of(a, b), bc = left_of(b, c), ca = left_of(c, a);
+          if (ab == bc && bc == ca) cells_[static_cast<std::size_t>(j * side + i)] = true;
+        }
+    }
+  }
+
+  /// Is it near a place where what is covered ends?
+  [[nodiscard]] bool ends_near(const Vector2d& place) const {
+    bool any = false, all = true;
+    for (int j = at(place.y()) - 1; j <= at(place.y()) + 2; ++j)
+      for (int i = at(place.x()) - 1; i <= at(place.x()) + 2; ++i) any = any || is(i, j), all = all && is(i, j);
+    return any && !all;
+  }
+  /// Points that are covered beside one that is not.
+  [[nodiscard]] std::vector<Vector2d> border() const {
+    std::vector<Vector2d> border;
+    for (int j = 1; j + 1 < side; ++j)
+      for (int i = 1; i + 1 < side; ++i)
+        if (is(i, j) && !(is(i - 1, j) && is(i + 1, j) && is(i, j - 1) && is(i, j + 1)))
+          border.emplace_back(i * step - 60, j * step - 60);
+    return border;
+  }
+
+ private:
+  static constexpr int side = 480;
+  static constexpr double step = 0.25;
+
+  [[nodiscard]] static int at(double place) { return static_cast<int>(std::floor((place + 60) / step)); }
+  [[nodiscard]] bool is(int i, int j) const { return cells_[static_cast<std::size_t>(j * side + i)]; }
+
+  std::vector<bool> cells_;
+};
+
+/// A block of 120 x 10 x 10 mm wound up to a coil that is in front of itself.
+std::pair<std::vector<Triangle>, Points> coil() {
+  const Mesh mesh = block_mesh({48, 3, 3}, {120, 10, 10});
+  Points wound(mesh.vertices.rows(), 3);
+  for (Eigen::Index v = 0; v < wound.rows(); ++v) {
+    const double turn = mesh.vertices(v, 0) / 15, radius = 14 + mesh.vertices(v, 2);
+    wound.row(v) << radius * std::cos(turn), radius * std::sin(turn), mesh.vertices(v, 1) + 2 * turn;
+  }
+  return {boundary_triangles(mesh.tetrahedra, mesh.edge_nodes, mesh.prisms), wound};
+}
 
 Vector2d on_circle(double turn) {
   return {10 * std::cos(turn), 10 * std::sin(turn)};
@@ -100,6 +158,33 @@ TEST(RobotOutline, OfABlockIsTheHullOfItsCorners) {
     const std::optional<OutlinePlace> facing = outline.nearest({30, 4}, Vector2d(0, 1));
     ASSERT_TRUE(facing.has_value());
     EXPECT_GT(facing->outward.y(), 0);
+  }
+}
+
+/// Everywhere and nowhere else than where what it covers ends, whatever hides behind it.
+TEST(RobotOutline, IsTheBorderOfWhatIsCovered) {
+  const auto [triangles, wound] = coil();
+  const SurfaceEdges surface(triangles);
+  for (const double turn : {0.0, 25.0, 60.0, 90.0, 140.0}) {
+    const MeasuringFrame frame =
+        Arm().robot({}, {{"camera.rx", turn, ""}, {"camera.rz", 20 + turn, ""}}).frame(Eigen::VectorXd(0));
+    const Points seen = wound * frame.rotation.transpose();
+    const SeenOutline outline(surface, seen);
+    const Covered covered(triangles, seen);
+    std::size_t within = 0, pieces = 0;
+    for (const auto& [begin, end] : outline.lines())
+      for (int k = 0; k < 10; ++k, ++pieces) within += !covered.ends_near(begin + (k + 0.5) / 10 * (end - begin));
+    EXPECT_GT(pieces, 500u);
+    EXPECT_LT(within, pieces / 100) << turn;  // at slits that are narrower than the grid
+    std::size_t far = 0, all = 0;
+    for (const Vector2d& place : covered.border()) {
+      const std::optional<OutlinePlace> nearest = outline.nearest(place, Vector2d(0, 0));
+      ASSERT_TRUE(nearest.has_value());
+      far += (nearest->place - place).norm() > 0.4;
+      ++all;
+    }
+    EXPECT_GT(all, 500u);
+    EXPECT_LT(far, all / 200) << turn;  // where a piece of an edge is hidden up to its nearest place
   }
 }
 

@@ -122,9 +122,9 @@ def robot(
         "deviation_angle_deg": deviation_angle_deg,
         "deviation_direction": deviation_direction,
     }
-    for name, given in deviations.items():
-        if given is not None and not given > 0:
-            raise ValueError(f"{name} must be greater than 0, not {given}")
+    for name, deviation in deviations.items():
+        if deviation is not None and not deviation > 0:
+            raise ValueError(f"{name} must be greater than 0, not {deviation}")
     if match_within_mm is not None and not match_within_mm > 0:
         raise ValueError(f"match_within_mm must be greater than 0, not {match_within_mm}")
     if outline_points < 1:
@@ -140,7 +140,7 @@ def robot(
     else:
         task.numbers = list(fit)
     task.changes = [f"{path}={yaml_text(value)}" for path, value in (changes or {}).items()]
-    task.deviations = [given or 0 for given in deviations.values()]
+    task.deviations = [deviation or 0 for deviation in deviations.values()]
     task.match_within_mm = match_within_mm or 0
     task.outlines = "" if outlines is None else os.fspath(outlines)
     task.outline_points = outline_points

@@ -88,6 +88,12 @@ FittedNumber parse_fitted_number(const std::string& option, const std::string& t
   return fitted;
 }
 
+std::vector<FittedNumber> parse_fitted_numbers(const std::string& option, const std::vector<std::string>& texts) {
+  std::vector<FittedNumber> numbers;
+  for (const std::string& text : texts) numbers.push_back(parse_fitted_number(option, text));
+  return numbers;
+}
+
 GivenNumber parse_given_number(const std::string& option, const std::string& text) {
   const auto refuse = [&](const std::string& why) { throw InvalidInput(option + " " + excerpt(text) + ": " + why); };
   const std::size_t equals = text.find('=');
@@ -100,6 +106,12 @@ GivenNumber parse_given_number(const std::string& option, const std::string& tex
   const std::string value(trimmed(std::string_view(text).substr(equals + 1)));
   if (!parse_real(value, given.value)) refuse("expected a finite number, not " + excerpt(value));
   return given;
+}
+
+std::vector<GivenNumber> parse_given_numbers(const std::string& option, const std::vector<std::string>& texts) {
+  std::vector<GivenNumber> numbers;
+  for (const std::string& text : texts) numbers.push_back(parse_given_number(option, text));
+  return numbers;
 }
 
 NumberedRobot::NumberedRobot(const AskedScene& asked, const std::vector<FittedNumber>& numbers,

@@ -25,6 +25,8 @@ struct FittedNumber {
 ///
 /// throws  InvalidInput naming option and text
 [[nodiscard]] FittedNumber parse_fitted_number(const std::string& option, const std::string& text);
+[[nodiscard]] std::vector<FittedNumber> parse_fitted_numbers(const std::string& option,
+                                                             const std::vector<std::string>& texts);
 
 /// A coordinate of the measuring frame that is known, named as those that are fitted.
 struct GivenNumber {
@@ -37,6 +39,8 @@ struct GivenNumber {
 ///
 /// throws  InvalidInput naming option and text
 [[nodiscard]] GivenNumber parse_given_number(const std::string& option, const std::string& text);
+[[nodiscard]] std::vector<GivenNumber> parse_given_numbers(const std::string& option,
+                                                           const std::vector<std::string>& texts);
 
 /// Where the robot's frame stands in that of the measurements: x = rotation X + place.
 struct MeasuringFrame {

@@ -278,7 +278,7 @@ Table robot_fit_table(const RobotFitReport& r) {
   return table;
 }
 
-Eigen::VectorXd fitted_values(const std::string& file, const std::vector<FittedNumber>& numbers) {
+void begin_where_fit_ended(const std::string& file, std::vector<FittedNumber>& numbers) {
   const auto refuse = [&](const std::string& why) { throw InvalidInput({file}, why); };
   Json json;
   try {
@@ -286,16 +286,14 @@ Eigen::VectorXd fitted_values(const std::string& file, const std::vector<FittedN
     if (json.at("softkin_robot_fit") != 1) refuse("is no report of a robot's fit of this version");
     const Json& found = json.at("numbers");
     if (found.size() != numbers.size()) refuse("is of other numbers than those asked for");
-    Eigen::VectorXd values(static_cast<Index>(numbers.size()));
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       if (found[i].at("name").get<std::string>() != numbers[i].name) refuse("is of other numbers than those asked for");
-      values[static_cast<Index>(i)] = found[i].at("value").get<double>();
+      const double value = found[i].at("value").get<double>();
+      if (!numbers[i].deviation) numbers[i].start = value;
     }
-    return values;
   } catch (const Json::exception&) {
     refuse("is no report of a robot's fit");
   }
-  return {};
 }
 
 }  // namespace softkin::calibration

@@ -34,8 +34,8 @@ class PhotoSeries {
 
   // Of one photograph at least.
 
-  /// Markers and angles, a row for each photograph; of a specimen its lengths, a row for each stretch; of outlines a row
-  /// for each of their points: docs/measure.md.
+  /// Markers and angles, a row for each photograph; of a specimen its lengths, a row for each stretch; of outlines
+  /// their points: docs/measure.md.
   [[nodiscard]] Table table() const;
   /// The same as the content of a file, with what it was measured from as comments.
   [[nodiscard]] std::string csv() const;
