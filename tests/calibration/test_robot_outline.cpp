@@ -62,6 +62,20 @@ class Covered {
     }
   }
 
+  /// What is not reached from outside is covered, too.
+  void fill() {
+    std::vector<bool> outside(cells_.size());
+    std::vector<int> next{0};
+    while (!next.empty()) {
+      const int k = next.back();
+      next.pop_back();
+      if (k < 0 || k >= side * side || outside[std::size_t(k)] || cells_[std::size_t(k)]) continue;
+      outside[std::size_t(k)] = true;
+      next.insert(next.end(), {k - 1, k + 1, k - side, k + side});
+    }
+    for (std::size_t k = 0; k < cells_.size(); ++k) cells_[k] = !outside[k];
+  }
+
   /// Is it near a place where what is covered ends?
   [[nodiscard]] bool ends_near(const Vector2d& place) const {
     bool any = false, all = true;
@@ -162,7 +176,7 @@ TEST(RobotOutline, OfABlockIsTheHullOfItsCorners) {
 }
 
 /// Everywhere and nowhere else than where what it covers ends, whatever hides behind it.
-TEST(RobotOutline, IsTheBorderOfWhatIsCovered) {
+TEST(RobotOutline, IsTheOuterBorderOfWhatIsCovered) {
   const auto [triangles, wound] = coil();
   const SurfaceEdges surface(triangles);
   for (const double turn : {0.0, 25.0, 60.0, 90.0, 140.0}) {
@@ -170,12 +184,13 @@ TEST(RobotOutline, IsTheBorderOfWhatIsCovered) {
         Arm().robot({}, {{"camera.rx", turn, ""}, {"camera.rz", 20 + turn, ""}}).frame(Eigen::VectorXd(0));
     const Points seen = wound * frame.rotation.transpose();
     const SeenOutline outline(surface, seen);
-    const Covered covered(triangles, seen);
+    Covered covered(triangles, seen);
+    covered.fill();
     std::size_t within = 0, pieces = 0;
     for (const auto& [begin, end] : outline.lines())
       for (int k = 0; k < 10; ++k, ++pieces) within += !covered.ends_near(begin + (k + 0.5) / 10 * (end - begin));
-    EXPECT_GT(pieces, 500u);
-    EXPECT_LT(within, pieces / 100) << turn;  // at slits that are narrower than the grid
+    EXPECT_GT(pieces, 400u);
+    EXPECT_LT(within, pieces / 20) << turn;  // at slits that are narrower than the grid
     std::size_t far = 0, all = 0;
     for (const Vector2d& place : covered.border()) {
       const std::optional<OutlinePlace> nearest = outline.nearest(place, Vector2d(0, 0));

@@ -13,6 +13,8 @@ constexpr double flat = 1e-9;      // twice the area over the squares of sides: 
 constexpr double beyond = 1e-4;    // of an edge's length: how far beyond it nothing must lie
 constexpr double off_ends = 1e-2;  // the same: so far from its ends is looked, where its neighbours are not in the way
 constexpr double triangles_a_cell = 2;
+constexpr double squares_along = 160;
+constexpr int squares_nearby = 2;
 constexpr int pieces_of_line = 8;  // in which an edge is drawn that something hides in part
 
 double cross(const Vector2d& a, const Vector2d& b) {
@@ -36,6 +38,7 @@ SurfaceEdges::SurfaceEdges(std::vector<Triangle> triangles) : triangles_(std::mo
 SeenOutline::SeenOutline(const SurfaceEdges& surface, const Points& seen) : surface_(surface), seen_(seen) {
   find_folds();
   fill_grid();
+  find_outside();
 }
 
 /// An edge is none of the outline where its triangles lie on either side of it. Where they all lie on one, it ends
@@ -96,10 +99,61 @@ bool SeenOutline::covered(const Vector2d& point) const {
   });
 }
 
+/// From the rim, which is outside, on to all neighbours that are not covered.
+void SeenOutline::find_outside() {
+  if (grid_.empty()) return;
+  square_ = (high_ - low_).maxCoeff() / squares_along;
+  ground_low_ = low_ - Vector2d::Constant(square_);
+  for (std::size_t axis = 0; axis < 2; ++axis)
+    squares_[axis] = static_cast<int>(std::ceil((high_ - low_)[static_cast<Index>(axis)] / square_)) + 2;
+  for (int j = 0; j < squares_[1]; ++j)
+    for (int i = 0; i < squares_[0]; ++i)
+      ground_.push_back(covered(ground_low_ + square_ * Vector2d(i + 0.5, j + 0.5)) ? Ground::surface
+                                                                                    : Ground::enclosed);
+  std::vector<std::array<int, 2>> next{{0, 0}};
+  while (!next.empty()) {
+    const auto [i, j] = next.back();
+    next.pop_back();
+    if (i < 0 || j < 0 || i >= squares_[0] || j >= squares_[1]) continue;
+    Ground& ground = ground_[static_cast<std::size_t>(j * squares_[0] + i)];
+    if (ground != Ground::enclosed) continue;
+    ground = Ground::outside;
+    next.insert(next.end(), {{i - 1, j}, {i + 1, j}, {i, j - 1}, {i, j + 1}});
+  }
+}
+
+SeenOutline::Ground SeenOutline::ground_at(const std::array<int, 2>& square) const {
+  if (square[0] < 0 || square[1] < 0 || square[0] >= squares_[0] || square[1] >= squares_[1]) return Ground::outside;
+  return ground_[static_cast<std::size_t>(square[1] * squares_[0] + square[0])];
+}
+
+bool SeenOutline::enclosed(const Vector2d& point, const Vector2d& outward) const {
+  const auto square_of = [&](const Vector2d& place) {
+    const Vector2d squares = (place - ground_low_) / square_;
+    return std::array{static_cast<int>(std::floor(squares.x())), static_cast<int>(std::floor(squares.y()))};
+  };
+  bool any = false;
+  for (Vector2d at = point; !covered(at); at += 0.5 * square_ * outward) {
+    const Ground ground = ground_at(square_of(at));
+    if (ground == Ground::outside) return false;
+    any = any || ground == Ground::enclosed;
+  }
+  if (any) return true;
+  // where it is narrower than a square by what is nearby
+  const std::array<int, 2> here = square_of(point);
+  for (int i = here[0] - squares_nearby; i <= here[0] + squares_nearby; ++i)
+    for (int j = here[1] - squares_nearby; j <= here[1] + squares_nearby; ++j) {
+      if (ground_at({i, j}) == Ground::outside) return false;
+      any = any || ground_at({i, j}) == Ground::enclosed;
+    }
+  return any;
+}
+
 bool SeenOutline::is_open(const Fold& fold, double share) const {
   const Vector2d along = fold.end - fold.begin;
-  return !covered(fold.begin + std::clamp(share, off_ends, 1 - off_ends) * along +
-                  beyond * along.norm() * fold.outward);
+  const Vector2d place =
+      fold.begin + std::clamp(share, off_ends, 1 - off_ends) * along + beyond * along.norm() * fold.outward;
+  return !covered(place) && !enclosed(place, fold.outward);
 }
 
 std::optional<OutlinePlace> SeenOutline::nearest(const Vector2d& point, const Vector2d& outward) const {

@@ -32,8 +32,9 @@ class SurfaceEdges {
   std::vector<Edge> edges_;
 };
 
-/// The border of a surface as seen along z from far away: edges along which it turns back, or ends, where nothing of it
-/// lies beyond. Where light shines through a hole, the hole's border counts, too.
+/// The outer border of a surface as seen along z from far away: edges along which it turns back, or ends, where nothing
+/// of it lies beyond, and what is there is not enclosed by it. What is enclosed is told on a grid of a 160th of its
+/// size: holes that are smaller count as outside, what is reached through a smaller gap alone as enclosed.
 class SeenOutline {
  public:
   /// surface  must outlive the object
@@ -52,12 +53,18 @@ class SeenOutline {
     Eigen::Vector2d begin, end, outward;
   };
 
+  enum class Ground : char { surface, outside, enclosed };
+
   [[nodiscard]] Eigen::Vector2d at(Index vertex) const { return seen_.row(vertex).head<2>().transpose(); }
   void find_folds();
   void fill_grid();
+  void find_outside();
   [[nodiscard]] std::size_t cell(double place, int axis) const;
   [[nodiscard]] bool covered(const Eigen::Vector2d& point) const;
-  /// Does it lie open beyond a place of an edge?
+  [[nodiscard]] Ground ground_at(const std::array<int, 2>& square) const;
+  /// Is an uncovered place, and what lies further in a direction, enclosed by the surface?
+  [[nodiscard]] bool enclosed(const Eigen::Vector2d& point, const Eigen::Vector2d& outward) const;
+  /// Does it lie open beyond a place of an edge, and outside?
   [[nodiscard]] bool is_open(const Fold& fold, double share) const;
 
   const SurfaceEdges& surface_;
@@ -66,6 +73,10 @@ class SeenOutline {
   Eigen::Vector2d low_{0, 0}, high_{0, 0};
   std::array<std::size_t, 2> cells_{1, 1};
   std::vector<std::vector<Index>> grid_;  // triangles per cell
+  std::vector<Ground> ground_;            // in the middles of squares, with a rim of them around
+  Eigen::Vector2d ground_low_{0, 0};      // corner of the first
+  double square_ = 0;                     // side of one [mm]
+  std::array<int, 2> squares_{0, 0};
 };
 
 }  // namespace softkin::calibration
