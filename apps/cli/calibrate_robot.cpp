@@ -4,6 +4,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/scanner.hpp>
+#include <softkin/io/table/measured_outlines.hpp>
 #include <softkin/io/table/measured_poses.hpp>
 
 #include "command.hpp"
@@ -19,10 +20,11 @@ namespace {
 
 struct RobotOptions {
   SolveOptions robot;
-  std::string poses, report, table, plot, loss = "squares";
-  std::vector<std::string> numbers;
+  std::string poses, outlines, report, table, plot, loss = "squares";
+  std::vector<std::string> numbers, given;
   std::array<std::optional<double>, readings> deviations{};
-  std::optional<double> match_within_mm;
+  std::optional<double> match_within_mm, outline_within_mm;
+  std::optional<int> outline_points;
   int keep = 0;
   bool ordered = false;
   bool json = false, resume = false, may_replace = false;
@@ -42,30 +44,43 @@ calibration::RobotFitOptions fit_options(const RobotOptions& options, std::size_
   fit.kept = calibration::kept_aside("--keep", options.keep, poses);
   fit.ordered = options.ordered;
   fit.match_within_mm = options.match_within_mm.value_or(0);
+  fit.outlines.points = options.outline_points.value_or(fit.outlines.points);
+  fit.outlines.within_mm = options.outline_within_mm;
   return fit;
 }
 
-int calibrate_robot(const RobotOptions& options) {
+MeasuredPoses read_poses(const RobotOptions& options, const Model& model) {
+  MeasuredPoses poses = read_measured_poses(options.poses, model, true);
+  if (!options.outlines.empty()) add_outlines(poses, options.outlines);
+  return poses;
+}
+
+void check_options(const RobotOptions& options) {
   check_extension("--report", options.report, {{".json", ""}});
   check_extension("--table", options.table, {{".csv", ""}});
   check_extension("--plot", options.plot, {{".svg", ""}});
   check_solver(options.robot);
   if (options.resume && options.report.empty())
     throw CLI::ValidationError("--resume", "give --report too, where the fit stopped");
+  if (!options.outlines.empty()) return;
+  if (options.outline_points) throw CLI::ValidationError("--outline-points", "give --outlines too, which are thinned");
+  if (options.outline_within_mm)
+    throw CLI::ValidationError("--outline-within", "give --outlines too, which are matched");
+}
+
+int calibrate_robot(const RobotOptions& options) {
+  check_options(options);
   std::vector<fs::path> inputs{options.robot.scene, options.poses};
-  std::vector<calibration::FittedNumber> numbers;
-  for (const std::string& text : options.numbers) numbers.push_back(calibration::parse_fitted_number("--fit", text));
-  if (options.resume) {
-    const Eigen::VectorXd values = calibration::fitted_values(options.report, numbers);
-    for (std::size_t i = 0; i < numbers.size(); ++i)
-      if (!numbers[i].deviation) numbers[i].start = values[static_cast<Index>(i)];
-  }
-  const calibration::NumberedRobot robot(options.robot, numbers, inputs);
+  if (!options.outlines.empty()) inputs.emplace_back(options.outlines);
+  std::vector<calibration::FittedNumber> numbers = calibration::parse_fitted_numbers("--fit", options.numbers);
+  if (options.resume) calibration::begin_where_fit_ended(options.report, numbers);
+  const calibration::NumberedRobot robot(options.robot, numbers, inputs,
+                                         calibration::parse_given_numbers("--given", options.given));
   std::vector<Output> outputs = options.outputs();
   if (options.resume) leave_to_resume(outputs, options.report);
   check_outputs(outputs, inputs, options.may_replace);
   const Model model = robot.model(robot.start());
-  const MeasuredPoses poses = read_measured_poses(options.poses, model, true);
+  const MeasuredPoses poses = read_poses(options, model);
   const calibration::RobotFitOptions fit = fit_options(options, poses.commands.size());
   const OutputFolders folders(outputs);
   ProgressLine line;
@@ -73,7 +88,7 @@ int calibrate_robot(const RobotOptions& options) {
   const auto progress = [&](const calibration::FitProgress& p) {
     line.show(-1, (p.iteration > 0 ? "iteration " + std::to_string(p.iteration) + ", " : "") + "pose " +
                       std::to_string(p.poses_done) + " of " + std::to_string(p.poses) +
-                      (p.rms_mm > 0 ? ", markers off by " + number(p.rms_mm, 3) + " mm" : ""));
+                      (p.rms_mm > 0 ? ", off by " + number(p.rms_mm, 3) + " mm" : ""));
     return !interrupted();
   };
   const calibration::RobotFit found = numbers.empty()
@@ -96,6 +111,22 @@ int calibrate_robot(const RobotOptions& options) {
   return found.status == Status::converged ? done : not_converged;
 }
 
+void add_outline_options(CLI::App& command, RobotOptions& options) {
+  add_value(command, "--outlines", options.outlines, "F.csv",
+            "Outlines of the robot in pictures, by softkin measure --outline;\nthe column picture of POSES says of "
+            "which pose each is");
+  add_value(command, "--outline-points", options.outline_points, "N",
+            "To which each outline is thinned, evenly along it; each point\ncounts as a coordinate (default: 40)",
+            CLI::Range(1, 100000).description(""));
+  add_value(command, "--outline-within", options.outline_within_mm, "MM",
+            "Farther from the robot's outline a point does not count\n(default: 5 % of the robot's diagonal)",
+            positive("a number > 0 in mm"));
+  add_repeated(
+      command, "--given", options.given, "NAME=VALUE",
+      "A number of the measuring frame that is known and not fitted:\nbase.x, base.rx, ..., camera.x, ... [mm, "
+      "degrees], such as\ncamera.rx=-90 where the pictures show the robot's x and z;\nrepeatable");
+}
+
 void add_options(CLI::App& command, RobotOptions& options) {
   add_scene(command, options.robot);
   add_force(command, options.robot);
@@ -116,6 +147,7 @@ void add_options(CLI::App& command, RobotOptions& options) {
   add_value(command, "--match-within", options.match_within_mm, "MM",
             "Match dots without names (dot1_x_mm, ...) to the markers that\nthey are, within this distance",
             positive("a number > 0 in mm"));
+  add_outline_options(command, options);
   add_value(command, "--keep", options.keep, "N", "Poses that are not fitted to but foretold, spread evenly",
             CLI::Range(0, 100000).description(""));
   command.add_flag(
@@ -124,7 +156,7 @@ void add_options(CLI::App& command, RobotOptions& options) {
       "before, the first\nfrom rest; else each from rest");
   add_value(command, "--report", options.report, "F.json", "All that is told, as JSON");
   add_value(command, "--table", options.table, "F.csv", "Every reading, measured and computed");
-  add_value(command, "--plot", options.plot, "F.svg", "Measured and computed markers");
+  add_value(command, "--plot", options.plot, "F.svg", "Measured and computed markers and outlines");
   command.add_flag("--resume", options.resume, "Begin where the fit of --report ended");
   add_solver(command, options.robot);
   add_overwriting(command, options.may_replace);

@@ -48,7 +48,7 @@ int become_measure(std::vector<std::string> arguments) {
 
 void add_measure(CLI::App& app, Run& run) {
   CLI::App& command = *app.add_subcommand(
-      "measure", "Measure in pictures: markers, specimens, angles, tracks; in mm (softkin measure --help)");
+      "measure", "Measure in pictures: markers, specimens, angles, tracks, outlines; in mm (softkin measure --help)");
   command.prefix_command();
   command.set_help_flag();
   command.callback([&command, &run] { run = [arguments = command.remaining()] { return become_measure(arguments); }; });

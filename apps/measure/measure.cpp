@@ -37,6 +37,7 @@ std::string text_of(const PhotoSeries& series) {
     add(series.shown_specimens());
     add(series.shown_stretches());
   }
+  if (series.has_outlines()) add(series.shown_outlines());
   return text + joined(series.measurer().notes(), "");
 }
 

@@ -85,6 +85,9 @@ void add_what(CLI::App& app, PicturesOptions& options) {
   add_value(app, "--interface", options.interface, "A,B",
             "A bar of two colours, that at the fixed end first: lengths L and L_1, and from the second picture on "
             "Delta L and Delta L_1 against the first, for softkin calibrate material");
+  add_value(app, "--outline", options.outline, "LOOK",
+            "The outer outline of the largest part of a colour, or of what is dark or bright against the ground, for "
+            "softkin calibrate robot");
   add_value(app, "--angle", options.angles, "A,B[,C,D]",
             "Angle of the line from marker A to B against x, or against that from C to D [degrees]");
 }
@@ -110,6 +113,8 @@ bool film_of(const PicturesOptions& options) {
   const bool film = options.fps > 0 || is_film(options.pictures.at(0));
   if (film && !options.interface.empty())
     throw CLI::ValidationError("--interface", "is measured in pictures, not in a film");
+  if (film && !options.outline.empty())
+    throw CLI::ValidationError("--outline", "is measured in pictures, not in a film");
   if (film && options.output.empty()) throw CLI::ValidationError("-o", "a track of a film needs a file to go to");
   if (film && options.pictures.size() > 1 && is_film(options.pictures.at(0)))
     throw CLI::ValidationError("PICTURES", "give one film at a time");
@@ -126,7 +131,7 @@ void add_photos(CLI::App& app, Run& run) {
   add_what(app, *options);
   add_frame(app, *options);
   add_value(app, "-o,--output", options->output, "F.csv",
-            "Table to write: one row a picture, or t_s,x_mm,y_mm of a film");
+            "Table to write: one row a picture, t_s,x_mm,y_mm of a film, or picture,x_mm,y_mm of outlines");
   add_overwriting(app, options->may_replace);
   add_common(app, options->json, options->threads);
   app.footer(
@@ -187,7 +192,7 @@ void add_board(CLI::App& app, Run& run) {
 }  // namespace
 
 int softkin::cli::measure_program(int argc, const char* const* argv) {
-  CLI::App app{"Measure in pictures: markers, specimens, angles, tracks; in mm", "softkin measure"};
+  CLI::App app{"Measure in pictures: markers, specimens, angles, tracks, outlines; in mm", "softkin measure"};
   app.formatter(std::make_shared<PageFormatter>());
   app.set_version_flag("--version", "softkin " SOFTKIN_VERSION);
   app.require_subcommand(0, 1);

@@ -74,6 +74,19 @@ class Stretch:
 
 
 @dataclass(frozen=True)
+class Outline:
+    """The outer outline of the largest part of a colour or brightness."""
+
+    points_mm: Floats
+    """(n, 2) one after another along it, without those at the picture's border"""
+    length_mm: float
+    area_mm2: float
+    """that it encloses"""
+    cut: bool
+    """does it reach the picture's border?"""
+
+
+@dataclass(frozen=True)
 class Picture:
     """What a picture shows."""
 
@@ -82,6 +95,7 @@ class Picture:
     angles: dict[str, Angle]
     """by 'angle_a_b', 'angle_a_b_c_d'"""
     specimen: Specimen | None
+    outline: Outline | None = None
 
 
 class _Measured:
@@ -170,7 +184,13 @@ def _picture(told: Mapping[str, Any]) -> Picture:
     angles = {name: Angle(at["degrees"], at["error_deg"]) for name, at in told.get("angles", {}).items()}
     keys = ("l_mm", "L_error_mm", "l1_mm", "L1_error_mm", "interface_deg", "interface_error_deg", "axis_deg")
     seen = told.get("specimen")
-    return Picture(told["picture"], markers, angles, None if seen is None else Specimen(*(seen[key] for key in keys)))
+    specimen = None if seen is None else Specimen(*(seen[key] for key in keys))
+    around = told.get("outline")
+    outline = None
+    if around is not None:
+        points = np.array([around["x_mm"], around["y_mm"]]).T
+        outline = Outline(points, around["length_mm"], around["area_mm2"], around["cut"])
+    return Picture(told["picture"], markers, angles, specimen, outline)
 
 
 class Track(_Measured):

@@ -17,7 +17,7 @@ from numpy.typing import NDArray
 
 from ._arrays import Floats, floats
 from ._files import PathLike
-from ._measured import Angle, MarkerPlace, Picture, Pictures, Specimen, Stretch, Track
+from ._measured import Angle, MarkerPlace, Outline, Picture, Pictures, Specimen, Stretch, Track
 
 if TYPE_CHECKING:
     import softkin._vision as _vision
@@ -27,6 +27,7 @@ __all__ = [
     "Board",
     "Camera",
     "MarkerPlace",
+    "Outline",
     "Picture",
     "Pictures",
     "Specimen",
@@ -244,6 +245,7 @@ def pictures(
     tags: bool | str | Sequence[int] | Mapping[str, int] | None = None,
     dictionary: str | None = None,
     interface: str | tuple[str, str] | None = None,
+    outline: str | None = None,
     angles: Sequence[str | Sequence[str]] = (),
     scale_board: str | Board | None = None,
     scale: str | tuple[Point, Point, float] | None = None,
@@ -253,13 +255,15 @@ def pictures(
     threads: int = 0,
     progress: ProgressFunction | None = None,
 ) -> Pictures:
-    """Markers, angles and specimens of photographs. One of scale_board and scale is needed.
+    """Markers, angles, specimens and outlines of photographs. One of scale_board and scale is needed.
 
     pictures     files (PNG, JPEG, TIFF, ...), or arrays (h, w, 3) of bytes: red, green, blue
     dots         round dots of a colour each: {"tip": "blue"}, ["red", "green"], or a text: "red,tip=blue"
     tags         centres of ArUco tags: True for all in the first picture, {"tip": 7}, or [3, 7]
     dictionary   of the tags: '4x4_50' to '7x7_1000', 'original'; None: that of the board, else '4x4_50'
     interface    colours of a bar of two materials, that at the fixed end first: ("red", "blue")
+    outline      the outer outline of the largest part of a colour, or of what is 'dark' or 'bright' against the ground;
+                 its table is what softkin.calibrate.robot takes
     angles       of lines between markers: ("a", "b") against x, ("a", "b", "c", "d") of c to d against a to b
     scale_board  a printed board in the plane of the markers: '5x4,tag=12mm,gap=3mm', 'charuco,7x5,square=10mm,tag=7mm'
     scale        two markers, or two pixels (x, y), and their distance [mm]: ("a", "b", 25)
@@ -273,6 +277,7 @@ def pictures(
     _check_threads(threads)
     options = _options(dots, tags, dictionary, angles, scale_board, scale, camera, origin, x_axis)
     options.interface = _named("interface", interface)
+    options.outline = outline or ""
     _loaded().prepare(threads)
     series: _vision.PhotoSeries = _loaded().PhotoSeries(options)
     _add(series, pictures, progress)

@@ -4,6 +4,7 @@
 
 #include <softkin/calibration/robot_report.hpp>
 #include <softkin/core/error.hpp>
+#include <softkin/io/table/measured_outlines.hpp>
 #include <softkin/io/table/measured_poses.hpp>
 
 #include "bindings.hpp"
@@ -15,10 +16,12 @@ namespace {
 
 /// Measured poses and what is asked of them, as the Python layer has it.
 struct PosesTask {
-  std::string scene, poses, loss = "squares";
-  std::vector<std::string> numbers, changes;
+  std::string scene, poses, outlines, loss = "squares";  // outlines: empty: there are none
+  std::vector<std::string> numbers, given, changes;
   std::vector<double> deviations;  // per kind of reading; 0: by what is left
   double match_within_mm = 0;
+  int outline_points = calibration::OutlineOptions().points;
+  std::optional<double> outline_within_mm;
   int keep = 0, threads = 0;
   bool ordered = false;
 };
@@ -31,6 +34,29 @@ struct RobotCalibration {
   std::string no_plot{};     // why
 };
 
+calibration::RobotFitOptions options_of(const PosesTask& task, std::size_t poses) {
+  calibration::RobotFitOptions options;
+  for (std::size_t i = 0; i < std::size(calibration::loss_names); ++i)
+    if (task.loss == calibration::loss_names[i]) options.loss = static_cast<calibration::Loss>(i);
+  for (std::size_t k = 0; k < readings; ++k) options.deviations[k] = task.deviations.at(k);
+  options.kept = calibration::kept_aside("keep", task.keep, poses);
+  options.ordered = task.ordered;
+  options.match_within_mm = task.match_within_mm;
+  options.outlines.points = task.outline_points;
+  options.outlines.within_mm = task.outline_within_mm;
+  options.threads = task.threads;
+  return options;
+}
+
+calibration::NumberedRobot robot_of(const PosesTask& task) {
+  AskedScene asked;
+  asked.scene = task.scene;
+  asked.changes = task.changes;
+  std::vector<std::filesystem::path> inputs;
+  return {asked, calibration::parse_fitted_numbers("fit", task.numbers), inputs,
+          calibration::parse_given_numbers("given", task.given)};
+}
+
 RobotCalibration fit(const PosesTask& task,
                      const std::optional<nb::typed<nb::callable, nb::object(int, double)>>& tell) {
   std::optional<RobotCalibration> told;
@@ -38,29 +64,17 @@ RobotCalibration fit(const PosesTask& task,
   std::atomic<int> iteration = 0;
   std::atomic<double> rms_mm = 0;
   const auto work = [&] {
-    AskedScene asked;
-    asked.scene = task.scene;
-    asked.changes = task.changes;
-    std::vector<std::filesystem::path> inputs;
-    std::vector<calibration::FittedNumber> numbers;
-    for (const std::string& text : task.numbers) numbers.push_back(calibration::parse_fitted_number("fit", text));
-    const calibration::NumberedRobot robot(asked, numbers, inputs);
+    const calibration::NumberedRobot robot = robot_of(task);
     const Model model = robot.model(robot.start());
-    const MeasuredPoses poses = read_measured_poses(task.poses, model, true);
-    calibration::RobotFitOptions options;
-    for (std::size_t i = 0; i < std::size(calibration::loss_names); ++i)
-      if (task.loss == calibration::loss_names[i]) options.loss = static_cast<calibration::Loss>(i);
-    for (std::size_t k = 0; k < readings; ++k) options.deviations[k] = task.deviations.at(k);
-    options.kept = calibration::kept_aside("keep", task.keep, poses.commands.size());
-    options.ordered = task.ordered;
-    options.match_within_mm = task.match_within_mm;
-    options.threads = task.threads;
+    MeasuredPoses poses = read_measured_poses(task.poses, model, true);
+    if (!task.outlines.empty()) add_outlines(poses, task.outlines);
+    const calibration::RobotFitOptions options = options_of(task, poses.commands.size());
     const auto progress = [&](const calibration::FitProgress& p) {
       iteration = p.iteration;
       rms_mm = p.rms_mm;
       return watch.go_on();
     };
-    const calibration::RobotFit found = numbers.empty()
+    const calibration::RobotFit found = robot.numbers().empty()
                                             ? calibration::predict_poses(robot, poses, robot.start(), options, progress)
                                             : calibration::fit_robot(robot, poses, options, progress);
     if (found.status == Status::interrupted) return;
@@ -86,10 +100,14 @@ void bind_calibrate_robot(nb::module_& module) {
       .def_rw("scene", &PosesTask::scene)
       .def_rw("poses", &PosesTask::poses)
       .def_rw("loss", &PosesTask::loss)
+      .def_rw("outlines", &PosesTask::outlines)
       .def_rw("numbers", &PosesTask::numbers)
+      .def_rw("given", &PosesTask::given)
       .def_rw("changes", &PosesTask::changes)
       .def_rw("deviations", &PosesTask::deviations)
       .def_rw("match_within_mm", &PosesTask::match_within_mm)
+      .def_rw("outline_points", &PosesTask::outline_points)
+      .def_rw("outline_within_mm", &PosesTask::outline_within_mm)
       .def_rw("keep", &PosesTask::keep)
       .def_rw("ordered", &PosesTask::ordered)
       .def_rw("threads", &PosesTask::threads);

@@ -6,7 +6,9 @@ import sys
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
+from numpy.typing import NDArray
 
 import softkin
 from softkin import calibrate
@@ -256,6 +258,46 @@ def test_dots_without_names(examples: Path, command: str, tmp_path: Path) -> Non
         calibrate.robot(scene, poses, fit=["base.z"])
     with pytest.raises(ValueError, match="match_within_mm"):
         calibrate.robot(scene, poses, match_within_mm=0)
+
+
+def test_outlines_in_pictures(examples: Path, tmp_path: Path) -> None:
+    scenes = examples.parent / "docs" / "scenes"
+    scene, poses, table = scenes / "finger_pressure.yaml", scenes / "finger_pictures.csv", tmp_path / "outlines.csv"
+    given = {"camera.rx": -90}
+    known = {"materials.body.youngs_modulus": 38}
+    bent = softkin.load(scene, changes=known)
+    # along the lower side, which is flat at rest, and back from tooth to tooth; then what is nearest of the outline
+    low, high = bent.rest[:, 2] < 1e-6, bent.rest[:, 2] > bent.rest[:, 2].max() - 1e-6
+    places = []
+    for pressure in (0, 700, 1200):
+        shape = bent.solve({"air": pressure}).positions
+        forth, back = bent.rest[low, 0].argsort(), (-bent.rest[high, 0]).argsort()
+        places.append(np.vstack([shape[low][forth], shape[high][back]])[:, [0, 2]])
+    write_outlines(table, places)
+    rough = calibrate.robot(scene, poses, changes=known, outlines=table, outline_points=60, given=given)
+    nearest = rough.readings["computed"].reshape(-1, 2)
+    write_outlines(table, np.split(nearest, np.flatnonzero(np.diff(rough.readings["pose"][::2])) + 1))
+
+    fit = {"materials.body.youngs_modulus": (45, 10, 100), "base.z": None}
+    found = calibrate.robot(scene, poses, fit=fit, outlines=table, outline_points=50, outline_within_mm=3, given=given)
+    assert found.converged
+    assert found.values["materials.body.youngs_modulus"] == pytest.approx(38, rel=0.01)
+    assert found.report["given"] == given and found.report["outlines"]["within_mm"] == 3
+    assert found.report["poses"][1]["outline"]["picture"] == 2
+    found.save_plot(tmp_path / "fit.svg")
+    assert "computed outline" in (tmp_path / "fit.svg").read_text()
+    (tmp_path / "poses.csv").write_text("air_kPa,tip_x_mm\n0,120\n")
+    with pytest.raises(softkin.InvalidInput, match="no column 'picture'"):
+        calibrate.robot(scene, tmp_path / "poses.csv", outlines=table)
+    with pytest.raises(ValueError, match="outline_points"):
+        calibrate.robot(scene, poses, outlines=table, outline_points=0)
+    with pytest.raises(ValueError, match="outline_within_mm"):
+        calibrate.robot(scene, poses, outlines=table, outline_within_mm=0)
+
+
+def write_outlines(file: Path, places: list[NDArray[np.float64]]) -> None:
+    rows = [f"{number},{x!r},{y!r}" for number, some in enumerate(places, 1) for x, y in some.tolist()]
+    file.write_text("\n".join(["picture,x_mm,y_mm", *rows]) + "\n")
 
 
 def test_a_robot_from_its_poses_refuses(examples: Path, tmp_path: Path) -> None:

@@ -85,6 +85,21 @@ def test_a_specimen(command: str, tmp_path: Path) -> None:
 
 
 @needs_opencv
+def test_outlines(command: str, tmp_path: Path) -> None:
+    files = [PICTURES.parent / "outline" / f"finger_{number}.png" for number in (1, 2, 3)]
+    found = measure.pictures(files, outline="dark", dots=["red", "green"], scale=("red", "green", 100.0))
+    options = ["--outline", "dark", "--dots", "red,green", "--scale", "red,green=100mm"]
+    assert found.report == told(command, *files, *options, "-o", tmp_path / "theirs.csv")
+    found.save(tmp_path / "ours.csv")
+    assert (tmp_path / "ours.csv").read_text() == (tmp_path / "theirs.csv").read_text()
+    assert found.table.columns == ["picture", "x_mm", "y_mm"]
+    outline = found[0].outline
+    assert outline is not None and outline.cut and len(outline.points_mm) <= 400
+    assert outline.points_mm.shape[1] == 2 and outline.area_mm2 == pytest.approx(2262, abs=20)
+    assert outline.length_mm == pytest.approx(401, abs=5)
+
+
+@needs_opencv
 def test_a_film(command: str, tmp_path: Path) -> None:
     options = {"dots": {"tip": "red", "green": "green", "yellow": "yellow"}, "angles": [("green", "tip")]}
     shares: list[float] = []

@@ -34,13 +34,14 @@ class Arm {
     std::ofstream(folder_ / "arm.yaml") << text;
   }
 
-  [[nodiscard]] NumberedRobot robot(const std::vector<std::string>& numbers) const {
+  [[nodiscard]] NumberedRobot robot(const std::vector<std::string>& numbers,
+                                    const std::vector<GivenNumber>& given = {}) const {
     std::vector<FittedNumber> all;
     for (const std::string& text : numbers) all.push_back(parse_fitted_number("--fit", text));
     std::vector<std::filesystem::path> inputs;
     AskedScene asked;
     asked.scene = folder_ / "arm.yaml";
-    return {asked, all, inputs};
+    return {asked, all, inputs, given};
   }
 
   /// Its poses where it has these numbers, with noise and some readings far off.

@@ -231,6 +231,46 @@ TEST_F(Measure, RefusesPicturesByName) {
                  {"two.png", "two candidates"});
 }
 
+TEST_F(Measure, OutlinesGoIntoATable) {
+  const Paint disc = discs_on({{{40, 20}, 15, ink}});
+  const std::string a = shoot("a.png", disc), b = shoot("b.png", discs_on({{{66, 20}, 15, ink}})),
+                    table = folder_ / "o.csv";
+  const std::vector<std::string> asked{a, b, "--outline", "dark", "--scale", "0,199,100,199=20mm", "-o", table};
+  const ProgramResult result = measure(asked);
+  ASSERT_EQ(result.exit_code, 0) << result.errors;
+  for (const char* part : {"outline [mm]", "area [mm^2]", "reaches the frame", "wrote "})
+    EXPECT_NE(result.output.find(part), std::string::npos) << "no '" << part << "' in:\n" << result.output;
+  const CsvTable read = read_csv(table);
+  EXPECT_EQ(read.columns, (std::vector<std::string>{"picture", "x_mm", "y_mm"}));
+  std::size_t whole = 0;
+  for (const auto& row : read.rows) {
+    EXPECT_NEAR(std::hypot(row[1] - (row[0] == 1 ? 40 : 66), row[2] - 20), 15, 0.1);
+    whole += row[0] == 1;
+  }
+  EXPECT_GT(whole, 150u);
+  EXPECT_LE(whole, 400u);
+  const ProgramResult told = measure({a, "--outline", "dark", "--scale", "0,199,100,199=20mm", "--json"});
+  ASSERT_EQ(told.exit_code, 0) << told.errors;
+  const json outline = json::parse(told.output)["pictures"][0]["outline"];
+  EXPECT_EQ(outline["points"], whole);
+  EXPECT_EQ(outline["x_mm"].size(), whole);
+  EXPECT_NEAR(outline["area_mm2"].get<double>(), M_PI * 225, 0.01 * M_PI * 225);
+  EXPECT_NEAR(outline["length_mm"].get<double>(), M_PI * 30, 0.01 * M_PI * 30);
+  EXPECT_EQ(outline["cut"], false);
+  EXPECT_EQ(measure(asked).exit_code, 0) << "what it wrote it replaces";
+  const std::string other = folder_ / "other.csv";
+  const auto refused = [&](const std::vector<std::string>& options, const std::vector<std::string>& words) {
+    std::vector<std::string> all{a, "--scale", "0,199,100,199=20mm", "-o", other};
+    all.insert(all.end(), options.begin(), options.end());
+    expect_refused(all, words);
+  };
+  refused({"--outline", "red"}, {"a.png", "no outline found", "nothing that is red"});
+  refused({"--outline", "bright"}, {"a.png", "it is the ground"});
+  refused({"--outline", "drak"}, {"outline: no colour 'drak'", "dark or bright"});
+  refused({"--outline", "dark", "--interface", "red,blue"}, {"an interface and an outline"});
+  refused({"--outline", "dark", "--fps", "5"}, {"--outline", "not in a film"});
+}
+
 TEST_F(Measure, RefusesOptionsByName) {
   const std::string good = shoot("good.png", discs_on(three)), table = folder_ / "t.csv";
   const auto refused = [&](std::vector<std::string> options, const std::vector<std::string>& words) {

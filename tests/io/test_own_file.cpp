@@ -18,6 +18,8 @@ TEST(OwnFile, KnowsWhatSoftkinWrites) {
         "# softkin workspace: format 2\n", "# made by softkin measure\n# tags\nt_s,x_mm\n",
         "softkin_curve: 1\n# made by softkin calibrate pressure\n",
         "waypoint,tip_x_mm,error_mm,reached,inserted,equilibria\n0,",
+        "pose,line,column,measured,computed,difference,kept\n",
+        "pose,line,column,measured,computed,difference,kept,outline_off_mm,counts\n1,",
         "<?xml version=\"1.0\"?>\n<!-- made by softkin -->\n<VTKFile",
         "$Comments\nmade by softkin\n$EndComments\n$MeshFormat\n",
         "<!doctype html><html><script type=\"application/json\" id=\"softkin-page\">",

@@ -75,6 +75,10 @@ def robot(
     deviation_angle_deg: float | None = None,
     deviation_direction: float | None = None,
     match_within_mm: float | None = None,
+    outlines: PathLike | None = None,
+    outline_points: int = 40,
+    outline_within_mm: float | None = None,
+    given: Mapping[str, float] | None = None,
     keep: int = 0,
     ordered: bool = False,
     threads: int = 0,
@@ -94,11 +98,16 @@ def robot(
     deviation  of a coordinate [mm], pressure [kPa], tension [N], length [mm], volume [mm^3], force [N], angle [deg],
                component of a direction as read; None: by what is left
     match_within_mm   how far a dot without a name may be from the marker that it is [mm]
+    outlines   CSV of softkin.measure: outlines of the robot in pictures; the column picture of the poses says of which
+               pose each is
+    outline_points    to which each outline is thinned, evenly along it; each point counts as a coordinate
+    outline_within_mm farther from the robot's outline a point does not count [mm]; None: 5 % of the robot's diagonal
+    given      numbers of the measuring frame that are known, such as {"camera.rx": -90} where pictures show x and z
     keep       poses that are not fitted to but foretold, spread evenly
     ordered    where something rubs or a motor has play: each pose goes on from the one before, the first from rest;
                else each from rest
     threads    poses side by side; 0: as many as the machine has
-    progress   called with the iteration and the root mean square of the markers [mm], now and then
+    progress   called with the iteration and the root mean square of the markers or outlines [mm], now and then
     raises     InvalidInput naming the file, line and column, or the number
     """
     if loss not in ("squares", "huber", "cauchy"):
@@ -113,11 +122,15 @@ def robot(
         "deviation_angle_deg": deviation_angle_deg,
         "deviation_direction": deviation_direction,
     }
-    for name, given in deviations.items():
-        if given is not None and not given > 0:
-            raise ValueError(f"{name} must be greater than 0, not {given}")
+    for name, deviation in deviations.items():
+        if deviation is not None and not deviation > 0:
+            raise ValueError(f"{name} must be greater than 0, not {deviation}")
     if match_within_mm is not None and not match_within_mm > 0:
         raise ValueError(f"match_within_mm must be greater than 0, not {match_within_mm}")
+    if outline_points < 1:
+        raise ValueError(f"outline_points must be at least 1, not {outline_points}")
+    if outline_within_mm is not None and not outline_within_mm > 0:
+        raise ValueError(f"outline_within_mm must be greater than 0, not {outline_within_mm}")
     if keep < 0:
         raise ValueError(f"keep must be at least 0, not {keep}")
     task = _core.PosesTask()
@@ -127,7 +140,12 @@ def robot(
     else:
         task.numbers = list(fit)
     task.changes = [f"{path}={yaml_text(value)}" for path, value in (changes or {}).items()]
-    task.deviations = [given or 0 for given in deviations.values()]
+    task.deviations = [deviation or 0 for deviation in deviations.values()]
     task.match_within_mm = match_within_mm or 0
+    task.outlines = "" if outlines is None else os.fspath(outlines)
+    task.outline_points = outline_points
+    if outline_within_mm is not None:
+        task.outline_within_mm = outline_within_mm
+    task.given = [f"{name}={float(value)!r}" for name, value in (given or {}).items()]
     task.keep, task.threads, task.ordered = keep, threads, ordered
     return RobotFit(_core.calibrate_robot(task, progress), task.scene, changes or {})

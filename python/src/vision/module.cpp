@@ -84,6 +84,7 @@ void bind_options(nb::module_& module) {
       .def_rw("tags", &MeasureOptions::tags)
       .def_rw("dictionary", &MeasureOptions::dictionary)
       .def_rw("interface", &MeasureOptions::interface)
+      .def_rw("outline", &MeasureOptions::outline)
       .def_rw("origin", &MeasureOptions::origin)
       .def_rw("x_axis", &MeasureOptions::x_axis)
       .def_rw("angles", &MeasureOptions::angles)

@@ -13,8 +13,9 @@ namespace {
 
 using Eigen::VectorXd;
 
-constexpr double enough = 1e-6;    // of the sum of squares, that an iteration gains
-constexpr double most_step = 0.5;  // of what a number began with: a robot that is much softer at once is a knot
+constexpr double enough = 1e-6;     // of the sum of squares, that an iteration gains
+constexpr double most_step = 0.5;   // of what a number began with: a robot that is much softer at once is a knot
+constexpr double no_effect = 1e-8;  // of the largest: rounding, which would ask for steps beyond all measure
 constexpr double least_damping = 1e-10, most_damping = 1e8;
 
 VectorXd within_bounds(const NumberedRobot& robot, VectorXd values) {
@@ -43,11 +44,12 @@ struct RobotEquations {
   RobotEquations(const NumberedRobot& robot, const VectorXd& values, const Linearised& at)
       : size(values.size()), scales(values.size()) {
     const VectorXd gradient = at.slopes.transpose() * at.residuals;
+    for (Index u = 0; u < static_cast<Index>(size); ++u) scales[u] = robot.size(static_cast<std::size_t>(u));
+    const VectorXd effects = scales.cwiseProduct(at.slopes.colwise().norm().transpose());
     for (Index u = 0; u < static_cast<Index>(size); ++u) {
-      scales[u] = robot.size(static_cast<std::size_t>(u));
       const int bound = side(robot.numbers()[static_cast<std::size_t>(u)], values[u]);
       const bool held = bound != 0 && bound * gradient[u] < 0;
-      if (!held && at.slopes.col(u).squaredNorm() > 0) moving.push_back(u);
+      if (!held && effects[u] > no_effect * effects.maxCoeff()) moving.push_back(u);
     }
     const auto count = static_cast<Index>(moving.size());
     Eigen::MatrixXd some(at.slopes.rows(), count);
@@ -129,7 +131,14 @@ void finish(RobotProblem& problem, const RobotPoint& point, RobotFit& fit) {
   fit.computed = {point.computed, point.equilibria};
   fit.markers_mm = problem.marker_misfit(point, false);
   fit.kept_mm = problem.marker_misfit(point, true);
+  fit.outlines = problem.outline_fit(point);
   fit.without_equilibrium = point.without_equilibrium;
+}
+
+/// Of the markers, or where there are none of the outlines.
+double rms_mm(const RobotProblem& problem, const RobotPoint& point) {
+  const Misfit markers = problem.marker_misfit(point, false);
+  return markers.readings > 0 ? markers.rms : problem.outline_fit(point).fitted_mm.rms;
 }
 
 /// Where the search begins. None: the user stopped it.
@@ -161,8 +170,8 @@ void conclude(const NumberedRobot& robot, const RobotPoint& point, const RobotFi
     fit.at_bound.push_back(side(robot.numbers()[i], point.values[static_cast<Index>(i)]));
   if (fit.status == Status::converged && problem.matched_readings() < free_numbers(robot)) {
     fit.status = Status::not_converged;
-    fit.remark = "no more than " + counted(problem.matched_readings(), "reading") + " left, as few dots are within " +
-                 number(options.match_within_mm) + " mm of a marker";
+    fit.remark = "no more than " + counted(problem.matched_readings(), "reading") +
+                 " left, as few dots or points of outlines are near enough to the robot";
   }
   if (fit.status == Status::converged && fit.without_equilibrium > 0) {
     fit.status = Status::not_converged;
@@ -206,7 +215,7 @@ RobotFit fit_robot(const NumberedRobot& robot, const MeasuredPoses& poses, const
   while (point && fit.iterations < options.max_iterations) {
     const Linearised linear = problem.linearised(*point);
     ++fit.iterations;
-    problem.begin_iteration(fit.iterations, problem.marker_misfit(*point, false).rms);
+    problem.begin_iteration(fit.iterations, rms_mm(problem, *point));
     const RobotEquations equations(robot, point->values, linear);
     double gained = 0;
     bool stopped = false;

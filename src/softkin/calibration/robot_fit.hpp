@@ -2,7 +2,7 @@
 
 #include <functional>
 #include <softkin/calibration/robot_dots.hpp>
-#include <softkin/calibration/robot_parameters.hpp>
+#include <softkin/calibration/robot_outlines.hpp>
 #include <softkin/model/measured_poses.hpp>
 #include <softkin/statics/statics.hpp>
 
@@ -24,6 +24,7 @@ struct RobotFitOptions {
                                // first from rest; else each from rest
   std::vector<bool> kept{};    // per pose: not fitted to; empty: none
   double match_within_mm = 0;  // how far a dot without a name may be from its marker; 0: there are no such dots
+  OutlineOptions outlines{};
 };
 
 /// What the robot does where numbers are as they are.
@@ -38,6 +39,15 @@ struct Misfit {
   std::size_t readings = 0;
 };
 
+/// Outlines in pictures beside the robot's.
+struct OutlineFit {
+  std::vector<std::vector<OutlineReading>> poses;  // per pose: the points that are fitted to or foretold
+  std::vector<OutlineLines> lines;                 // per pose: the outline of the robot [mm]
+  double within_mm = 0;                            // farther off a point does not count
+  double scale_mm = 0;                             // deviation of a distance: given, or by what is left; 0: none
+  Misfit fitted_mm, kept_mm;                       // distances of points that count, of poses fitted to, of the others
+};
+
 struct RobotFit {
   Status status = Status::not_converged;  // interrupted: the best so far
   std::string remark{};                   // why it is not converged
@@ -50,6 +60,7 @@ struct RobotFit {
   std::array<double, readings> scales{};  // deviation of each kind of reading: given, or by what is left; 0: none of it
   Misfit markers_mm;                      // distances of markers, of poses that were fitted to
   Misfit kept_mm;                         // of the others
+  OutlineFit outlines;
   int iterations = 0;
   int without_equilibrium = 0;  // poses
   double seconds = 0;
@@ -72,10 +83,11 @@ using FitCallback = std::function<bool(const FitProgress&)>;
 ///
 /// minimises  sum over readings of loss((computed - measured) / scale) + sum over priors of
 ///            ((value - mean) / deviation)^2 within the bounds; a marker's coordinates are one reading; dots without
-///            names are matched anew after each step, until the match stays, and then as far off as was asked
+///            names and points of outlines are matched anew after each step, until the match stays, and then as far
+///            off as was asked; the distance of a point is by the nearest place of the outline wherever the robot is
 /// deviations of the normal equations at the end, scaled by the deviation of readings
 /// throws     InvalidInput: a target-shape robot, no pose to fit to, fewer readings than numbers, what DotMatcher
-///            throws
+///            and RobotOutlines throw
 [[nodiscard]] RobotFit fit_robot(const NumberedRobot& robot, const MeasuredPoses& poses, const RobotFitOptions& options,
                                  const FitCallback& progress = {});
 

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <set>
 #include <softkin/calibration/robot_parameters.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
@@ -36,19 +37,23 @@ Mat3 turned(const Vec3& degrees) {
       .toRotationMatrix();
 }
 
-struct Six {
+}  // namespace
+
+/// Coordinates of a frame.
+struct NumberedRobot::Six {
   Vec3 place{0, 0, 0}, degrees{0, 0, 0};
+
+  void set(int part, double value) { (part < 3 ? place[part] : degrees[part - 3]) = value; }
 };
 
-Six six_of(const std::vector<FittedNumber>& numbers, const Eigen::VectorXd& values, const std::string& frame) {
+NumberedRobot::Six NumberedRobot::six_of(const Eigen::VectorXd& values, const std::string& frame) const {
   Six six;
-  for (std::size_t i = 0; i < numbers.size(); ++i)
-    if (const auto part = frame_part(numbers[i].name, frame))
-      (*part < 3 ? six.place[*part] : six.degrees[*part - 3]) = values[static_cast<Index>(i)];
+  for (std::size_t i = 0; i < numbers_.size(); ++i)
+    if (const auto part = frame_part(numbers_[i].name, frame)) six.set(*part, values[static_cast<Index>(i)]);
+  for (const GivenNumber& given : given_)
+    if (const auto part = frame_part(given.name, frame)) six.set(*part, given.value);
   return six;
 }
-
-}  // namespace
 
 FittedNumber parse_fitted_number(const std::string& option, const std::string& text) {
   const auto refuse = [&](const std::string& why) { throw InvalidInput(option + " " + excerpt(text) + ": " + why); };
@@ -83,9 +88,36 @@ FittedNumber parse_fitted_number(const std::string& option, const std::string& t
   return fitted;
 }
 
+std::vector<FittedNumber> parse_fitted_numbers(const std::string& option, const std::vector<std::string>& texts) {
+  std::vector<FittedNumber> numbers;
+  for (const std::string& text : texts) numbers.push_back(parse_fitted_number(option, text));
+  return numbers;
+}
+
+GivenNumber parse_given_number(const std::string& option, const std::string& text) {
+  const auto refuse = [&](const std::string& why) { throw InvalidInput(option + " " + excerpt(text) + ": " + why); };
+  const std::size_t equals = text.find('=');
+  GivenNumber given{text.substr(0, equals), 0, option};
+  if (equals == std::string::npos) refuse("expected NAME=VALUE");
+  if (!is_of_frame(given.name))
+    refuse(
+        "only numbers of the measuring frame are given: base.x, base.rx, ... or camera.x, camera.rx, ...; the "
+        "scene says all others");
+  const std::string value(trimmed(std::string_view(text).substr(equals + 1)));
+  if (!parse_real(value, given.value)) refuse("expected a finite number, not " + excerpt(value));
+  return given;
+}
+
+std::vector<GivenNumber> parse_given_numbers(const std::string& option, const std::vector<std::string>& texts) {
+  std::vector<GivenNumber> numbers;
+  for (const std::string& text : texts) numbers.push_back(parse_given_number(option, text));
+  return numbers;
+}
+
 NumberedRobot::NumberedRobot(const AskedScene& asked, const std::vector<FittedNumber>& numbers,
-                             std::vector<std::filesystem::path>& inputs)
-    : file_(asked.scene), asked_(asked), numbers_(numbers), files_(std::make_shared<FileContents>()) {
+                             std::vector<std::filesystem::path>& inputs, const std::vector<GivenNumber>& given)
+    : file_(asked.scene), asked_(asked), numbers_(numbers), given_(given), files_(std::make_shared<FileContents>()) {
+  check_names();
   root_ = scene::parse_yaml(read_file(asked.scene), asked.scene);
   for (const std::string& material : asked.materials)
     root_ = scene::changed(root_, "--material", material, "materials");
@@ -96,9 +128,6 @@ NumberedRobot::NumberedRobot(const AskedScene& asked, const std::vector<FittedNu
     if (*number.start < number.low || *number.start > number.high)
       throw InvalidInput(number.option + " " + number.name + ": its start, " + softkin::number(*number.start) +
                          ", is outside its bounds");
-    for (const FittedNumber& other : numbers_)
-      if (&other != &number && other.name == number.name)
-        throw InvalidInput(number.option + " " + number.name + ": the number is given twice");
     const bool bounded = std::isfinite(number.high - number.low);
     const bool turns = number.name.find(".r") != std::string::npos && is_of_frame(number.name);
     sizes_.push_back(*number.start != 0 ? std::abs(*number.start)
@@ -110,6 +139,16 @@ NumberedRobot::NumberedRobot(const AskedScene& asked, const std::vector<FittedNu
   (void)spec(start());
   const std::vector<std::filesystem::path> read = files_->paths();
   inputs.insert(inputs.end(), read.begin(), read.end());
+}
+
+void NumberedRobot::check_names() const {
+  std::set<std::string> names;
+  for (const FittedNumber& number : numbers_)
+    if (!names.insert(number.name).second)
+      throw InvalidInput(number.option + " " + number.name + ": the number is given twice");
+  for (const GivenNumber& number : given_)
+    if (!names.insert(number.name).second)
+      throw InvalidInput(number.option + " " + number.name + ": the number is given twice, or fitted, too");
 }
 
 Eigen::VectorXd NumberedRobot::start() const {
@@ -126,7 +165,7 @@ RobotSpec NumberedRobot::spec(const Eigen::VectorXd& values) const {
           scene::changed(root, numbers_[i].option, numbers_[i].name + "=" + exact(values[static_cast<Index>(i)]), "");
   RobotSpec spec = parse_scene(*root, file_, files_->kept(true));
   change(spec, asked_);
-  spec.gravity = turned(six_of(numbers_, values, "base").degrees).transpose() * spec.gravity;
+  spec.gravity = turned(six_of(values, "base").degrees).transpose() * spec.gravity;
   return spec;
 }
 
@@ -135,7 +174,7 @@ Model NumberedRobot::model(const Eigen::VectorXd& values) const {
 }
 
 MeasuringFrame NumberedRobot::frame(const Eigen::VectorXd& values) const {
-  const Six base = six_of(numbers_, values, "base"), camera = six_of(numbers_, values, "camera");
+  const Six base = six_of(values, "base"), camera = six_of(values, "camera");
   const Mat3 rotation = turned(camera.degrees);
   return {rotation * turned(base.degrees), rotation * base.place + camera.place};
 }

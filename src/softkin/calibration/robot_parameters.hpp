@@ -25,6 +25,22 @@ struct FittedNumber {
 ///
 /// throws  InvalidInput naming option and text
 [[nodiscard]] FittedNumber parse_fitted_number(const std::string& option, const std::string& text);
+[[nodiscard]] std::vector<FittedNumber> parse_fitted_numbers(const std::string& option,
+                                                             const std::vector<std::string>& texts);
+
+/// A coordinate of the measuring frame that is known, named as those that are fitted.
+struct GivenNumber {
+  std::string name;
+  double value = 0;      // [mm, degrees]
+  std::string option{};  // that gives it, for messages
+};
+
+/// "NAME=value", NAME being one of the measuring frame.
+///
+/// throws  InvalidInput naming option and text
+[[nodiscard]] GivenNumber parse_given_number(const std::string& option, const std::string& text);
+[[nodiscard]] std::vector<GivenNumber> parse_given_numbers(const std::string& option,
+                                                           const std::vector<std::string>& texts);
 
 /// Where the robot's frame stands in that of the measurements: x = rotation X + place.
 struct MeasuringFrame {
@@ -36,11 +52,14 @@ struct MeasuringFrame {
 class NumberedRobot {
  public:
   /// inputs  the files that the scene names are added
-  /// throws  InvalidInput: what reading the scene throws; numbers that it does not have, starts outside their bounds
+  /// given   coordinates of the measuring frame that stay; others are 0 where they are not among the numbers
+  /// throws  InvalidInput: what reading the scene throws; numbers that it does not have, starts outside their bounds,
+  ///         a number that is there twice
   NumberedRobot(const AskedScene& asked, const std::vector<FittedNumber>& numbers,
-                std::vector<std::filesystem::path>& inputs);
+                std::vector<std::filesystem::path>& inputs, const std::vector<GivenNumber>& given = {});
 
   [[nodiscard]] const std::vector<FittedNumber>& numbers() const { return numbers_; }
+  [[nodiscard]] const std::vector<GivenNumber>& given() const { return given_; }
   [[nodiscard]] Eigen::VectorXd start() const;
   /// What a number is of the order of: what steps of it are measured by.
   [[nodiscard]] double size(std::size_t number) const { return sizes_[number]; }
@@ -53,12 +72,17 @@ class NumberedRobot {
   [[nodiscard]] bool of_camera(std::size_t number) const;
 
  private:
+  struct Six;
+
+  void check_names() const;
+  [[nodiscard]] Six six_of(const Eigen::VectorXd& values, const std::string& frame) const;
   [[nodiscard]] RobotSpec spec(const Eigen::VectorXd& values) const;
 
   std::string file_;
   AskedScene asked_;
   std::shared_ptr<const scene::Node> root_;
   std::vector<FittedNumber> numbers_;
+  std::vector<GivenNumber> given_;
   std::vector<double> sizes_;
   std::shared_ptr<FileContents> files_;
 };

@@ -1,6 +1,5 @@
 #include <cmath>
-#include <softkin/calibration/report_parts.hpp>
-#include <softkin/calibration/robot_report_parts.hpp>
+#include <softkin/calibration/robot_outlines_report.hpp>
 #include <softkin/core/error.hpp>
 
 namespace softkin::calibration {
@@ -54,16 +53,21 @@ std::vector<PlotSeries> seen_along(const RobotFitReport& r, int across, int up) 
 }  // namespace
 
 Plot robot_fit_plot(const RobotFitReport& r) {
-  if (markers_of(r).empty()) throw InvalidInput("a plot shows markers, and none was measured");
+  if (markers_of(r).empty() && !has_outlines(r))
+    throw InvalidInput("a plot shows markers and outlines, and none was measured");
   Plot plot;
-  plot.title = "measured and computed markers";
+  plot.title = !has_outlines(r)        ? "measured and computed markers"
+               : markers_of(r).empty() ? "measured and computed outlines"
+                                       : "measured and computed markers and outlines";
   plot.panel_height = 320;
   plot.rows.emplace_back();
   for (const auto& [across, up] : {std::pair{0, 2}, std::pair{1, 2}, std::pair{0, 1}}) {
     constexpr const char* names[3] = {"x [mm]", "y [mm]", "z [mm]"};
     PlotPanel panel = panel_of("", names[across], names[up]);
     panel.equal = true;
-    panel.series = seen_along(r, across, up);
+    if (across + up == 1) panel.series = outline_series(r);
+    const std::vector<PlotSeries> markers = seen_along(r, across, up);
+    panel.series.insert(panel.series.end(), markers.begin(), markers.end());
     if (!panel.series.empty()) plot.rows.back().push_back(std::move(panel));
   }
   if (plot.rows.back().empty())

@@ -1,113 +1,23 @@
 #include <algorithm>
 #include <atomic>
 #include <cmath>
-#include <limits>
 #include <mutex>
-#include <softkin/calibration/robot_problem.hpp>
+#include <softkin/calibration/robot_changes.hpp>
 #include <softkin/core/error.hpp>
-#include <softkin/kinematics/estimate/readings.hpp>
-#include <softkin/kinematics/jacobian.hpp>
 #include <softkin/model/backlash.hpp>
-#include <softkin/model/sensor.hpp>
-#include <softkin/statics/deformation.hpp>
 #include <thread>
 
 namespace softkin::calibration {
 
 namespace {
 
-constexpr double nan = std::numeric_limits<double>::quiet_NaN();
-/// By which numbers are perturbed, of what they are of the order of.
-constexpr double perturbation = 1e-5;
-constexpr double slopes_accuracy = 1e-8;
 /// Of the distances of readings whose deviation is not known: median over deviation, of one, two and three coordinates.
 constexpr double medians[3] = {0.6745, 1.1774, 1.5382};
 /// Distances over the deviation from which a reading counts less: 95 % efficiency where all errors are normal.
 /// source  Huber 1981; Rey 1983
 constexpr double huber_at = 1.345, cauchy_at = 2.385;
 
-/// Is it a component of a sensor's direction?
-bool points_along(const PoseColumn& column) {
-  return column.kind == Reading::direction;
-}
-
-/// The direction, in the frame of the scene.
-Vec3 direction_of(const Model& model, const PoseColumn& column, const Points& positions) {
-  const Sensor& sensor = *model.sensors[static_cast<std::size_t>(column.sensor)];
-  return {sensor.at(positions, 0), sensor.at(positions, 1), sensor.at(positions, 2)};
-}
-
-/// By a number of the robots, and by its moves.
-Vec3 direction_slope(const Perturbed& number, const Model& model, const PoseColumn& column, const Points& positions,
-                     const Points& moves) {
-  const Sensor& sensor = *model.sensors[static_cast<std::size_t>(column.sensor)];
-  const Vec3 own =
-      (direction_of(number.more, column, positions) - direction_of(number.less, column, positions)) / number.difference;
-  return own + Vec3(sensor.velocity(positions, moves, 0), sensor.velocity(positions, moves, 1),
-                    sensor.velocity(positions, moves, 2));
-}
-
-/// Is it a length, a volume or an angle, which turns with no frame?
-bool measures(const PoseColumn& column) {
-  return column.marker < 0 && !points_along(column) && estimate::is_of_shape(column);
-}
-
-/// On the robot, of a support.
-Vec3 force_of(const Model& model, const PoseColumn& column, const Points& positions, const Points& at_vertices) {
-  ElementDeformation deformation;
-  deformation.reactions = at_vertices;
-  return reactions(model, positions, deformation)[static_cast<std::size_t>(column.support)].force;
-}
-
-/// Is it a component of a vector, which turns with the frame: of a marker's place, a direction, a support's force?
-bool turns(const PoseColumn& column) {
-  return column.marker >= 0 || column.support >= 0 || points_along(column);
-}
-
-/// That vector, in the frame of the scene.
-Vec3 vector_of(const Model& model, const PoseColumn& column, const Points& positions, const Points& at_vertices) {
-  if (column.marker >= 0) return model.markers[static_cast<std::size_t>(column.marker)].at(positions);
-  return points_along(column) ? direction_of(model, column, positions)
-                              : force_of(model, column, positions, at_vertices);
-}
-
-double measure_of(const Model& model, const PoseColumn& column, const State& state) {
-  return estimate::reading_at(model, column, state, {});
-}
-
 }  // namespace
-
-/// Robots with a number a little larger and smaller, and the frame's changes.
-struct RobotProblem::Changes {
-  std::vector<Model> models;  // those of a number side by side
-  std::vector<Perturbed> perturbed;
-  std::vector<Index> numbers;                  // of which they are
-  std::vector<std::vector<Actuation>> acting;  // per such number, per pose: the derivative of what acts
-  std::unique_ptr<Perturbations> perturbations;
-  std::vector<double> differences;  // per number of the robot
-  std::vector<MeasuringFrame> more, less;
-
-  Changes(const NumberedRobot& robot, const RobotPoint& point) {
-    const auto count = static_cast<Index>(robot.numbers().size());
-    models.reserve(2 * robot.numbers().size());
-    for (Index i = 0; i < count; ++i) {
-      const double half = perturbation * robot.size(static_cast<std::size_t>(i));
-      Eigen::VectorXd above = point.values, below = point.values;
-      const FittedNumber& number = robot.numbers()[static_cast<std::size_t>(i)];
-      above[i] = std::min(number.high, above[i] + half);
-      below[i] = std::max(number.low, below[i] - half);
-      differences.push_back(above[i] - below[i]);
-      more.push_back(robot.frame(above));
-      less.push_back(robot.frame(below));
-      if (robot.of_camera(static_cast<std::size_t>(i))) continue;
-      const Model& larger = models.emplace_back(robot.model(above));
-      const Model& smaller = models.emplace_back(robot.model(below));
-      perturbed.push_back({larger, smaller, differences.back()});
-      numbers.push_back(i);
-    }
-    perturbations = std::make_unique<Perturbations>(*point.statics, perturbed);
-  }
-};
 
 RobotProblem::RobotProblem(const NumberedRobot& robot, const MeasuredPoses& poses, const RobotFitOptions& options,
                            const FitCallback& progress)
@@ -116,6 +26,7 @@ RobotProblem::RobotProblem(const NumberedRobot& robot, const MeasuredPoses& pose
       progress_(progress),
       first_model_(std::make_shared<const Model>(robot.model(robot.start()))),
       dots_(poses, *first_model_, options.match_within_mm),
+      outlines_(poses, *first_model_, options.outlines),
       poses_(dots_.poses()) {
   for (Index c = 0; c < static_cast<Index>(poses_.columns.size()); ++c) {
     const PoseColumn& column = poses_.columns[static_cast<std::size_t>(c)];
@@ -137,11 +48,14 @@ RobotProblem::RobotProblem(const NumberedRobot& robot, const MeasuredPoses& pose
 }
 
 void RobotProblem::count() {
-  readings_ = rows_ = 0;
+  readings_ = reading_rows_ = outline_rows_ = 0;
   each_reading([&](Index pose, const Group& group, Index) {
     ++readings_;
-    for (const Index c : group.columns) rows_ += read(pose, c);
+    for (const Index c : group.columns) reading_rows_ += read(pose, c);
   });
+  for (Index pose = 0; pose < static_cast<Index>(poses_.commands.size()); ++pose)
+    if (fits(pose)) outline_rows_ += outlines_.points(pose);
+  rows_ = reading_rows_ + outline_rows_;
   for (const FittedNumber& number : robot_.numbers()) rows_ += number.deviation.has_value();
 }
 
@@ -149,9 +63,10 @@ bool RobotProblem::match(const RobotPoint& point, bool strict) {
   strict_ = strict_ || strict;
   std::vector<bool> counts(poses_.commands.size());
   for (std::size_t pose = 0; pose < counts.size(); ++pose) counts[pose] = fits(static_cast<Index>(pose));
-  const bool changed = dots_.match(point.computed, strict_ ? nullptr : &counts);
+  const bool dots = dots_.match(point.computed, strict_ ? nullptr : &counts),
+             outlines = outlines_.match(point.outline_misses, strict_ ? nullptr : &counts);
   count();
-  return changed;
+  return dots || outlines;
 }
 
 bool RobotProblem::reads_forces() const {
@@ -200,7 +115,11 @@ double RobotProblem::scale(const RobotPoint& point, Reading kind) const {
     distances.push_back(off.norm() / medians[std::min<Eigen::Index>(off.size(), 3) - 1]);
   });
   if (count == 0) return 0;
-  if (given > 0) return given;
+  return given > 0 ? given : scale_of(std::move(distances), squares, count);
+}
+
+/// By distances over what their medians are, their squares and how many coordinates they have together.
+double RobotProblem::scale_of(std::vector<double> distances, double squares, std::size_t count) const {
   constexpr double least = 1e-9;  // of what is fitted without any miss
   if (options_.loss == Loss::squares) {
     std::size_t told = 0;  // freedoms that the numbers take
@@ -220,14 +139,19 @@ Scales RobotProblem::scales(const RobotPoint& point) const {
   return scales;
 }
 
+double RobotProblem::share_by_loss(double distance) const {
+  if (options_.loss == Loss::huber && distance > huber_at) return huber_at / distance;
+  return options_.loss == Loss::cauchy ? 1 / (1 + distance * distance / (cauchy_at * cauchy_at)) : 1;
+}
+
 Eigen::VectorXd RobotProblem::residuals(const RobotPoint& point, const Eigen::VectorXd& weights) const {
   Eigen::VectorXd all(static_cast<Index>(rows_));
-  Index rows = 0;
   each_reading([&](Index pose, const Group& group, Index row) {
     const Eigen::VectorXd off = miss(point, pose, group);
     all.segment(row, off.size()) = off;
-    rows = row + static_cast<Index>(off.size());
   });
+  each_outline_point([&](Index pose, std::size_t k, Index row) { all[row] = off_outline(point, pose, k); });
+  auto rows = static_cast<Index>(reading_rows_ + outline_rows_);
   for (std::size_t i = 0; i < robot_.numbers().size(); ++i)
     if (robot_.numbers()[i].deviation) all[rows++] = point.values[static_cast<Index>(i)] - *robot_.numbers()[i].start;
   for (Index i = 0; i < static_cast<Index>(all.size()); ++i)
@@ -241,14 +165,10 @@ Linearised RobotProblem::linearised(const RobotPoint& point) const {
   linear.weights.setZero(static_cast<Index>(rows_));
   linear.slopes.setZero(static_cast<Index>(rows_), count);
   const Scales of = scales(point);
-  Index rows = 0;
   each_reading([&](Index pose, const Group& group, Index row) {
     const Eigen::VectorXd off = miss(point, pose, group);
     const double scale = of[static_cast<std::size_t>(group.kind)];
-    const double distance = off.norm() / scale;
-    double weight = 1 / (scale * scale);
-    if (options_.loss == Loss::huber && distance > huber_at) weight *= huber_at / distance;
-    if (options_.loss == Loss::cauchy) weight /= 1 + distance * distance / (cauchy_at * cauchy_at);
+    const double weight = share_by_loss(off.norm() / scale) / (scale * scale);
     const bool known = off.allFinite();
     Index r = row;
     for (const Index c : group.columns) {
@@ -257,8 +177,9 @@ Linearised RobotProblem::linearised(const RobotPoint& point) const {
       if (known) linear.slopes.row(r) = point.slopes[static_cast<std::size_t>(pose)].row(c);
       ++r;
     }
-    rows = r;
   });
+  linearise_outlines(point, linear);
+  auto rows = static_cast<Index>(reading_rows_ + outline_rows_);
   for (std::size_t i = 0; i < robot_.numbers().size(); ++i)
     if (robot_.numbers()[i].deviation) {
       linear.weights[rows] = 1 / (*robot_.numbers()[i].deviation * *robot_.numbers()[i].deviation);
@@ -288,6 +209,76 @@ Misfit RobotProblem::marker_misfit(const RobotPoint& point, bool kept) const {
   }
   misfit.rms = misfit.readings > 0 ? std::sqrt(squares / static_cast<double>(misfit.readings)) : 0;
   return misfit;
+}
+
+template <class Visit>
+void RobotProblem::each_outline_point(const Visit& visit) const {
+  auto row = static_cast<Index>(reading_rows_);
+  for (Index pose = 0; pose < static_cast<Index>(poses_.commands.size()); ++pose)
+    for (std::size_t k = 0; fits(pose) && k < outlines_.points(pose); ++k) visit(pose, k, row++);
+}
+
+std::size_t RobotProblem::outline_points_that_count() const {
+  std::size_t count = 0;
+  each_outline_point([&](Index pose, std::size_t k, Index) { count += outlines_.counts(pose, k); });
+  return count;
+}
+
+/// NaN: the pose has no equilibrium.
+double RobotProblem::off_outline(const RobotPoint& point, Index pose, std::size_t k) const {
+  const std::vector<OutlineMiss>& misses = point.outline_misses[static_cast<std::size_t>(pose)];
+  return misses.empty() ? std::nan("") : misses[k].off_mm;
+}
+
+/// As that of a coordinate, but of outlines alone where it is by what is left.
+double RobotProblem::outline_scale(const RobotPoint& point) const {
+  const double given = options_.deviations[static_cast<std::size_t>(Reading::coordinate)];
+  std::vector<double> distances;
+  double squares = 0;
+  each_outline_point([&](Index pose, std::size_t k, Index) {
+    const double off = off_outline(point, pose, k);
+    if (!outlines_.counts(pose, k) || !std::isfinite(off)) return;
+    squares += off * off;
+    distances.push_back(std::abs(off) / medians[0]);
+  });
+  if (distances.empty()) return 0;
+  const std::size_t count = distances.size();
+  return given > 0 ? given : scale_of(std::move(distances), squares, count);
+}
+
+void RobotProblem::linearise_outlines(const RobotPoint& point, Linearised& linear) const {
+  const double scale = outline_scale(point);
+  each_outline_point([&](Index pose, std::size_t k, Index row) {
+    const double off = off_outline(point, pose, k);
+    if (!outlines_.counts(pose, k) || !std::isfinite(off)) return;
+    linear.weights[row] = share_by_loss(std::abs(off) / scale) / (scale * scale);
+    linear.slopes.row(row) = point.outline_slopes[static_cast<std::size_t>(pose)].row(static_cast<Index>(k));
+  });
+}
+
+OutlineFit RobotProblem::outline_fit(const RobotPoint& point) const {
+  OutlineFit fit;
+  if (!outlines_.any()) return fit;
+  fit.within_mm = outlines_.asked_mm();
+  fit.scale_mm = outline_scale(point);
+  double squares[2] = {0, 0};
+  for (Index pose = 0; pose < static_cast<Index>(poses_.commands.size()); ++pose) {
+    const auto p = static_cast<std::size_t>(pose);
+    fit.poses.push_back(outlines_.readings(pose, point.outline_misses[p]));
+    const bool drawn = !point.outline_misses[p].empty();
+    fit.lines.push_back(drawn ? outlines_.lines(point.equilibria[p].state.positions, point.frame) : OutlineLines());
+    Misfit& misfit = fits(pose) ? fit.fitted_mm : fit.kept_mm;
+    for (const OutlineReading& reading : fit.poses.back()) {
+      if (!reading.counts) continue;
+      squares[!fits(pose)] += reading.off_mm * reading.off_mm;
+      misfit.largest = std::max(misfit.largest, std::abs(reading.off_mm));
+      ++misfit.readings;
+    }
+  }
+  const auto rms = [](double sum, std::size_t count) { return count > 0 ? std::sqrt(sum / double(count)) : 0; };
+  fit.fitted_mm.rms = rms(squares[0], fit.fitted_mm.readings);
+  fit.kept_mm.rms = rms(squares[1], fit.kept_mm.readings);
+  return fit;
 }
 
 /// Poses side by side, or one after another. False: the user stopped it.
@@ -327,108 +318,12 @@ bool RobotProblem::each_pose(int most_threads, const std::function<bool(Index, c
   return !stopped;
 }
 
-/// What was read, as the robot does it.
-void RobotProblem::compute(RobotPoint& point, const Changes* changes, Index pose) const {
-  const Equilibrium& found = point.equilibria[static_cast<std::size_t>(pose)];
-  ElementDeformation reactions;
-  if (reads_forces() && found.report.status == Status::converged) reactions = point.statics->measured(found.state);
-  for (Index c = 0; c < static_cast<Index>(poses_.columns.size()); ++c) {
-    const PoseColumn& column = poses_.columns[static_cast<std::size_t>(c)];
-    double& value = point.computed(pose, c);
-    if (found.report.status != Status::converged)
-      value = nan;
-    else if (turns(column))
-      value = (point.frame.rotation * vector_of(*point.model, column, found.state.positions, reactions.reactions) +
-               (column.marker >= 0 ? point.frame.place : Vec3(0, 0, 0)))[column.axis];
-    else if (measures(column))
-      value = measure_of(*point.model, column, found.state);
-    else
-      value = found.state.multipliers[column.actuator];
-  }
-  if (changes && found.report.status == Status::converged) add_slopes(point, *changes, pose, reactions.reactions);
-}
-
 /// Of the commands: one after another where the poses are, else each from rest.
 std::vector<Actuation> RobotProblem::acting(const Model& model) const {
   if (options_.ordered) return acting_in_order(model, model.rest_actuation(), poses_.commands);
   std::vector<Actuation> all;
   for (const Actuation& told : poses_.commands) all.push_back(softkin::acting(model, model.rest_actuation(), told));
   return all;
-}
-
-/// Numbers change what acts of commands, too, where there is backlash.
-void RobotProblem::add_changes_of_acting(ParameterSensitivity& found, const RobotPoint& point, const Changes& changes,
-                                         Index pose) const {
-  const auto p = static_cast<std::size_t>(pose);
-  std::vector<Actuation> along;
-  std::vector<std::size_t> of;
-  for (std::size_t k = 0; k < changes.acting.size(); ++k) {
-    if (changes.acting[k][p].isZero(0)) continue;
-    along.push_back(changes.acting[k][p]);
-    of.push_back(k);
-  }
-  if (along.empty()) return;
-  StaticsOptions solver = options_.solver;
-  solver.threads = 1;
-  const ParameterSensitivity more =
-      point.statics->sensitivity_along(point.equilibria[p].state, along, solver, slopes_accuracy, reads_forces());
-  for (std::size_t i = 0; i < of.size(); ++i) {
-    found.positions[of[i]] += more.positions[i];
-    found.multipliers.col(static_cast<Index>(of[i])) += more.multipliers.col(static_cast<Index>(i));
-    if (reads_forces()) found.reactions[of[i]] += more.reactions[i];
-  }
-  found.regular = more.regular;
-}
-
-void RobotProblem::add_slopes(RobotPoint& point, const Changes& changes, Index pose, const Points& reactions) const {
-  const State& state = point.equilibria[static_cast<std::size_t>(pose)].state;
-  StaticsOptions solver = options_.solver;
-  solver.threads = 1;
-  ParameterSensitivity found = changes.perturbations->at(state, solver, slopes_accuracy, reads_forces());
-  if (found.regular) add_changes_of_acting(found, point, changes, pose);
-  const auto count = static_cast<Index>(robot_.numbers().size());
-  Eigen::MatrixXd& slopes = point.slopes[static_cast<std::size_t>(pose)];
-  slopes.setZero(static_cast<Index>(poses_.columns.size()), count);
-  for (Index c = 0; c < static_cast<Index>(slopes.rows()); ++c) {
-    const PoseColumn& column = poses_.columns[static_cast<std::size_t>(c)];
-    if (!turns(column)) continue;
-    const bool marker = column.marker >= 0;
-    const Vec3 place = vector_of(*point.model, column, state.positions, reactions);
-    for (Index i = 0; i < count; ++i) {
-      const MeasuringFrame &more = changes.more[static_cast<std::size_t>(i)],
-                           &less = changes.less[static_cast<std::size_t>(i)];
-      const Vec3 shift = marker ? Vec3(more.place - less.place) : Vec3(Vec3::Zero());
-      slopes(c, i) = ((more.rotation - less.rotation) * place + shift)[column.axis] /
-                     changes.differences[static_cast<std::size_t>(i)];
-    }
-  }
-  if (!found.regular) return;
-  for (std::size_t k = 0; k < changes.numbers.size(); ++k) {
-    const Index i = changes.numbers[k];
-    const auto p = static_cast<Index>(k);
-    for (Index c = 0; c < static_cast<Index>(slopes.rows()); ++c) {
-      const PoseColumn& column = poses_.columns[static_cast<std::size_t>(c)];
-      if (measures(column)) {
-        const Perturbed& number = changes.perturbed[k];
-        const double own =
-            (measure_of(number.more, column, state) - measure_of(number.less, column, state)) / number.difference;
-        const Eigen::VectorXd none;
-        slopes(c, i) += own + estimate::reading_change(*point.model, column, state, {found.positions[k], none, {}});
-        continue;
-      }
-      if (!turns(column)) {
-        slopes(c, i) += found.multipliers(column.actuator, p);
-        continue;
-      }
-      const Vec3 moved = points_along(column) ? direction_slope(changes.perturbed[k], *point.model, column,
-                                                                state.positions, found.positions[k])
-                         : column.support >= 0
-                             ? force_of(*point.model, column, state.positions, found.reactions[k])
-                             : marker_slope(*point.model, changes.perturbed[k], static_cast<std::size_t>(column.marker),
-                                            state.positions, found.positions[k]);
-      slopes(c, i) += (point.frame.rotation * moved)[column.axis];
-    }
-  }
 }
 
 std::optional<RobotPoint> RobotProblem::solve(const Eigen::VectorXd& values, const RobotPoint* near, bool slopes) {
@@ -456,6 +351,8 @@ std::optional<RobotPoint> RobotProblem::solve(const Eigen::VectorXd& values, con
   const auto count = poses_.commands.size();
   point.equilibria.resize(count);
   point.slopes.resize(slopes ? count : 0);
+  point.outline_misses.resize(count);
+  point.outline_slopes.resize(slopes ? count : 0);
   point.computed.resize(static_cast<Index>(count), static_cast<Index>(poses_.columns.size()));
   StaticsOptions solver = options_.solver;
   solver.threads = 1;

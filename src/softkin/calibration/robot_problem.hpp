@@ -3,6 +3,7 @@
 #include <chrono>
 #include <softkin/calibration/robot_dots.hpp>
 #include <softkin/calibration/robot_fit.hpp>
+#include <softkin/calibration/robot_outlines.hpp>
 
 namespace softkin::calibration {
 
@@ -12,10 +13,12 @@ struct RobotPoint {
   std::shared_ptr<const Model> model;
   std::shared_ptr<const Statics> statics;
   MeasuringFrame frame;
-  std::vector<Actuation> acting;        // per pose: what acts of its commands
-  std::vector<Equilibrium> equilibria;  // per pose
-  Eigen::MatrixXd computed;             // as MeasuredPoses::values; NaN where a pose has no equilibrium
-  std::vector<Eigen::MatrixXd> slopes;  // per pose: of the computed by the numbers; none: not asked for
+  std::vector<Actuation> acting;                // per pose: what acts of its commands
+  std::vector<Equilibrium> equilibria;          // per pose
+  Eigen::MatrixXd computed;                     // as MeasuredPoses::values; NaN where a pose has no equilibrium
+  std::vector<Eigen::MatrixXd> slopes;          // per pose: of the computed by the numbers; none: not asked for
+  OutlineMisses outline_misses;                 // per pose; none where it has no equilibrium
+  std::vector<Eigen::MatrixXd> outline_slopes;  // per pose: of their distances by the numbers; none: as slopes
   int without_equilibrium = 0;
   std::string refusal;  // why the scene refuses the values, of which then nothing is known; empty: it does not
 };
@@ -37,14 +40,17 @@ class RobotProblem {
   RobotProblem(const NumberedRobot& robot, const MeasuredPoses& poses, const RobotFitOptions& options,
                const FitCallback& progress);
 
-  /// Readings that are fitted to, a marker's coordinates are one each; with the dots that were seen, and with those
-  /// that are matched.
-  [[nodiscard]] std::size_t readings() const { return readings_ + dots_seen_; }
-  [[nodiscard]] std::size_t matched_readings() const { return readings_; }
-  /// Matches dots to the markers of a point, from then on no farther off than was asked if that is strict, else as far
-  /// as the markers are. Is it another match? What is told of points is by the last match.
+  /// Readings that are fitted to, a marker's coordinates are one each; with the dots and points of outlines that were
+  /// seen, and with those that are matched.
+  [[nodiscard]] std::size_t readings() const { return readings_ + dots_seen_ + outline_rows_; }
+  [[nodiscard]] std::size_t matched_readings() const { return readings_ + outline_points_that_count(); }
+  /// Matches dots to the markers of a point, and points of outlines to its outline, from then on no farther off than
+  /// was asked if that is strict, else as far as most are. Is it another match? What is told of points is by the last
+  /// match.
   bool match(const RobotPoint& point, bool strict);
   [[nodiscard]] const DotMatcher& dots() const { return dots_; }
+  /// What is told of outlines at a point; drawn: with the computed ones.
+  [[nodiscard]] OutlineFit outline_fit(const RobotPoint& point) const;
   /// The numbers of a point with those of the measuring frame where its markers are nearest to what was seen, its
   /// shapes as they are: with dots without names, which else are matched to wrong markers at first. Else as they are.
   [[nodiscard]] Eigen::VectorXd aligned(const RobotPoint& point);
@@ -86,7 +92,17 @@ class RobotProblem {
   /// visit(pose, group, row of the first of its residuals) of what is fitted to.
   template <class Visit>
   void each_reading(const Visit& visit) const;
+  /// visit(pose, point, row) of the points of outlines that are fitted to.
+  template <class Visit>
+  void each_outline_point(const Visit& visit) const;
+  [[nodiscard]] std::size_t outline_points_that_count() const;
+  [[nodiscard]] double off_outline(const RobotPoint& point, Index pose, std::size_t k) const;
+  [[nodiscard]] double outline_scale(const RobotPoint& point) const;
+  void linearise_outlines(const RobotPoint& point, Linearised& linear) const;
+  /// Of a reading that is so many deviations off: by the loss.
+  [[nodiscard]] double share_by_loss(double distance) const;
   [[nodiscard]] double scale(const RobotPoint& point, Reading kind) const;
+  [[nodiscard]] double scale_of(std::vector<double> distances, double squares, std::size_t count) const;
   [[nodiscard]] Eigen::VectorXd residuals(const RobotPoint& point, const Eigen::VectorXd& weights) const;
   struct MarkerMisses;
   [[nodiscard]] MarkerMisses marker_misses(const RobotPoint& point, const std::vector<Index>& numbers) const;
@@ -96,6 +112,9 @@ class RobotProblem {
   [[nodiscard]] std::vector<Actuation> acting(const Model& model) const;
   void add_changes_of_acting(ParameterSensitivity& found, const RobotPoint& point, const Changes& changes,
                              Index pose) const;
+  void add_slopes_of_frame(RobotPoint& point, const Changes& changes, Index pose, const Points& reactions) const;
+  void add_outline_slopes(RobotPoint& point, const Changes& changes, Index pose,
+                          const ParameterSensitivity& found) const;
   void add_slopes(RobotPoint& point, const Changes& changes, Index pose, const Points& reactions) const;
   bool each_pose(int most_threads, const std::function<bool(Index, const ProgressCallback&)>& act);
 
@@ -106,9 +125,11 @@ class RobotProblem {
   const FitCallback& progress_;
   std::shared_ptr<const Model> first_model_;  // whose patterns all others share
   DotMatcher dots_;
-  const MeasuredPoses& poses_;  // of the matcher
+  RobotOutlines outlines_;
+  const MeasuredPoses& poses_;  // of the matcher of dots
   std::vector<Group> groups_;
-  std::size_t readings_ = 0, dots_seen_ = 0, rows_ = 0;
+  std::size_t readings_ = 0, dots_seen_ = 0;
+  std::size_t reading_rows_ = 0, outline_rows_ = 0, rows_ = 0;  // one after another; rows_: with the priors
   bool strict_ = false;
   std::shared_ptr<const Statics> first_statics_;
   FitProgress progress_state_;

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <softkin/calibration/report_parts.hpp>
 #include <softkin/calibration/robot_dots_report.hpp>
+#include <softkin/calibration/robot_outlines_report.hpp>
 #include <softkin/calibration/robot_report.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/io/file.hpp>
@@ -73,39 +74,46 @@ std::string numbers_text(const RobotFitReport& r) {
   return text;
 }
 
-std::string errors_text(const RobotFitReport& r) {
-  const std::vector<Index> markers = markers_of(r);
-  if (markers.empty()) return "";
+std::string errors_by_pose(const RobotFitReport& r, const std::vector<Index>& markers) {
   Table table{{{.key = "pose"}, {.key = "line"}}};
   for (const Actuator& actuator : r.model.actuators)
     table.columns.push_back({.key = actuator.name, .unit = command_unit(actuator), .digits = 4});
   for (const Index m : markers) table.columns.push_back(decimals(marker_name(r, m) + " off by", "mm", 2));
+  if (has_outlines(r)) {
+    table.columns.push_back(decimals("outline off by", "mm", 2));
+    table.columns.push_back({.key = "points"});
+  }
   table.columns.push_back({.key = "", .left = true});
-  std::vector<std::vector<double>> errors(markers.size());
   for (Index pose = 0; pose < static_cast<Index>(r.poses.commands.size()); ++pose) {
     const auto p = static_cast<std::size_t>(pose);
     Row row{static_cast<std::int64_t>(pose + 1), count_cell(r.poses.lines[p])};
     for (const double command : r.poses.commands[p]) row.emplace_back(command);
-    for (std::size_t m = 0; m < markers.size(); ++m) {
-      const double error = marker_error(r, pose, markers[m]);
-      if (!kept(r, pose)) errors[m].push_back(error);
-      row.push_back(known_cell(error));
-    }
+    for (const Index m : markers) row.push_back(known_cell(marker_error(r, pose, m)));
+    if (has_outlines(r)) row.insert(row.end(), {known_cell(outline_error(r, p)), outline_counts(r, p)});
     const Equilibrium& found = r.fit.computed.equilibria[p];
     row.emplace_back(found.report.status != Status::converged ? std::string(name_of(found.report.status))
                      : kept(r, pose)                          ? std::string("kept aside")
                                                               : std::string());
     table.rows.push_back(std::move(row));
   }
-  std::string text = text_of(table) + "\n";
+  return text_of(table);
+}
+
+std::string errors_text(const RobotFitReport& r) {
+  const std::vector<Index> markers = markers_of(r);
+  if (markers.empty() && !has_outlines(r)) return "";
+  std::string text = errors_by_pose(r, markers) + "\n";
   double sum = 0;
   int seen = 0;
-  for (std::size_t m = 0; m < markers.size(); ++m) {
-    const double rms = rms_of(errors[m]);
+  for (const Index m : markers) {
+    std::vector<double> errors;
+    for (Index pose = 0; pose < static_cast<Index>(r.poses.commands.size()); ++pose)
+      if (!kept(r, pose)) errors.push_back(marker_error(r, pose, m));
+    const double rms = rms_of(errors);
     if (std::isnan(rms)) continue;  // in poses that were kept aside alone
     sum += rms;
     ++seen;
-    text += "marker " + marker_name(r, markers[m]) + ": " + decimal(rms, 2) + " mm root mean square\n";
+    text += "marker " + marker_name(r, m) + ": " + decimal(rms, 2) + " mm root mean square\n";
   }
   if (seen > 1) text += "mean over the markers: " + decimal(sum / seen, 2) + " mm\n";
   return text;
@@ -134,28 +142,8 @@ Json finite(double value) {
   return std::isfinite(value) ? Json(value) : Json();
 }
 
-}  // namespace
-
-std::string robot_fit_text(const RobotFitReport& r) {
-  const RobotFit& fit = r.fit;
-  std::string text = std::string(name_of(fit.status)) + (fit.remark.empty() ? "" : ": " + fit.remark) + ", " +
-                     counted(static_cast<std::size_t>(fit.iterations), "iteration") + ", " + decimal(fit.seconds, 1) +
-                     " s\n\n";
-  if (!r.robot.numbers().empty() && fit.deviations.size() > 0) text += numbers_text(r) + "\n";
-  text += errors_text(r) + dots_text(r);
-  for (std::size_t kind = 0; kind < readings; ++kind)
-    text += scale_text(reading_names[kind], fit.scales[kind], r.options.deviations[kind], reading_units[kind]);
-  if (fit.markers_mm.readings > 0)
-    text += "all markers: " + decimal(fit.markers_mm.rms, 2) + " mm root mean square, " +
-            decimal(fit.markers_mm.largest, 2) + " mm at most\n";
-  if (fit.kept_mm.readings > 0)
-    text += "poses kept aside: " + decimal(fit.kept_mm.rms, 2) + " mm root mean square, " +
-            decimal(fit.kept_mm.largest, 2) + " mm at most\n";
-  return text + (fit.deviations.size() > 0 ? "\n" + scene_text(r) : "");
-}
-
-std::string robot_fit_json(const RobotFitReport& r) {
-  Json numbers = Json::array(), poses = Json::array();
+Json numbers_json(const RobotFitReport& r) {
+  Json numbers = Json::array();
   for (std::size_t i = 0; i < r.robot.numbers().size(); ++i) {
     const auto k = static_cast<Index>(i);
     const bool told = r.fit.deviations.size() > 0;
@@ -169,6 +157,11 @@ std::string robot_fit_json(const RobotFitReport& r) {
                        {"at_bound", told ? Json(r.fit.at_bound[i]) : Json()},
                        {"correlations", correlations}});
   }
+  return numbers;
+}
+
+Json poses_json(const RobotFitReport& r) {
+  Json poses = Json::array();
   for (Index pose = 0; pose < static_cast<Index>(r.poses.commands.size()); ++pose) {
     const auto p = static_cast<std::size_t>(pose);
     Json errors = Json::object(), commands = Json::object();
@@ -181,14 +174,81 @@ std::string robot_fit_json(const RobotFitReport& r) {
                      {"kept", kept(r, pose)},
                      {"error_mm", errors}});
     if (has_dots(r)) poses.back()["dots"] = dots_json(r, p);
+    if (has_outlines(r)) poses.back()["outline"] = outline_json(r, p);
   }
+  return poses;
+}
+
+/// A row of a reading, without what dots and outlines have beside.
+Row& add_reading(const RobotFitReport& r, Index pose, Table& table, const std::string& column, double measured,
+                 double computed) {
+  const bool found = std::isfinite(computed);
+  return table.rows.emplace_back(Row{static_cast<std::int64_t>(pose + 1),
+                                     count_cell(r.poses.lines[static_cast<std::size_t>(pose)]), column,
+                                     ten_digits(measured), found ? ten_digits(computed) : Cell(),
+                                     found ? ten_digits(computed - measured) : Cell(), std::int64_t{kept(r, pose)}});
+}
+
+void add_columns_of(const RobotFitReport& r, Index pose, Table& table) {
+  for (Index c = 0; c < static_cast<Index>(r.poses.columns.size()); ++c) {
+    const PoseColumn& column = r.poses.columns[static_cast<std::size_t>(c)];
+    if (std::isnan(r.poses.values(pose, c))) continue;
+    Row& row = add_reading(r, pose, table, column.name, r.poses.values(pose, c), r.fit.computed.values(pose, c));
+    if (has_dots(r)) row.emplace_back(column.marker >= 0 ? Cell(marker_name(r, column.marker)) : Cell());
+  }
+}
+
+void add_dots_of(const RobotFitReport& r, Index pose, Table& table) {
+  for (std::size_t d = 0; d < r.poses.dots.names.size(); ++d) {
+    const DotMatch& match = r.fit.dots[static_cast<std::size_t>(pose)][d];
+    const Vec3 seen = dot_place(r, pose, d);
+    const Vec3 computed =
+        match.marker < 0 ? Vec3(Vec3::Constant(std::nan(""))) : places_of(r, pose, match.marker).second;
+    for (const int axis : r.poses.dots.axes) {
+      if (!match.seen) continue;
+      Row& row = add_reading(r, pose, table, r.poses.dots.names[d] + "_" + axis_names[axis] + "_mm", seen[axis],
+                             computed[axis]);
+      for (const Cell& cell : dot_cells(r, match)) row.push_back(cell);
+    }
+  }
+}
+
+void add_outline_of(const RobotFitReport& r, Index pose, Table& table) {
+  for (const OutlineRow& outline : outline_rows(r, static_cast<std::size_t>(pose))) {
+    Row& row = add_reading(r, pose, table, outline.name, outline.measured, outline.computed);
+    row.resize(table.columns.size() - 2);
+    for (const Cell& cell : outline_cells(*outline.reading)) row.push_back(cell);
+  }
+}
+
+}  // namespace
+
+std::string robot_fit_text(const RobotFitReport& r) {
+  const RobotFit& fit = r.fit;
+  std::string text = std::string(name_of(fit.status)) + (fit.remark.empty() ? "" : ": " + fit.remark) + ", " +
+                     counted(static_cast<std::size_t>(fit.iterations), "iteration") + ", " + decimal(fit.seconds, 1) +
+                     " s\n\n";
+  if (!r.robot.numbers().empty() && fit.deviations.size() > 0) text += numbers_text(r) + "\n";
+  text += errors_text(r) + dots_text(r) + outlines_text(r);
+  for (std::size_t kind = 0; kind < readings; ++kind)
+    text += scale_text(reading_names[kind], fit.scales[kind], r.options.deviations[kind], reading_units[kind]);
+  if (fit.markers_mm.readings > 0)
+    text += "all markers: " + decimal(fit.markers_mm.rms, 2) + " mm root mean square, " +
+            decimal(fit.markers_mm.largest, 2) + " mm at most\n";
+  if (fit.kept_mm.readings > 0)
+    text += "poses kept aside: " + decimal(fit.kept_mm.rms, 2) + " mm root mean square, " +
+            decimal(fit.kept_mm.largest, 2) + " mm at most\n";
+  return text + (fit.deviations.size() > 0 ? "\n" + scene_text(r) : "");
+}
+
+std::string robot_fit_json(const RobotFitReport& r) {
   Json json{{"softkin_robot_fit", 1},
             {"status", name_of(r.fit.status)},
             {"remark", r.fit.remark},
             {"iterations", r.fit.iterations},
             {"seconds", r.fit.seconds},
-            {"numbers", numbers},
-            {"poses", poses},
+            {"numbers", numbers_json(r)},
+            {"poses", poses_json(r)},
             {"deviation_mm", r.fit.scales[0]},
             {"deviation_kPa", r.fit.scales[1]},
             {"deviation_N", r.fit.scales[2]},
@@ -198,6 +258,8 @@ std::string robot_fit_json(const RobotFitReport& r) {
             {"markers", misfit_json(r.fit.markers_mm)},
             {"kept", misfit_json(r.fit.kept_mm)}};
   if (has_dots(r)) json["dots"] = dot_counts_json(r);
+  if (has_outlines(r)) json["outlines"] = outlines_json(r);
+  for (const GivenNumber& given : r.robot.given()) json["given"][given.name] = given.value;
   return text_of(json);
 }
 
@@ -205,37 +267,18 @@ Table robot_fit_table(const RobotFitReport& r) {
   Table table = csv_table({"pose", "line", "column", "measured", "computed", "difference", "kept"});
   if (has_dots(r))
     for (const char* key : {"marker", "may_be"}) table.columns.push_back({.key = key});
+  if (has_outlines(r))
+    for (const char* key : {"outline_off_mm", "counts"}) table.columns.push_back({.key = key});
   for (Index pose = 0; pose < static_cast<Index>(r.poses.commands.size()); ++pose) {
-    const auto add = [&](const std::string& column, double measured, double computed) -> Row& {
-      const bool found = std::isfinite(computed);
-      return table.rows.emplace_back(
-          Row{static_cast<std::int64_t>(pose + 1), count_cell(r.poses.lines[static_cast<std::size_t>(pose)]), column,
-              ten_digits(measured), found ? ten_digits(computed) : Cell(),
-              found ? ten_digits(computed - measured) : Cell(), std::int64_t{kept(r, pose)}});
-    };
-    for (Index c = 0; c < static_cast<Index>(r.poses.columns.size()); ++c) {
-      const PoseColumn& column = r.poses.columns[static_cast<std::size_t>(c)];
-      if (std::isnan(r.poses.values(pose, c))) continue;
-      Row& row = add(column.name, r.poses.values(pose, c), r.fit.computed.values(pose, c));
-      if (has_dots(r))
-        row.insert(row.end(), {column.marker >= 0 ? Cell(marker_name(r, column.marker)) : Cell(), Cell()});
-    }
-    for (std::size_t d = 0; d < r.poses.dots.names.size(); ++d) {
-      const DotMatch& match = r.fit.dots[static_cast<std::size_t>(pose)][d];
-      const Vec3 seen = dot_place(r, pose, d);
-      const Vec3 computed =
-          match.marker < 0 ? Vec3(Vec3::Constant(std::nan(""))) : places_of(r, pose, match.marker).second;
-      for (const int axis : r.poses.dots.axes) {
-        if (!match.seen) continue;
-        Row& row = add(r.poses.dots.names[d] + "_" + axis_names[axis] + "_mm", seen[axis], computed[axis]);
-        for (const Cell& cell : dot_cells(r, match)) row.push_back(cell);
-      }
-    }
+    add_columns_of(r, pose, table);
+    add_dots_of(r, pose, table);
+    add_outline_of(r, pose, table);
   }
+  for (Row& row : table.rows) row.resize(table.columns.size());
   return table;
 }
 
-Eigen::VectorXd fitted_values(const std::string& file, const std::vector<FittedNumber>& numbers) {
+void begin_where_fit_ended(const std::string& file, std::vector<FittedNumber>& numbers) {
   const auto refuse = [&](const std::string& why) { throw InvalidInput({file}, why); };
   Json json;
   try {
@@ -243,16 +286,14 @@ Eigen::VectorXd fitted_values(const std::string& file, const std::vector<FittedN
     if (json.at("softkin_robot_fit") != 1) refuse("is no report of a robot's fit of this version");
     const Json& found = json.at("numbers");
     if (found.size() != numbers.size()) refuse("is of other numbers than those asked for");
-    Eigen::VectorXd values(static_cast<Index>(numbers.size()));
     for (std::size_t i = 0; i < numbers.size(); ++i) {
       if (found[i].at("name").get<std::string>() != numbers[i].name) refuse("is of other numbers than those asked for");
-      values[static_cast<Index>(i)] = found[i].at("value").get<double>();
+      const double value = found[i].at("value").get<double>();
+      if (!numbers[i].deviation) numbers[i].start = value;
     }
-    return values;
   } catch (const Json::exception&) {
     refuse("is no report of a robot's fit");
   }
-  return {};
 }
 
 }  // namespace softkin::calibration

@@ -24,9 +24,9 @@ struct RobotFitReport {
 /// Measured and computed places of the markers, seen along each axis.
 [[nodiscard]] Plot robot_fit_plot(const RobotFitReport& report);
 
-/// The values of an earlier report, to go on from there.
+/// Lets numbers begin where those of an earlier report ended; those with a prior stay as they are.
 ///
 /// throws  InvalidInput naming the file: it is no such report, or of other numbers
-[[nodiscard]] Eigen::VectorXd fitted_values(const std::string& file, const std::vector<FittedNumber>& numbers);
+void begin_where_fit_ended(const std::string& file, std::vector<FittedNumber>& numbers);
 
 }  // namespace softkin::calibration

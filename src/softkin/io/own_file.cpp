@@ -79,7 +79,7 @@ bool is_own_table(std::string_view text) {
                                Header{"p_gauge_kpa,p_abs_kpa,ratio,unloading,", ",line"},
                                Header{"run,line,t_s,stretch,stress_mpa,", ",off"},
                                Header{"line,strain,stress_mpa,linear_mpa,", ",yeoh_mpa"},
-                               Header{"pose,line,column,measured", ",kept"},
+                               Header{"pose,line,column,measured,computed,difference,kept", ""},
                                Header{"reading,line,t_s,", ",chi_square,freedoms,left_out,status"},
                                Header{"line,l1_mm,dl_mm,dl1_mm", "_off_mm"}};
   const std::string_view line = text.substr(0, text.find('\n'));

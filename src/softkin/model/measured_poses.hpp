@@ -39,6 +39,12 @@ struct UnnamedDots {
   Eigen::MatrixXd places{};          // [mm], poses by the axes of the first dot, of the second, ...; NaN: not seen
 };
 
+/// The outer outline of a robot as a camera saw it along z of the measuring frame.
+struct PictureOutlines {
+  std::string file{};                                  // empty: there are none
+  std::vector<std::vector<Eigen::Vector2d>> points{};  // per pose: x and y one after another along it [mm]; empty: none
+};
+
 /// Poses of a real robot: what it was told, and what was read.
 struct MeasuredPoses {
   std::string file;
@@ -49,6 +55,8 @@ struct MeasuredPoses {
   std::vector<std::size_t> lines;   // of the file, per pose
   Eigen::MatrixXd values;           // poses by columns; NaN: not read
   UnnamedDots dots{};
+  std::vector<Index> pictures{};  // per pose: the number of the one that shows it, 0: none; empty: no such column
+  PictureOutlines outlines{};
 };
 
 }  // namespace softkin

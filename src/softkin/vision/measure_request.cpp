@@ -60,6 +60,14 @@ void read_tags(MeasureRequest& request, const std::string& text, std::set<std::s
   }
 }
 
+SilhouetteLook read_outline(const std::string& text) {
+  try {
+    return SilhouetteLook(text);
+  } catch (const InvalidInput& error) {
+    throw InvalidInput(std::string("outline: ") + error.what() + ", dark or bright");
+  }
+}
+
 ScaleRequest read_scale(const std::string& text) {
   const std::size_t equals = text.rfind('=');
   const std::vector<std::string> parts = parts_of(text.substr(0, equals));
@@ -107,7 +115,10 @@ void check_whole(const MeasureRequest& request) {
   if (request.board && request.board->kind == BoardSpec::Kind::checker)
     throw InvalidInput("scale board: a checker board looks the same upside down; use a grid or charuco board");
   const bool markers = !request.dots.empty() || !request.tags.empty() || request.all_tags;
-  if (!markers && !request.interface) throw InvalidInput("nothing to measure: give dots, tags or an interface");
+  if (!markers && !request.interface && !request.outline)
+    throw InvalidInput("nothing to measure: give dots, tags, an interface or an outline");
+  if (request.interface && request.outline)
+    throw InvalidInput("an interface and an outline have tables of their own; measure them in two calls");
   if (request.given.moving_camera && !request.board)
     throw InvalidInput("a moving camera needs a scale board, by which each frame finds where the camera is");
   if (request.interface && markers && !request.angles.empty())
@@ -138,6 +149,7 @@ MeasureRequest understood(const MeasureOptions& options) {
       throw InvalidInput("interface '" + options.interface + "': give two colours, that at the fixed end first");
     request.interface = {Colour(parts[0]), Colour(parts[1])};
   }
+  if (!options.outline.empty()) request.outline = read_outline(options.outline);
   if (request.scale && !request.scale->pixels)
     for (const std::string& marker : request.scale->markers) check_marker(request, names, marker, "scale");
   for (const std::string& angle : options.angles) {

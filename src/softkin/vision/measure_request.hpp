@@ -5,6 +5,7 @@
 #include <optional>
 #include <softkin/vision/boards.hpp>
 #include <softkin/vision/pictures.hpp>
+#include <softkin/vision/silhouettes.hpp>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,7 @@ namespace softkin::vision {
 /// What the user asked for, as typed: docs/measure.md.
 struct MeasureOptions {
   std::string board{}, scale{}, camera{}, dots{}, tags{}, dictionary{}, interface {
-  }, origin{}, x_axis{};
+  }, origin{}, x_axis{}, outline{};
   std::vector<std::string> angles{};
   bool moving_camera = false;
   std::optional<Camera> lens{};  // that the file `camera` would have; `camera` is then its name alone
@@ -49,6 +50,7 @@ struct MeasureRequest {
   std::optional<ScaleRequest> scale;
   std::optional<Camera> camera;
   std::optional<std::array<Colour, 2>> interface;
+  std::optional<SilhouetteLook> outline;
   std::vector<AngleRequest> angles;
   std::array<std::string, 2> x_axis;
 };

@@ -78,6 +78,15 @@ Table specimen_table(const Photos& photos, const std::vector<Stretch>& stretches
   return table;
 }
 
+Table outline_table(const Photos& photos) {
+  Table table;
+  add_columns(table, {"picture", "x_mm", "y_mm"});
+  for (std::size_t i = 0; i < photos.size(); ++i)
+    for (const Vec2& point : photos[i].seen.outline->points)
+      table.rows.push_back({static_cast<double>(i + 1), point.x(), point.y()});
+  return table;
+}
+
 std::vector<std::string> sources(const Photos& photos, bool specimen) {
   std::vector<std::string> lines;
   if (specimen) lines.push_back("at rest: " + photos[0].file);
@@ -107,6 +116,17 @@ Json specimen_json(const SpecimenView& view) {
           {"axis_deg", view.axis}};
 }
 
+Json outline_json(const Silhouette& outline) {
+  Json x = Json::array(), y = Json::array();
+  for (const Vec2& point : outline.points) x.push_back(point.x()), y.push_back(point.y());
+  return {{"points", outline.points.size()},
+          {"length_mm", outline.length},
+          {"area_mm2", outline.area},
+          {"cut", outline.cut},
+          {"x_mm", x},
+          {"y_mm", y}};
+}
+
 Json photo_json(const PhotoSeries::Photo& photo) {
   Json json{{"picture", photo.file}};
   for (const NamedMarker& marker : photo.seen.markers)
@@ -118,6 +138,7 @@ Json photo_json(const PhotoSeries::Photo& photo) {
   for (const Angle& angle : photo.seen.angles)
     json["angles"][angle.name] = {{"degrees", angle.degrees}, {"error_deg", angle.error}};
   if (photo.seen.specimen) json["specimen"] = specimen_json(*photo.seen.specimen);
+  if (photo.seen.outline) json["outline"] = outline_json(*photo.seen.outline);
   return json;
 }
 
@@ -132,6 +153,7 @@ std::vector<Stretch> PhotoSeries::stretches() const {
 }
 
 Table PhotoSeries::table() const {
+  if (has_outlines()) return outline_table(photos_);
   return has_specimen() ? specimen_table(photos_, stretches()) : marker_table(photos_);
 }
 
@@ -199,10 +221,25 @@ Table PhotoSeries::shown_stretches() const {
   return table;
 }
 
+Table PhotoSeries::shown_outlines() const {
+  Table table{{words("picture"),
+               {.key = "points"},
+               length("outline", 2),
+               {.key = "area", .unit = "mm^2", .digits = 1, .form = Column::Form::decimals},
+               words("")}};
+  for (const Photo& photo : photos_) {
+    const Silhouette& outline = *photo.seen.outline;
+    table.rows.push_back({printable(photo.file), static_cast<std::int64_t>(outline.points.size()), outline.length,
+                          outline.area, outline.cut ? "reaches the frame, where it is left out" : ""});
+  }
+  return table;
+}
+
 FilmTrack::FilmTrack(const MeasureOptions& options, std::vector<std::filesystem::path> files,
                      std::optional<double> rate)
     : measurer_(understood(options), true), film_(std::move(files), rate) {
   if (!options.interface.empty()) throw InvalidInput("an interface is measured in pictures, not in a film");
+  if (!options.outline.empty()) throw InvalidInput("outlines are measured in pictures, not in a film");
 }
 
 bool FilmTrack::advance() {

@@ -28,12 +28,14 @@ class PhotoSeries {
   [[nodiscard]] const std::vector<Photo>& photos() const { return photos_; }
   [[nodiscard]] const Measurer& measurer() const { return measurer_; }
   [[nodiscard]] bool has_specimen() const { return !photos_.empty() && photos_[0].seen.specimen.has_value(); }
+  [[nodiscard]] bool has_outlines() const { return !photos_.empty() && photos_[0].seen.outline.has_value(); }
   /// Of the specimen, the photographs after the first against it.
   [[nodiscard]] std::vector<Stretch> stretches() const;
 
   // Of one photograph at least.
 
-  /// Markers and angles, a row for each photograph; of a specimen its lengths, a row for each stretch: docs/measure.md.
+  /// Markers and angles, a row for each photograph; of a specimen its lengths, a row for each stretch; of outlines
+  /// their points: docs/measure.md.
   [[nodiscard]] Table table() const;
   /// The same as the content of a file, with what it was measured from as comments.
   [[nodiscard]] std::string csv() const;
@@ -46,6 +48,7 @@ class PhotoSeries {
   [[nodiscard]] Table shown_angles() const;
   [[nodiscard]] Table shown_specimens() const;
   [[nodiscard]] Table shown_stretches() const;
+  [[nodiscard]] Table shown_outlines() const;
 
  private:
   Measurer measurer_;

@@ -67,6 +67,7 @@ Measurer::Seen Measurer::in_picture(const RgbImage& picture) {
   if (request_.interface)
     seen.specimen = find_specimen(picture, (*request_.interface)[0], (*request_.interface)[1], view);
   seen.angles = angles_of(seen.markers);
+  if (request_.outline) seen.outline = find_silhouette(picture, *request_.outline, view);
   return seen;
 }
 

@@ -30,6 +30,7 @@ class Measurer {
     std::vector<NamedMarker> markers;  // in the order of the first picture
     std::optional<SpecimenView> specimen;
     std::vector<Angle> angles;
+    std::optional<Silhouette> outline;
   };
 
   /// Throws InvalidInput that begins with file.

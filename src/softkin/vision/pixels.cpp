@@ -168,7 +168,10 @@ bool Blob::touches_frame(const RgbImage& picture, int margin) const {
 }
 
 std::vector<Blob> find_blobs(const RgbImage& picture, const Colour& colour, int least) {
-  GrayImage mask = pixels_of(picture, colour);
+  return find_blobs(pixels_of(picture, colour), least);
+}
+
+std::vector<Blob> find_blobs(GrayImage mask, int least) {
   std::vector<Blob> blobs;
   for (int y = 0; y < mask.height; ++y)
     for (int x = 0; x < mask.width; ++x) {

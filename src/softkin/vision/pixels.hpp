@@ -61,5 +61,7 @@ struct Blob {
 /// Blobs of a colour, of at least so many pixels, the largest first. Each pixel is judged by the mean of its 3 x 3
 /// neighbourhood, so that noise makes no specks.
 [[nodiscard]] std::vector<Blob> find_blobs(const RgbImage& picture, const Colour& colour, int least);
+/// The same of the pixels of a mask that are not 0.
+[[nodiscard]] std::vector<Blob> find_blobs(GrayImage mask, int least);
 
 }  // namespace softkin::vision

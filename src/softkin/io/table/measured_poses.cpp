@@ -101,11 +101,15 @@ class DotColumns {
 
 class Columns {
  public:
-  /// dots  may it have them?
-  Columns(const CsvTable& table, const Model& model, bool dots = false)
+  /// seen  may it have what a camera saw without names: dots, and the numbers of pictures?
+  Columns(const CsvTable& table, const Model& model, bool seen = false)
       : table_(table), model_(model), dots_(table, model) {
     for (std::size_t c = 0; c < table.columns.size(); ++c) {
-      if (dots && dots_.take(c)) continue;
+      if (seen && dots_.take(c)) continue;
+      if (seen && table.columns[c] == picture_column && !actuator_of_column(model, table.columns[c])) {
+        picture_ = c;
+        continue;
+      }
       if (const auto read = reading(table.columns[c])) {
         readings_.push_back(*read);
         at_.push_back(c);
@@ -113,7 +117,7 @@ class Columns {
         commands_.push_back(c);
       }
     }
-    if (readings_.empty() && !dots_.any())
+    if (readings_.empty() && !dots_.any() && !picture_)
       table.fail_header(
           "no column is a reading: a coordinate such as tip_x_mm, a pressure or volume such as air_pressure_kPa or "
           "air_volume_mm3, a tension or length such as tendon_tension_N or tendon_length_mm, a support's force such as "
@@ -133,7 +137,11 @@ class Columns {
         poses.values(static_cast<Index>(row), static_cast<Index>(c)) = table_.rows[row][at_[c]];
     poses.dots = dots_.dots();
     const auto any_read = [](const Eigen::MatrixXd& values) { return (values.array() == values.array()).any(); };
-    if (!any_read(poses.values) && !any_read(poses.dots.places)) table_.fail_header("every reading is missing");
+    if (picture_) add_pictures(poses);
+    const bool any_picture =
+        std::any_of(poses.pictures.begin(), poses.pictures.end(), [](Index number) { return number > 0; });
+    if (!any_read(poses.values) && !any_read(poses.dots.places) && !any_picture)
+      table_.fail_header("every reading is missing");
     return poses;
   }
 
@@ -161,6 +169,15 @@ class Columns {
     for (const ActuationStep& step : actuation_steps(model_, commands(), Settings(model_.actuators.size()))) {
       poses.commands.push_back(step.actuation);
       if (step.time) poses.times.push_back(*step.time);
+    }
+  }
+
+  void add_pictures(MeasuredPoses& poses) const {
+    for (std::size_t row = 0; row < table_.rows.size(); ++row) {
+      const double number = table_.rows[row][*picture_];
+      if (!std::isnan(number) && !(number >= 1 && number <= most_pictures && number == std::floor(number)))
+        table_.fail(row, std::string("column '") + picture_column + "': expected the number of a picture, 1 or more");
+      poses.pictures.push_back(std::isnan(number) ? 0 : static_cast<Index>(number));
     }
   }
 
@@ -239,6 +256,7 @@ class Columns {
   DotColumns dots_;
   std::vector<PoseColumn> readings_;
   std::vector<std::size_t> at_, commands_;
+  std::optional<std::size_t> picture_;
 };
 
 }  // namespace
@@ -271,9 +289,9 @@ std::vector<PoseColumn> possible_readings(const Model& model) {
   return reading_columns(model, names);
 }
 
-MeasuredPoses read_measured_poses(const std::filesystem::path& file, const Model& model, bool dots) {
+MeasuredPoses read_measured_poses(const std::filesystem::path& file, const Model& model, bool seen) {
   const CsvTable table = read_csv_with_gaps(file);
-  return Columns(table, model, dots).poses();
+  return Columns(table, model, seen).poses();
 }
 
 }  // namespace softkin
