@@ -29,7 +29,7 @@ Vec3 Estimate::vertex_deviation(Index vertex) const {
 namespace {
 
 /// Of the deviation of markers: what shapes need not be more exact than.
-constexpr double exact = 5e-2;
+constexpr double exact = 1e-1;
 
 StaticsOptions exact_enough(StaticsOptions options, const std::vector<PoseColumn>& columns,
                             const Eigen::VectorXd& deviations) {
