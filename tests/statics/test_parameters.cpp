@@ -24,6 +24,22 @@ Model changed(const RobotSpec& spec, const Number& number, double by) {
   return compile(other);
 }
 
+/// The robots with a little more and a little less of each number.
+struct Beside {
+  std::vector<Model> models;
+  std::vector<Perturbed> perturbed;
+
+  Beside(const RobotSpec& spec, const std::vector<Number>& numbers) {
+    models.reserve(2 * numbers.size());
+    for (const Number& number : numbers) {
+      const double half = 1e-5 * number.size;
+      const Model& more = models.emplace_back(changed(spec, number, half));
+      const Model& less = models.emplace_back(changed(spec, number, -half));
+      perturbed.push_back({more, less, 2 * half});
+    }
+  }
+};
+
 /// Fourth-order differences of the equilibria of four other robots.
 struct NumberDifference : Difference {
   Points reactions;
@@ -52,16 +68,8 @@ void expect_derivatives(const RobotSpec& spec, const Actuation& actuation, const
   const Model model = compile(spec);
   const Statics statics(model);
   const Equilibrium found = settled(statics, actuation, tight(1e-10));
-  std::vector<Model> models;
-  models.reserve(2 * numbers.size());
-  std::vector<Perturbed> perturbed;
-  for (const Number& number : numbers) {
-    const double half = 1e-5 * number.size;
-    const Model& more = models.emplace_back(changed(spec, number, half));
-    const Model& less = models.emplace_back(changed(spec, number, -half));
-    perturbed.push_back({more, less, 2 * half});
-  }
-  const ParameterSensitivity slopes = Perturbations(statics, perturbed).at(found.state, {}, 1e-8, true);
+  const Beside beside(spec, numbers);
+  const ParameterSensitivity slopes = Perturbations(statics, beside.perturbed).at(found.state, {}, 1e-8, true);
   ASSERT_TRUE(slopes.regular);
   for (std::size_t p = 0; p < numbers.size(); ++p) {
     const NumberDifference expected = difference_by(spec, numbers[p], found.state);
@@ -83,20 +91,12 @@ void expect_gradients(const RobotSpec& spec, const Actuation& actuation, const s
   const Model model = compile(spec);
   const Statics statics(model);
   const Equilibrium found = settled(statics, actuation, tight(1e-10));
-  std::vector<Model> models;
-  models.reserve(2 * numbers.size());
-  std::vector<Perturbed> perturbed;
-  for (const Number& number : numbers) {
-    const double half = 1e-5 * number.size;
-    const Model& more = models.emplace_back(changed(spec, number, half));
-    const Model& less = models.emplace_back(changed(spec, number, -half));
-    perturbed.push_back({more, less, 2 * half});
-  }
+  const Beside beside(spec, numbers);
   Points weights(model.rest.rows(), 3);
   for (Eigen::Index i = 0; i < weights.size(); ++i) weights.data()[i] = std::sin(1 + 0.7 * static_cast<double>(i));
   const Eigen::VectorXd by_loads = Eigen::VectorXd::LinSpaced(actuation.size(), 0.5, -1.5);
-  const Eigen::MatrixXd slopes =
-      Perturbations(statics, perturbed).gradients(found.state, {{weights, {}}, {{}, by_loads}, {weights, by_loads}});
+  const Eigen::MatrixXd slopes = Perturbations(statics, beside.perturbed)
+                                     .gradients(found.state, {{weights, {}}, {{}, by_loads}, {weights, by_loads}});
   ASSERT_EQ(slopes.cols(), static_cast<Eigen::Index>(numbers.size()));
   for (std::size_t p = 0; p < numbers.size(); ++p) {
     const NumberDifference by = difference_by(spec, numbers[p], found.state);
