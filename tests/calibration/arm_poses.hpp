@@ -1,8 +1,11 @@
 #pragma once
 
+#include <gtest/gtest.h>
+
 #include <fstream>
 #include <random>
 #include <softkin/calibration/robot_report.hpp>
+#include <softkin/core/error.hpp>
 #include <softkin/io/mesh/mesh_io.hpp>
 #include <string>
 #include <vector>
@@ -87,5 +90,16 @@ class Arm {
 
   testing::TemporaryFolder folder_;
 };
+
+/// Is what it does refused, and with these words?
+template <class Act>
+void expect_refused(const Act& act, const std::string& why) {
+  try {
+    act();
+    ADD_FAILURE() << "not refused: " << why;
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
+  }
+}
 
 }  // namespace softkin::calibration

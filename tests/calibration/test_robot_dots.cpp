@@ -6,7 +6,6 @@
 #include <numeric>
 #include <random>
 #include <softkin/calibration/assignment.hpp>
-#include <softkin/core/error.hpp>
 #include <softkin/io/table/measured_poses.hpp>
 
 #include "calibration/arm_poses.hpp"
@@ -302,14 +301,6 @@ TEST(RobotDots, AreRefusedWithAReason) {
     std::ofstream(folder / "poses.csv") << text;
     return read_measured_poses(folder / "poses.csv", of ? *of : model, dots);
   };
-  const auto refused = [](const auto& act, const std::string& why) {
-    try {
-      act();
-      ADD_FAILURE() << "not refused: " << why;
-    } catch (const InvalidInput& error) {
-      EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
-    }
-  };
   const MeasuredPoses two =
       read("t1_N,dot1_x_mm,dot1_z_mm,tip_x_mm,dot7_z_mm,dot7_x_mm\n0.1,61,5,,2,30\n0.2,,,9,3,31\n");
   EXPECT_EQ(two.dots.names, (std::vector<std::string>{"dot1", "dot7"}));
@@ -318,22 +309,23 @@ TEST(RobotDots, AreRefusedWithAReason) {
   EXPECT_EQ(two.dots.places(1, 3), 3);
   EXPECT_TRUE(std::isnan(two.dots.places(1, 0)));
   EXPECT_EQ(two.columns.size(), 1u);
-  refused([&] { (void)fit_robot(robot, with_dots(poses, 1), {}); }, "poses.csv: it has dots without names");
-  refused([&] { (void)fit_robot(robot, poses, within(3)); }, "no dot without a name");
-  refused([&] { (void)read("t1,dot1_x_mm\n0,1\n", false); }, "no marker 'dot1'");
-  refused([&] { (void)read("t1,dot0_x_mm\n0,1\n"); }, "no marker 'dot0'");
-  refused([&] { (void)read("t1,dot1_x_mm,dot2_z_mm\n0,1,2\n"); }, "poses.csv:1: column 'dot1_z_mm' is missing");
-  refused([&] { (void)read("t1,dot1_x_mm,dot1_z_mm\n0,1,2\n0,,2\n"); }, "poses.csv:3: column 'dot1_x_mm' is empty");
-  refused([&] { (void)read("t1,dot1_x_mm\n0,\n"); }, "every reading is missing");
+  expect_refused([&] { (void)fit_robot(robot, with_dots(poses, 1), {}); }, "poses.csv: it has dots without names");
+  expect_refused([&] { (void)fit_robot(robot, poses, within(3)); }, "no dot without a name");
+  expect_refused([&] { (void)read("t1,dot1_x_mm\n0,1\n", false); }, "no marker 'dot1'");
+  expect_refused([&] { (void)read("t1,dot0_x_mm\n0,1\n"); }, "no marker 'dot0'");
+  expect_refused([&] { (void)read("t1,dot1_x_mm,dot2_z_mm\n0,1,2\n"); }, "poses.csv:1: column 'dot1_z_mm' is missing");
+  expect_refused([&] { (void)read("t1,dot1_x_mm,dot1_z_mm\n0,1,2\n0,,2\n"); },
+                 "poses.csv:3: column 'dot1_x_mm' is empty");
+  expect_refused([&] { (void)read("t1,dot1_x_mm\n0,\n"); }, "every reading is missing");
   std::string called = arm_scene;
   called.replace(called.find("name: tip"), 9, "name: dot1");
   const Arm other(called);
   const Model of_dot = other.robot({}).model(Eigen::VectorXd(0));
   EXPECT_EQ(read("t1,dot1_x_mm\n0,1\n", true, &of_dot).columns[0].marker, 0) << "a marker's name comes first";
-  refused([&] { (void)read("t1,dot2_x_mm\n0,1\n", true, &of_dot); }, "no marker 'dot2'");
+  expect_refused([&] { (void)read("t1,dot2_x_mm\n0,1\n", true, &of_dot); }, "no marker 'dot2'");
   const Arm none(std::string(arm_scene).substr(0, std::string(arm_scene).find("markers:")));
   const Model bare = none.robot({}).model(Eigen::VectorXd(0));
-  refused([&] { (void)read("t1,dot1_x_mm\n0,1\n", true, &bare); }, "the scene's markers, and it has none");
+  expect_refused([&] { (void)read("t1,dot1_x_mm\n0,1\n", true, &bare); }, "the scene's markers, and it has none");
 }
 
 }  // namespace softkin::calibration

@@ -355,14 +355,6 @@ TEST(RobotOutline, IsRefusedWithAReason) {
   const Arm arm;
   const Model model = arm.robot({}).model(Eigen::VectorXd(0));
   const TemporaryFolder folder;
-  const auto refused = [](const auto& act, const std::string& why) {
-    try {
-      act();
-      ADD_FAILURE() << "not refused: " << why;
-    } catch (const InvalidInput& error) {
-      EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
-    }
-  };
   const auto read = [&](const std::string& poses, const std::string& outlines) {
     std::ofstream(folder / "poses.csv") << poses;
     std::ofstream(folder / "o.csv") << outlines;
@@ -377,32 +369,36 @@ TEST(RobotOutline, IsRefusedWithAReason) {
   EXPECT_EQ(two.pictures, (std::vector<Index>{2, 0}));
   EXPECT_EQ(two.outlines.points[0].size(), 8u) << "closed by its first point";
   EXPECT_TRUE(two.outlines.points[1].empty());
-  refused([&] { (void)read("t1_N,tip_x_mm\n0.1,2\n", square); }, "poses.csv: no column 'picture'");
-  refused([&] { (void)read("t1_N,picture,tip_x_mm\n0.1,,2\n", square); }, "no pose has a picture");
-  refused([&] { (void)read("t1_N,picture\n0.1,\n", square); }, "every reading is missing");
-  refused([&] { (void)read("t1_N,picture\n0.1,2\n0.2,3\n", square); },
-          "poses.csv:3: column 'picture': there is no picture 3");
-  refused([&] { (void)read("t1_N,picture\n0.1,1.5\n", square); }, "poses.csv:2: column 'picture': expected the number");
-  refused([&] { (void)read("t1_N,picture\n0.1,2\n", "picture,x_mm\n2,0\n"); }, "o.csv:1: column 'y_mm' is missing");
-  refused([&] { (void)read("t1_N,picture\n0.1,2\n", "picture,x_mm,y_mm,z_mm\n2,0,0,0\n"); }, "column 'z_mm'");
-  refused([&] { (void)read("t1_N,picture\n0.1,2\n", "picture,x_mm,y_mm\n0,0,0\n"); }, "o.csv:2: column 'picture'");
-  refused([&] { (void)read("t1_N,picture\n0.1,2\n", "picture,x_mm,y_mm\n2,0,0\n"); }, "8 different ones at least");
+  expect_refused([&] { (void)read("t1_N,tip_x_mm\n0.1,2\n", square); }, "poses.csv: no column 'picture'");
+  expect_refused([&] { (void)read("t1_N,picture,tip_x_mm\n0.1,,2\n", square); }, "no pose has a picture");
+  expect_refused([&] { (void)read("t1_N,picture\n0.1,\n", square); }, "every reading is missing");
+  expect_refused([&] { (void)read("t1_N,picture\n0.1,2\n0.2,3\n", square); },
+                 "poses.csv:3: column 'picture': there is no picture 3");
+  expect_refused([&] { (void)read("t1_N,picture\n0.1,1.5\n", square); },
+                 "poses.csv:2: column 'picture': expected the number");
+  expect_refused([&] { (void)read("t1_N,picture\n0.1,2\n", "picture,x_mm\n2,0\n"); },
+                 "o.csv:1: column 'y_mm' is missing");
+  expect_refused([&] { (void)read("t1_N,picture\n0.1,2\n", "picture,x_mm,y_mm,z_mm\n2,0,0,0\n"); }, "column 'z_mm'");
+  expect_refused([&] { (void)read("t1_N,picture\n0.1,2\n", "picture,x_mm,y_mm\n0,0,0\n"); },
+                 "o.csv:2: column 'picture'");
+  expect_refused([&] { (void)read("t1_N,picture\n0.1,2\n", "picture,x_mm,y_mm\n2,0,0\n"); },
+                 "8 different ones at least");
   std::ofstream(folder / "p.csv") << "t1_N,picture\n0.1,2\n";
-  refused([&] { (void)read_measured_poses(folder / "p.csv", model); }, "no column is a reading");
+  expect_refused([&] { (void)read_measured_poses(folder / "p.csv", model); }, "no column is a reading");
   const MeasuredPoses bare = read_measured_poses(folder / "p.csv", model, true);
   std::ofstream(folder / "q.csv") << "t1_N,picture,tip_x_mm\n0.1,2,60\n";
   const MeasuredPoses beside = read_measured_poses(folder / "q.csv", model, true);
-  refused([&] { (void)fit_robot(arm.robot({"base.x"}), bare, {}); },
-          "p.csv: its poses have pictures and no other reading");
-  refused([&] { (void)predict_poses(arm.robot({}), bare, Eigen::VectorXd(0), {}); },
-          "p.csv: its poses have pictures and no other reading");
+  expect_refused([&] { (void)fit_robot(arm.robot({"base.x"}), bare, {}); },
+                 "p.csv: its poses have pictures and no other reading");
+  expect_refused([&] { (void)predict_poses(arm.robot({}), bare, Eigen::VectorXd(0), {}); },
+                 "p.csv: its poses have pictures and no other reading");
   RobotFitOptions options;
   options.outlines.within_mm = 2;
-  refused([&] { (void)fit_robot(arm.robot({"base.x"}), beside, options); }, "there is no outline");
+  expect_refused([&] { (void)fit_robot(arm.robot({"base.x"}), beside, options); }, "there is no outline");
   options.outlines.within_mm = -1;
-  refused([&] { (void)fit_robot(arm.robot({"base.x"}), two, options); }, "must be above 0 mm");
+  expect_refused([&] { (void)fit_robot(arm.robot({"base.x"}), two, options); }, "must be above 0 mm");
   options.outlines = {.points = 0};
-  refused([&] { (void)fit_robot(arm.robot({"base.x"}), two, options); }, "a number of points above 0");
+  expect_refused([&] { (void)fit_robot(arm.robot({"base.x"}), two, options); }, "a number of points above 0");
 }
 
 TEST(GivenNumbers, AreOfTheFrameAndStay) {

@@ -11,17 +11,13 @@ const Keys constants_of_laws{"shear_modulus", "c10", "c01", "c20", "c30"};
 /// Of a skin of rubber, which keeps its volume.
 SheetRubber read_rubber(const Map& map, const Node& law) {
   const Keys names{"neo-hookean", "mooney-rivlin", "yeoh"};
-  const std::vector<Keys> required{{}, {"c10", "c01"}, {"c10"}}, optional{{}, {}, {"c20", "c30"}};
-  const std::size_t which = choice(law, names);
-  const auto has = [](const Keys& keys, const std::string& key) {
-    return std::find(keys.begin(), keys.end(), key) != keys.end();
-  };
   const Keys moduli{"youngs_modulus", "shear_modulus"};
-  for (const std::string& key : Keys{"youngs_modulus", "shear_modulus", "c10", "c01", "c20", "c30", "orthotropic"}) {
-    const Node* found = map.find(key);
-    const bool taken = which == 0 ? has(moduli, key) : has(required[which], key) || has(optional[which], key);
-    if (found != nullptr && !taken) fail(*found, "'" + key + "' does not belong to law '" + names[which] + "'");
-  }
+  const std::vector<Keys> taken{moduli, {"c10", "c01"}, {"c10", "c20", "c30"}};
+  const std::size_t which = choice(law, names);
+  for (const std::string& key : Keys{"youngs_modulus", "shear_modulus", "c10", "c01", "c20", "c30", "orthotropic"})
+    if (const Node* found = map.find(key);
+        found != nullptr && std::find(taken[which].begin(), taken[which].end(), key) == taken[which].end())
+      fail(*found, "'" + key + "' does not belong to law '" + names[which] + "'");
   if (const Node* ratio = map.find("poisson_ratio"); ratio != nullptr && number(*ratio) != 0.5)
     fail(*ratio, "a skin of a rubber law keeps its volume: 'poisson_ratio' is 0.5, or left out");
   if (which == 0) {
@@ -32,8 +28,8 @@ SheetRubber read_rubber(const Map& map, const Node& law) {
     const Node* found = map.find(key);
     return found == nullptr ? 0.0 : number(*found);
   };
-  for (const std::string& key : required[which]) (void)map.at(key);
-  const SheetRubber rubber{constant("c10"), constant("c01"), constant("c20"), constant("c30")};
+  const double c10 = number(map.at("c10")), c01 = which == 1 ? number(map.at("c01")) : 0;
+  const SheetRubber rubber{c10, c01, constant("c20"), constant("c30")};
   if (!(rubber.c10 + rubber.c01 > 0)) fail(map.at("c10"), "'c10' + 'c01' must be greater than 0");
   if (rubber.c01 < 0) fail(map.at("c01"), "'c01' must be 0 or more");
   return rubber;
