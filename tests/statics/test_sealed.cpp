@@ -297,6 +297,10 @@ TEST(Sealed, TwoBalloonsOnOnePipe) {
   const Equilibrium above = settled(statics, values({1.0005 * limit}));
   EXPECT_EQ(above.report.unstable_modes, 1) << above.report.remark;
   EXPECT_NEAR(ratios(above)[0], ratios(above)[1], 1e-6);
+  // with the default tolerance, too, whose last steps are of a factor that is of another shape
+  EXPECT_EQ(statics.solve(values({0.999 * limit}), statics.rest(), {}).report.unstable_modes, 0);
+  for (const double amount : {1.002, 1.01, 1.03})
+    EXPECT_EQ(statics.solve(values({amount * limit}), statics.rest(), {}).report.unstable_modes, 1) << amount;
   StaticsOptions stable;
   stable.stable = true;
   const Equilibrium unequal = statics.solve(values({1.1 * limit}), statics.rest(), stable);

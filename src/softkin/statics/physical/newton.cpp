@@ -14,6 +14,8 @@ namespace {
 constexpr double slight_shift = 1e-7, clear_shift = 1;
 /// Where steps are small but forces are not in balance, each iteration must bring them so much nearer to it.
 constexpr double worthwhile_balance = 0.7;
+/// Of the diagonal, that the last steps may lead away from the factor whose negative pivots are told.
+constexpr double near_factor = 2e-4;
 
 }  // namespace
 
@@ -50,6 +52,7 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
   const auto attempted = [&](Stiffness kind, double shift, Precision precision) {
     if (!goes_on()) return Advance::interrupted;  // of a large robot each takes as long as many iterations
     ++report_.factorisations;
+    factored_ = at.positions;
     secants_.clear();
     rounding_looked_at_ = false;
     const InPrecision scope(work_.saddle, precision);
@@ -176,6 +179,18 @@ void Newton::settle_gases(Iterate& at) const {
   }
 }
 
+/// Is the count of negative eigenvalues one of rounding, or of a shape that is too far from an equilibrium? Where the
+/// count is 0 the softest change of shape tells. The workspace is left as it was.
+bool Newton::doubts_stability(const Iterate& at) {
+  if (negative_ != 0 && doubtful_) return true;
+  const double moved = (at.positions - factored_).rowwise().norm().maxCoeff();
+  if (!(moved > near_factor * system_.model().diagonal_mm)) return false;
+  if (negative_ != 0) return true;
+  const bool as_stiff = as_stiff_as_factorised(system_, at, *demand_, *active_, balance_, work_, team_);
+  (void)reject(at);
+  return !as_stiff;
+}
+
 /// The number of negative eigenvalues at an iterate, without a doubt.
 void Newton::make_sure(const Iterate& at) {
   const InPrecision twice(work_.saddle, linear::MixedLdlt::Precision::twice);
@@ -225,6 +240,7 @@ Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
   for (int iteration = 0; advance == Advance::made && iteration < settings_.max_iterations; ++iteration) {
     if (factorised && iteration == 0) {
       negative_ = 0;
+      factored_ = at.positions;
       advance = steps_from_nearby(at);
     } else {
       const Advance ready = factorise(at, policy);
@@ -252,7 +268,7 @@ Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
   if (!meets_constraints()) return Outcome::unmet;
   work_.saddle.correct_multipliers(balance_, at.multipliers, team_);
   settle_gases(at);
-  if (negative_ != 0 && doubtful_) make_sure(at);
+  if (doubts_stability(at)) make_sure(at);
   return negative_ == 0 ? Outcome::converged : Outcome::unstable;
 }
 

@@ -91,6 +91,7 @@ class Newton {
   Advance steps_from_nearby(Iterate& at);
   [[nodiscard]] bool meets_constraints() const;
   bool improve_balance();
+  [[nodiscard]] bool doubts_stability(const Iterate& at);
   void make_sure(const Iterate& at);
   bool improve_constraints();
   void settle_gases(Iterate& at) const;
@@ -121,6 +122,7 @@ class Newton {
   bool rounding_looked_at_ = false;
   bool refines_ = false;  // do steps want more than what the factor's precision gives
   int negative_ = 0;      // of the last factorisation
+  Points factored_;       // where that was
   Imbalance imbalance_;
   double missed_ = 0;  // the worst constraint, over its measure at rest [-]
 };
