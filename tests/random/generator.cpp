@@ -59,6 +59,7 @@ void spoil_number(Making& m) {
 RandomCase make_case(std::uint64_t seed) {
   Making m(seed);
   m.made.spec.name = "random-" + std::to_string(seed);
+  if (make_film(m)) return std::move(m.made);
   m.physical = m.draw.chance(0.65);
   m.made.spec.formulation = m.physical ? Formulation::physical : Formulation::target_shape;
   choose_oddities(m);

@@ -49,6 +49,8 @@ struct Making {
   [[nodiscard]] double longest() const { return size.maxCoeff(); }
 };
 
+/// Some robots are bags of film alone, flat at rest, on a floor too: the whole case; false: not this one.
+[[nodiscard]] bool make_film(Making& m);
 void make_mesh(Making& m);   // with its regions, before it is scaled
 void spoil_mesh(Making& m);  // what is odd about it
 void make_materials(Making& m);

@@ -262,6 +262,8 @@ Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
     if (!std::isfinite(imbalance_.residual) || report_.step_mm >= settings_.tolerance_mm) return Outcome::stuck;
     (void)reject(at);  // the last step was small enough, and none follows it
     imbalance_ = system_.imbalance(balance_, work_, team_);
+    // steps of a factor that is too stiff are small wherever they end
+    if (advance == Advance::none && !balanced() && step_.size.largest > settings_.tolerance_mm) return Outcome::stuck;
   }
   report_.gradient_norm = balance_.force.norm();
   report_.energy = balance_.energy;

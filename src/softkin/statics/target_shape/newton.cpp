@@ -157,7 +157,8 @@ bool NewtonSearch::close(const Actuation& actuation, Points& positions, double& 
   if (!(step_mm < safely * report_.tolerance_mm)) return false;
   tangent_.freedoms().move(natural_, 1, positions);
   evaluate(actuation, positions);
-  return true;
+  keep_factor_ = false;
+  return at_fixed_point(positions);
 }
 
 /// Backtracking to a sufficient decrease (Armijo) of the energy; below its rounding any step is as good.
