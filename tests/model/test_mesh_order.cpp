@@ -3,6 +3,7 @@
 #include <set>
 #include <softkin/core/error.hpp>
 #include <softkin/model/mesh/mesh_check.hpp>
+#include <softkin/model/mesh/mesh_joining.hpp>
 
 #include "model/quadratic_mesh.hpp"
 
@@ -102,6 +103,34 @@ TEST(MeshOrder, LoweredForgetsTheEdgeNodes) {
   EXPECT_TRUE(back.edge_nodes.empty());
   EXPECT_EQ(back.regions.back().vertices, mesh.regions.back().vertices);
   EXPECT_GT(back.vertices.rows(), mesh.vertices.rows());
+}
+
+/// Two triangles beside a block, of which one hangs on an edge of it.
+TEST(MeshOrder, EdgesOfSheetsHaveNodesToo) {
+  Mesh mesh = block_mesh({1, 1, 1}, {1, 1, 1});
+  const auto before = static_cast<Index>(mesh.vertices.rows());
+  mesh.vertices.conservativeResize(before + 2, 3);
+  mesh.vertices.bottomRows(2) << 3, 0, 0, 3, 1, 0;
+  mesh.triangles = {{0, 1, before}, {1, before + 1, before}};
+  const Mesh raised = elevated(mesh);
+  EXPECT_EQ(raised.sheet_edges.size(), 4u);
+  const EdgeTable table(raised);
+  for (const Triangle& t : mesh.triangles) {
+    const std::array<Index, 3> nodes = table.of(t);
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Vec3 middle = (vertex_at(mesh.vertices, t[k]) + vertex_at(mesh.vertices, t[(k + 1) % 3])) / 2;
+      ASSERT_GE(nodes[k], before + 2);
+      EXPECT_LT((vertex_at(raised.vertices, nodes[k]) - middle).norm(), 1e-15);
+    }
+  }
+  EXPECT_EQ(quadratic_triangles(raised).size(), 2u);
+  Mesh both = raised;
+  append(both, raised);
+  EXPECT_EQ(both.sheet_edges[4][2], raised.sheet_edges[0][2] + raised.vertices.rows());
+  EXPECT_TRUE(lowered(raised).sheet_edges.empty());
+  mesh.tetrahedra.clear();  // a sheet alone
+  EXPECT_EQ(order_of(elevated(mesh)), 2);
+  EXPECT_EQ(elevated(mesh).sheet_edges.size(), 5u);
 }
 
 TEST(MeshOrder, Refusals) {

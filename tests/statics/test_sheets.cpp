@@ -122,6 +122,92 @@ TEST(Sheets, ABalloonOfRubberBearsWhatItsLawSays) {
   }
 }
 
+/// A rectangle of squares cut by their diagonals, either way, of a film that bends; order 2.
+RobotSpec bending_sheet(const Vec3& from, const Vec3& to, int along, int across, double thickness_mm, double modulus,
+                        double nu) {
+  RobotSpec spec;
+  spec.name = "sheet.yaml";
+  spec.formulation = Formulation::physical;
+  spec.quadratic = true;
+  spec.mesh.vertices.resize((along + 1) * (across + 1), 3);
+  const auto place = [&](int i, int j) { return static_cast<Index>(i * (across + 1) + j); };
+  for (int i = 0; i <= along; ++i)
+    for (int j = 0; j <= across; ++j) {
+      const Vec3 share(static_cast<double>(i) / along, static_cast<double>(j) / across, 0);
+      spec.mesh.vertices.row(place(i, j)) = (from + share.cwiseProduct(to - from)).transpose();
+      if (i == along || j == across) continue;
+      const Index a = place(i, j), b = place(i + 1, j), c = place(i + 1, j + 1), d = place(i, j + 1);
+      if ((i + j) % 2 == 0)
+        spec.mesh.triangles.insert(spec.mesh.triangles.end(), {{a, b, c}, {a, c, d}});
+      else
+        spec.mesh.triangles.insert(spec.mesh.triangles.end(), {{a, b, d}, {b, c, d}});
+    }
+  LayerSpec film = *film_layer("all", thickness_mm, modulus);
+  film.nu12 = nu;
+  film.g12 = modulus / (2 * (1 + nu));
+  film.tension_only = false;
+  film.bending = true;
+  spec.layers.push_back(std::make_shared<const LayerSpec>(film));
+  return spec;
+}
+
+FixedSpec held_in(const Vec3& low, const Vec3& high, const std::array<bool, 3>& axes) {
+  return {{Selector(Box{low, high}), {}}, axes};
+}
+
+/// A square without a body, held up along its border, under its weight: Timoshenko and Woinowsky-Krieger, table 8.
+TEST(Sheets, ThatBendSinkAsKirchhoffSays) {
+  constexpr double side = 40, thickness = 0.5, modulus = 100, nu = 0.3, density = 100;
+  RobotSpec spec = bending_sheet({0, 0, 0}, {side, side, 0}, 20, 20, thickness, modulus, nu);
+  auto heavy = std::make_shared<LayerSpec>(*spec.layers[0]);
+  heavy->density = density;
+  spec.layers = {heavy};
+  spec.gravity = {0, 0, -9.81};
+  const Vec3 low(-1, -1, -1), high(side + 1, side + 1, 1);
+  for (int axis = 0; axis < 2; ++axis) {
+    Vec3 end = high, begin = low;
+    end[axis] = 1e-6;
+    begin[axis] = side - 1e-6;
+    spec.fixed.push_back(held_in(low, end, {false, false, true}));
+    spec.fixed.push_back(held_in(begin, high, {false, false, true}));
+  }
+  spec.fixed.push_back(held_in(low, {1e-6, 1e-6, 1}, {true, true, true}));
+  spec.fixed.push_back(held_in({side - 1e-6, -1, -1}, {side + 1, 1e-6, 1}, {false, true, true}));
+  spec.markers = {{"middle", {Vec3(side / 2, side / 2, 0), {}}}};
+  const Model model = compile(spec);
+  EXPECT_EQ(order_of(model), 2);
+  const Statics statics(model);
+  const Equilibrium found = settled(statics, model.rest_actuation());
+  const double load = density * 1e-9 * 9.81 * thickness;  // [N/mm^2]
+  const double rigidity = modulus * std::pow(thickness, 3) / (12 * (1 - nu * nu));
+  const double sinks = 0.0040624 * load * std::pow(side, 4) / rigidity;
+  EXPECT_NEAR(-marker_at(model, found)[2], sinks, 0.01 * sinks);
+  EXPECT_LT(found.report.iterations, 20);
+}
+
+/// A strip without a body, clamped by a row of its faces, bent far by a force at its end: K. E. Bisshopp, D. C.
+/// Drucker, "Large deflection of cantilever beams", 1945.
+TEST(Sheets, ThatBendFollowTheElastica) {
+  constexpr double length = 60, width = 6, thickness = 0.5, modulus = 100;
+  RobotSpec spec = bending_sheet({-3, 0, 0}, {length, width, 0}, 21, 2, thickness, modulus, 0);
+  spec.fixed = {held_in({-9, -1, -1}, {1e-6, width + 1, 1}, {true, true, true})};
+  spec.markers = {{"tip", {Vec3(length, width / 2, 0), {}}}};
+  spec.regions = {{"end", Selector(Box{{length - 1e-6, -1, -1}, {length + 1, width + 1, 1}}), {}}};
+  const double rigidity = modulus * width * std::pow(thickness, 3) / 12;
+  for (const auto& [times, sinks, shortens] : {std::array{1.0, 0.3017, 0.0564}, std::array{10.0, 0.8106, 0.5550}}) {
+    ForceSpec end;
+    end.name = "end";
+    end.at = {std::string("end"), {}};
+    end.force = {0, 0, -times * rigidity / (length * length)};
+    spec.forces = {end};
+    const Model model = compile(spec);
+    const Equilibrium found = settled(Statics(model), model.rest_actuation());
+    const Vec3 tip = marker_at(model, found);
+    EXPECT_NEAR(-tip[2], sinks * length, 0.01 * sinks * length) << times;
+    EXPECT_NEAR(length - tip[0], shortens * length, 0.01 * length) << times;
+  }
+}
+
 TEST(Sheets, HangOnABodyAndPullIt) {
   // a flap of film beside a block, pulled in its plane: it stretches as a strip of its width does
   constexpr double force = 0.5, thickness = 0.1, modulus = 50;

@@ -86,7 +86,7 @@ void check_orders(const std::vector<PlacedRobot>& robots) {
 
 /// Shapes choose among the nodes of the edges too.
 void elevate(RobotSpec& robot) {
-  if (!robot.quadratic || !robot.mesh.edge_nodes.empty() || !robot.mesh.prisms.empty()) return;
+  if (!robot.quadratic || order_of(robot.mesh) == 2 || !robot.mesh.prisms.empty()) return;
   check_cells(robot.mesh, {.file = robot.name});
   robot.mesh = elevated(robot.mesh);
 }

@@ -56,6 +56,9 @@ struct Layer {
   std::vector<CavityFace> faces;   // of the mesh, for pictures; none where elements carry it along
 };
 
+/// Of its elements, or where it has none of its sheets: 1 or 2.
+[[nodiscard]] int order_of(const Model& model);
+
 /// Per vertex: is it of an element, edge nodes too. Sheets beside the body have others.
 [[nodiscard]] std::vector<bool> vertices_of_elements(const Model& model);
 

@@ -181,6 +181,11 @@ std::vector<Index> nodes_of(const CavityFace& face) {
   return nodes;
 }
 
+int order_of(const Model& model) {
+  const auto is_quadratic = [](const auto& layer) { return !layer->faces.empty() && layer->faces[0].edges[0] >= 0; };
+  return !model.edge_nodes.empty() || std::any_of(model.layers.begin(), model.layers.end(), is_quadratic) ? 2 : 1;
+}
+
 std::vector<bool> vertices_of_elements(const Model& model) {
   std::vector<bool> of_element(static_cast<std::size_t>(model.rest.rows()));
   const auto mark = [&](const auto& elements) {

@@ -19,7 +19,13 @@ std::vector<Triangle> sheets_of(const Model& model) {
       if (std::all_of(t.begin(), t.end(), [&](Index v) { return of_element[static_cast<std::size_t>(v)]; })) continue;
       Triangle key = t;
       std::sort(key.begin(), key.end());
-      if (known.insert(key).second) sheets.push_back(t);
+      if (!known.insert(key).second) continue;
+      if (face.edges[0] < 0) {
+        sheets.push_back(t);
+        continue;
+      }
+      const std::array<Triangle, 4> parts = quarters(t, face.edges);
+      sheets.insert(sheets.end(), parts.begin(), parts.end());
     }
   return sheets;
 }

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <softkin/core/text.hpp>
 #include <softkin/io/table/settings.hpp>
+#include <softkin/model/layer.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/model_summary.hpp>
 
@@ -41,9 +42,10 @@ const char* unit_of_measure(const Actuator& actuator) {
 std::string model_summary(const Model& model, const std::string& solver) {
   std::string text = grouped(static_cast<std::size_t>(model.robot_vertices())) + " vertices";
   if (!model.tetrahedra.empty())
-    text += ", " + grouped(model.tetrahedra.size()) + " tetrahedra of order " + (model.edge_nodes.empty() ? "1" : "2");
+    text += ", " + grouped(model.tetrahedra.size()) + " tetrahedra of order " + std::to_string(order_of(model));
   if (!model.prisms.empty()) text += ", " + grouped(model.prisms.size()) + " prisms";
-  if (model.tetrahedra.empty() && model.prisms.empty()) text += ", layers alone";
+  if (model.tetrahedra.empty() && model.prisms.empty())
+    text += ", layers alone, of order " + std::to_string(order_of(model));
   text += std::string("; ") + formulation_name(model.formulation) + " formulation";
   if (!model.materials.empty() && model.formulation == Formulation::physical) text += " (" + laws(model) + ")";
   if (model.weights != ElementWeights::printed) text += std::string(" (weights ") + weights_name(model.weights) + ")";

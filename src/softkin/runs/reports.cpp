@@ -4,7 +4,7 @@
 #include <softkin/core/target.hpp>
 #include <softkin/drive/use.hpp>
 #include <softkin/kinematics/jacobian.hpp>
-#include <softkin/model/model.hpp>
+#include <softkin/model/layer.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/contacts_json.hpp>
 #include <softkin/runs/records_json.hpp>
@@ -119,7 +119,7 @@ Json head_json(const Model& model, const std::string& scene, const StaticsOption
                {"solver", solver_json(options, map)},
                {"units", units_json(model)},
                {"mesh",
-                {{"order", model.edge_nodes.empty() ? 1 : 2},
+                {{"order", order_of(model)},
                  {"vertices", model.robot_vertices()},
                  {"tetrahedra", model.tetrahedra.size()},
                  {"prisms", model.prisms.size()}}},

@@ -2,7 +2,9 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <softkin/model/compile/layers.hpp>
 #include <softkin/model/compile/parts.hpp>
+#include <softkin/model/mesh/triangle_points.hpp>
 
 namespace softkin {
 
@@ -42,7 +44,8 @@ const Body& body_of(Compilation& c, const std::string& robot) {
     if (is_of(prism)) prisms.push_back(prism);
   Embedder embedder(model.rest, tetrahedra, prisms, edge_nodes);
   Body body{std::move(tetrahedra), std::move(prisms), std::move(embedder), diagonal_of(c, robot)};
-  std::copy_if(c.sheets.begin(), c.sheets.end(), std::back_inserter(body.sheets), is_of);
+  for (const Triangle& t : c.sheets)
+    if (is_of(t)) body.sheets.push_back(face_of(c, t));
   return c.robot_bodies.emplace(robot, std::move(body)).first->second;
 }
 
@@ -50,15 +53,17 @@ namespace {
 
 /// The face of a sheet that is nearest to a point, and its point there.
 struct NearestFace {
-  Triangle face{};
+  CavityFace face{};
   Vec3 at{0, 0, 0};
 };
 
 /// None where an element is as near.
 std::optional<NearestFace> nearest_face(const Body& body, const Points& rest, const Vec3& point) {
   if (body.sheets.empty() || !point.allFinite()) return std::nullopt;
+  std::vector<Triangle> corners;
+  for (const CavityFace& face : body.sheets) corners.push_back(face.corners);
   Index nearest = 0;
-  const Vec3 at = SurfaceTree(rest, body.sheets).nearest(point, &nearest);
+  const Vec3 at = SurfaceTree(rest, corners).nearest(point, &nearest);
   if (!body.embedder.empty() && body.embedder.embed(point).distance_mm <= (point - at).norm()) return std::nullopt;
   return NearestFace{body.sheets[static_cast<std::size_t>(nearest)], at};
 }
@@ -70,16 +75,21 @@ EmbeddedPoint carried(const Body& body, const Points& rest, const Vec3& point) {
   const std::optional<NearestFace> nearest = nearest_face(body, rest, point);
   if (!nearest) return body.embedder.embed(point);
   const auto& [face, at] = *nearest;
-  const Vec3 a = vertex_at(rest, face[0]), b = vertex_at(rest, face[1]), c = vertex_at(rest, face[2]);
+  const Vec3 a = vertex_at(rest, face.corners[0]), b = vertex_at(rest, face.corners[1]),
+             c = vertex_at(rest, face.corners[2]);
   const Vec3 normal = (b - a).cross(c - a);
-  const std::array<double, 3> weights{(b - at).cross(c - at).dot(normal), (c - at).cross(a - at).dot(normal),
-                                      (a - at).cross(b - at).dot(normal)};
+  const Vec3 shares =
+      Vec3((b - at).cross(c - at).dot(normal), (c - at).cross(a - at).dot(normal), (a - at).cross(b - at).dot(normal)) /
+      normal.squaredNorm();
+  const std::vector<Index> nodes = nodes_of(face);
+  const TrianglePoint quadratic = triangle_point(shares[1], shares[2], 0);
   EmbeddedPoint embedded;
   embedded.distance_mm = (point - at).norm();
-  for (std::size_t i = 0; i < 3; ++i) {
-    const double weight = weights[i] / normal.squaredNorm();
+  for (std::size_t i = 0; i < nodes.size(); ++i) {
+    const auto k = static_cast<Eigen::Index>(i);
+    const double weight = nodes.size() == 3 ? shares[k] : quadratic.shape[k];
     if (std::abs(weight) < least_weight) continue;
-    embedded.vertices.push_back(face[i]);
+    embedded.vertices.push_back(nodes[i]);
     embedded.weights.push_back(weight);
   }
   return embedded;
@@ -87,7 +97,7 @@ EmbeddedPoint carried(const Body& body, const Points& rest, const Vec3& point) {
 
 double most_outside(const Body& body, const Points& rest, const Vec3& point) {
   const std::optional<NearestFace> nearest = nearest_face(body, rest, point);
-  const double edge = nearest ? longest_edge(rest, nearest->face) : body.embedder.edge_near(point);
+  const double edge = nearest ? longest_edge(rest, nearest->face.corners) : body.embedder.edge_near(point);
   return std::min(0.5 * edge, 0.1 * body.diagonal_mm);
 }
 

@@ -108,7 +108,7 @@ namespace {
 /// The mesh where the model takes it in another order than it has.
 std::optional<Mesh> in_other_order(const RobotSpec& spec, std::vector<std::string>& notes) {
   const Origin origin{.file = spec.name};
-  const bool is_quadratic = !spec.mesh.edge_nodes.empty();
+  const bool is_quadratic = order_of(spec.mesh) == 2;
   if (spec.formulation == Formulation::physical) {
     if (!spec.quadratic || is_quadratic) return std::nullopt;
     if (!spec.mesh.prisms.empty())

@@ -3,7 +3,9 @@
 #include <cmath>
 #include <map>
 #include <set>
+#include <softkin/model/compile/layers.hpp>
 #include <softkin/model/compile/parts.hpp>
+#include <softkin/model/mesh/mesh_order.hpp>
 
 namespace softkin {
 
@@ -140,7 +142,14 @@ void add_sheets(Compilation& c, std::vector<Index>& owners) {
   for (const Triangle& t : c.sheets) {
     Triangle key = t;
     std::sort(key.begin(), key.end());
-    if (known.insert(key).second) contact.triangles.push_back(t);
+    if (!known.insert(key).second) continue;
+    const CavityFace face = face_of(c, t);
+    if (face.edges[0] < 0) {
+      contact.triangles.push_back(t);
+      continue;
+    }
+    const std::array<Triangle, 4> parts = quarters(t, face.edges);
+    contact.triangles.insert(contact.triangles.end(), parts.begin(), parts.end());
   }
   contact.sheets[1] = static_cast<Index>(contact.triangles.size());
   owners.resize(contact.triangles.size(), -1);
@@ -270,7 +279,7 @@ void compile_contact(Compilation& c) {
   contact.distance_mm = distance_of(spec, c.model.diagonal_mm);
   contact.modulus_MPa = softest(c);
   add_robot_parts(c, spec);
-  if (!c.model.edge_nodes.empty()) contact.edges = edges_of_faces(contact.triangles);
+  if (!c.regions.edges().empty()) contact.edges = edges_of_faces(contact.triangles);
   const double mean = spread_area(c.model);
   add_surroundings(c, spec, least_area * mean);
   set_pairs(contact, spec);

@@ -85,6 +85,8 @@ bool has_straight_edges(const Mesh& mesh) {
 
 CurvedEdges curve_mesh(const RobotSpec& spec, Mesh& mesh, std::vector<std::string>& notes) {
   const CurveSpec& curve = *spec.curve;
+  if (mesh.tetrahedra.empty())
+    throw InvalidInput(curve.origin, "'curve' moves nodes of elements, and the mesh is of triangles alone");
   if (!has_straight_edges(mesh))
     throw InvalidInput(curve.origin, "the mesh's edges are curved already, by up to " +
                                          number(100 * largest_bulge(mesh), 3) +

@@ -91,13 +91,12 @@ std::vector<CavityFace> faces_of(const Compilation& c, const LayerSpec& spec, co
   if (triangles.empty()) refuse_layer(spec, "is on " + label(where) + ", which holds no face of the body");
   std::vector<CavityFace> faces;
   for (const Triangle& t : triangles) {
-    CavityFace face{t};
-    if (!c.regions.edges().empty()) face.edges = c.regions.edges().of(t);
+    const CavityFace face = face_of(c, t);
     for (const Index v : nodes_of(face))
       if (v < 0 || !c.model.used[v])
         refuse_layer(spec, "has a face at " + point_text(vertex_at(c.model.rest, t[0])) +
                                " mm, of which a vertex belongs to no element of the robot: a layer beside the body "
-                               "takes a mesh of order 1");
+                               "takes a mesh of order 1, which 'order: 2' raises");
     faces.push_back(face);
   }
   return faces;
@@ -179,6 +178,12 @@ Layer layer_of(Compilation& c, const LayerSpec& spec) {
 
 }  // namespace
 
+CavityFace face_of(const Compilation& c, const Triangle& corners) {
+  CavityFace face{corners};
+  if (!c.regions.edges().empty()) face.edges = c.regions.edges().of(corners);
+  return face;
+}
+
 const std::vector<TrianglePoint>& strain_points(std::size_t nodes) {
   static const std::vector<TrianglePoint> one(triangle_points(3).begin(), triangle_points(3).end());
   static const std::vector<TrianglePoint> three = {triangle_point(1.0 / 6, 1.0 / 6, 1.0 / 6),
@@ -210,7 +215,7 @@ LayerFrame::LayerFrame(const LayerSpec& spec, const TrianglePoint& point, const 
 }
 
 void use_sheets(Compilation& c) {
-  if (c.spec.formulation != Formulation::physical || !c.regions.edges().empty()) return;
+  if (c.spec.formulation != Formulation::physical) return;
   for (const auto& spec : c.spec.layers) {
     const auto* where = std::get_if<RegionRef>(&spec->where);
     if (where == nullptr) continue;
@@ -223,7 +228,8 @@ void use_sheets(Compilation& c) {
     }
   }
   for (const Triangle& t : c.sheets)
-    for (const Index v : t) c.model.used[v] = true;
+    for (const Index v : nodes_of(face_of(c, t)))
+      if (v >= 0) c.model.used[v] = true;
 }
 
 void compile_layers(Compilation& c) {

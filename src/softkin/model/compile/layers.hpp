@@ -10,6 +10,9 @@ struct Compilation;
 /// Physical, after the loads: sheets on faces and surfaces, and their weight.
 void compile_layers(Compilation& c);
 
+/// With the nodes on its edges where the mesh is of order 2; -1 where nothing has an edge.
+[[nodiscard]] CavityFace face_of(const Compilation& c, const Triangle& corners);
+
 /// Where the strain of a face is looked at: of 3 nodes in the middle, of 6 at three points, exact for a strain that is
 /// linear.
 [[nodiscard]] const std::vector<TrianglePoint>& strain_points(std::size_t nodes);

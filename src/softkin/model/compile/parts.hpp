@@ -14,8 +14,8 @@ struct Body {
   std::vector<Tetrahedron> tetrahedra;
   std::vector<Prism> prisms;
   Embedder embedder;
-  double diagonal_mm = 0;          // of all of its elements
-  std::vector<Triangle> sheets{};  // of layers without elements
+  double diagonal_mm = 0;            // of all of its elements
+  std::vector<CavityFace> sheets{};  // of layers without elements
 };
 
 /// What compile() knows while it works. Its parts below fill in the model, in this order, and throw InvalidInput.

@@ -128,14 +128,11 @@ Region every_element(const Mesh& mesh) {
   all.prisms.resize(mesh.prisms.size());
   std::iota(all.tetrahedra.begin(), all.tetrahedra.end(), 0);
   std::iota(all.prisms.begin(), all.prisms.end(), 0);
-  add_element_vertices(mesh, all);
   if (mesh.tetrahedra.empty() && mesh.prisms.empty()) {
     all.dimension = 2;
     all.triangles.resize(mesh.triangles.size());
     std::iota(all.triangles.begin(), all.triangles.end(), 0);
-    add_vertices(mesh.triangles, all.triangles, all.vertices);
   }
-  sort_unique(all.vertices);
   return all;
 }
 
@@ -154,6 +151,7 @@ void check_cells(const Mesh& mesh, const Origin& origin) {
   check(mesh.prisms, "prism");
   check(mesh.triangles, "triangle");
   check(mesh.quads, "quad");
+  check(mesh.sheet_edges, "the edge of a triangle, edge");
   if (!mesh.edge_nodes.empty()) {
     if (mesh.edge_nodes.size() != mesh.tetrahedra.size() || !mesh.prisms.empty())
       throw InvalidInput(origin, "a mesh of order 2 needs edge nodes for every element, and prisms have none");
@@ -182,9 +180,9 @@ RegionTable::RegionTable(const RobotSpec& spec, const Mesh& mesh)
   const Origin origin{.file = spec.name};
   if (mesh_.vertices.rows() > 0)
     tolerance_ = 1e-9 * (mesh_.vertices.colwise().maxCoeff() - mesh_.vertices.colwise().minCoeff()).norm();
-  all_ = every_element(mesh_);
-  if (mesh_.edge_nodes.empty())
-    for (const EdgeNodes& nodes : spec.mesh.edge_nodes) lost_.insert(lost_.end(), nodes.begin(), nodes.end());
+  all_ = complete(every_element(mesh_), mesh_, edges_, origin);
+  if (order_of(mesh_) == 1)
+    for (const EdgeWithNode& edge : edges_with_nodes(spec.mesh)) lost_.push_back(edge[2]);
   sort_unique(lost_);
   std::set<std::string> names{"all"};
   for (const Region& region : mesh_.regions) {

@@ -46,6 +46,8 @@ struct Mesh {
   std::vector<EdgeNodes> edge_nodes;  // of order 2: of every tetrahedron, and there are no prisms; of order 1: empty
   std::vector<Prism> prisms;
   std::vector<Triangle> triangles;  // surface cells that some region names; of order 2 their corners
+  // of order 2: of edges of triangles that no tetrahedron has their ends, ascending, and the node on them
+  std::vector<std::array<Index, 3>> sheet_edges;
   std::vector<Quad> quads;
   std::vector<Region> regions;
   std::vector<std::string> missing;  // files beside its own that name regions and are not there, a sentence each

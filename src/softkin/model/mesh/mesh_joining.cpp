@@ -56,6 +56,7 @@ void append(Mesh& all, const Mesh& part) {
   append_cells(all.prisms, part.prisms, first);
   append_cells(all.triangles, part.triangles, first);
   append_cells(all.quads, part.quads, first);
+  append_cells(all.sheet_edges, part.sheet_edges, first);
   all.vertices.conservativeResize(first + part.vertices.rows(), 3);
   all.vertices.bottomRows(part.vertices.rows()) = part.vertices;
 }

@@ -14,6 +14,18 @@ Ends ends_of(const Tetrahedron& element, int edge) {
   return std::minmax({element[tetrahedron_edges[edge][0]], element[tetrahedron_edges[edge][1]]});
 }
 
+/// Edges of triangles that are none of these.
+std::vector<Ends> edges_beside(const std::vector<Triangle>& triangles, const std::vector<Ends>& ascending) {
+  std::vector<Ends> edges;
+  for (const Triangle& t : triangles)
+    for (std::size_t k = 0; k < 3; ++k) {
+      const Ends ends = std::minmax(t[k], t[(k + 1) % 3]);
+      if (!std::binary_search(ascending.begin(), ascending.end(), ends)) edges.push_back(ends);
+    }
+  sort_unique(edges);
+  return edges;
+}
+
 std::vector<Ends> edges_of(const std::vector<Tetrahedron>& tetrahedra) {
   std::vector<Ends> edges;
   edges.reserve(6 * tetrahedra.size());
@@ -42,7 +54,7 @@ std::array<Index, 3> nodes_on(const std::vector<EdgeWithNode>& edges, const Tria
 }  // namespace
 
 int order_of(const Mesh& mesh) {
-  return mesh.edge_nodes.empty() ? 1 : 2;
+  return mesh.edge_nodes.empty() && mesh.sheet_edges.empty() ? 1 : 2;
 }
 
 std::string refusal_of_orders(std::size_t tetrahedra, std::size_t quadratic, std::size_t prisms) {
@@ -54,8 +66,8 @@ std::string refusal_of_orders(std::size_t tetrahedra, std::size_t quadratic, std
 }
 
 std::vector<EdgeWithNode> edges_with_nodes(const Mesh& mesh) {
-  std::vector<EdgeWithNode> edges;
-  edges.reserve(6 * mesh.edge_nodes.size());
+  std::vector<EdgeWithNode> edges = mesh.sheet_edges;
+  edges.reserve(edges.size() + 6 * mesh.edge_nodes.size());
   for (std::size_t t = 0; t < mesh.edge_nodes.size(); ++t)
     for (int e = 0; e < 6; ++e) {
       const auto [low, high] = ends_of(mesh.tetrahedra[t], e);
@@ -110,7 +122,6 @@ Index edge_node(const Tetrahedron& element, const EdgeNodes& edge_nodes, Index a
 }
 
 std::vector<QuadraticTriangle> quadratic_triangles(const Mesh& mesh) {
-  if (mesh.edge_nodes.empty()) return {};
   const std::vector<EdgeWithNode> edges = edges_with_nodes(mesh);
   std::vector<QuadraticTriangle> triangles;
   triangles.reserve(mesh.triangles.size());
@@ -120,6 +131,12 @@ std::vector<QuadraticTriangle> quadratic_triangles(const Mesh& mesh) {
     triangles.push_back({corners[0], corners[1], corners[2], nodes[0], nodes[1], nodes[2]});
   }
   return triangles;
+}
+
+std::array<Triangle, 4> quarters(const Triangle& corners, const std::array<Index, 3>& edges) {
+  const auto& [a, b, c] = corners;
+  const auto& [ab, bc, ca] = edges;
+  return {{{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}}};
 }
 
 std::vector<Triangle> boundary_triangles(const std::vector<Tetrahedron>& tetrahedra,
@@ -133,8 +150,8 @@ std::vector<Triangle> boundary_triangles(const std::vector<Tetrahedron>& tetrahe
     const auto& [a, b, c] = boundary.triangles[i];
     const auto owner = static_cast<std::size_t>(boundary.triangle_owners[i]);
     const auto node = [&](Index from, Index to) { return edge_node(tetrahedra[owner], edge_nodes[owner], from, to); };
-    const Index ab = node(a, b), bc = node(b, c), ca = node(c, a);
-    triangles.insert(triangles.end(), {{a, ab, ca}, {ab, b, bc}, {ca, bc, c}, {ab, bc, ca}});
+    const std::array<Triangle, 4> parts = quarters(boundary.triangles[i], {node(a, b), node(b, c), node(c, a)});
+    triangles.insert(triangles.end(), parts.begin(), parts.end());
     if (owners) owners->insert(owners->end(), 4, boundary.triangle_owners[i]);
   }
   return triangles;
@@ -142,14 +159,19 @@ std::vector<Triangle> boundary_triangles(const std::vector<Tetrahedron>& tetrahe
 
 Mesh elevated(const Mesh& mesh) {
   if (!mesh.prisms.empty()) throw InvalidInput("a mesh with prisms cannot be of order 2: prisms are linear");
-  if (!mesh.edge_nodes.empty()) throw InvalidInput("the mesh is of order 2 already");
+  if (order_of(mesh) == 2) throw InvalidInput("the mesh is of order 2 already");
   Mesh raised = mesh;
   const std::vector<Ends> edges = edges_of(mesh.tetrahedra);
+  const std::vector<Ends> beside = edges_beside(mesh.triangles, edges);
   const auto corners = static_cast<Index>(mesh.vertices.rows());
-  raised.vertices.conservativeResize(corners + static_cast<Index>(edges.size()), 3);
-  for (std::size_t e = 0; e < edges.size(); ++e)
-    raised.vertices.row(corners + static_cast<Index>(e)) =
-        0.5 * (mesh.vertices.row(edges[e].first) + mesh.vertices.row(edges[e].second));
+  raised.vertices.conservativeResize(corners + static_cast<Index>(edges.size() + beside.size()), 3);
+  Index next = corners;
+  const auto add_node = [&](const Ends& ends) {
+    raised.vertices.row(next) = 0.5 * (mesh.vertices.row(ends.first) + mesh.vertices.row(ends.second));
+    return next++;
+  };
+  for (const Ends& ends : edges) add_node(ends);
+  for (const Ends& ends : beside) raised.sheet_edges.push_back({ends.first, ends.second, add_node(ends)});
   raised.edge_nodes.resize(mesh.tetrahedra.size());
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t)
     for (int e = 0; e < 6; ++e) {
@@ -171,11 +193,13 @@ Mesh lowered(Mesh mesh) {
   std::vector<bool> on_edge(static_cast<std::size_t>(mesh.vertices.rows()));
   for (const EdgeNodes& nodes : mesh.edge_nodes)
     for (const Index v : nodes) on_edge[v] = true;
+  for (const auto& edge : mesh.sheet_edges) on_edge[edge[2]] = true;
   for (const Tetrahedron& t : mesh.tetrahedra)
     for (const Index v : t) on_edge[v] = false;
   const auto is_on_edge = [&](Index v) { return v >= 0 && static_cast<std::size_t>(v) < on_edge.size() && on_edge[v]; };
   for (Region& region : mesh.regions) std::erase_if(region.vertices, is_on_edge);
   mesh.edge_nodes.clear();
+  mesh.sheet_edges.clear();
   return mesh;
 }
 

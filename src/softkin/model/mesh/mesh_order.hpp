@@ -18,7 +18,7 @@ template <class Elements>
   return refusal_of_orders(mesh.tetrahedra.size(), mesh.edge_nodes.size(), mesh.prisms.size());
 }
 
-/// An edge of tetrahedra of order 2: its ends, ascending, and the node on it.
+/// An edge of tetrahedra or of sheets of order 2: its ends, ascending, and the node on it.
 using EdgeWithNode = std::array<Index, 3>;
 
 /// Every edge with its node, once, by ascending ends; one that has several nodes is there as often. Order 1: none.
@@ -32,7 +32,7 @@ class EdgeTable {
   explicit EdgeTable(const Mesh& mesh);
 
   [[nodiscard]] bool empty() const { return edges_.empty(); }
-  /// The node between two corners, or -1 where no element has the edge.
+  /// The node between two corners, or -1 where no element and no sheet has the edge.
   [[nodiscard]] Index find(Index a, Index b) const;
   /// The nodes on the edges 01, 12, 20 of a triangle; -1 as in find().
   [[nodiscard]] std::array<Index, 3> of(const Triangle& triangle) const;
@@ -52,8 +52,11 @@ void exchange_corners_2_and_3(EdgeNodes& edge_nodes);
 /// A triangle of order 2: its corners, then the nodes on its edges 01, 12, 20.
 using QuadraticTriangle = std::array<Index, 6>;
 
-/// The triangles with the nodes on their edges, where every edge is one of a tetrahedron of order 2; else nothing.
+/// The triangles with the nodes on their edges, where every edge has one; else nothing.
 [[nodiscard]] std::vector<QuadraticTriangle> quadratic_triangles(const Mesh& mesh);
+
+/// A triangle of order 2 as four flat ones, the last of which lies between the nodes on its edges.
+[[nodiscard]] std::array<Triangle, 4> quarters(const Triangle& corners, const std::array<Index, 3>& edges);
 
 /// Boundary as flat triangles with normals outwards (for positively oriented elements): quads in two, faces of order 2
 /// in four, the last of which lies between the nodes on its edges. edge_nodes: of every tetrahedron, or empty.
@@ -64,7 +67,7 @@ using QuadraticTriangle = std::array<Index, 6>;
                                                        const std::vector<Prism>& prisms,
                                                        std::vector<Index>* owners = nullptr);
 
-/// A mesh of order 1 with a node in the middle of every edge of a tetrahedron, shared by its elements, after the
+/// A mesh of order 1 with a node in the middle of every edge of a tetrahedron or a triangle, shared by them, after the
 /// vertices that it had. Regions of dimension 1 and 0 get the nodes of the edges both of whose ends they hold.
 /// The mesh's indices must be in range.
 ///

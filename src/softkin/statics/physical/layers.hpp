@@ -20,11 +20,12 @@ class Layers : public Term {
   };
   [[nodiscard]] std::unique_ptr<Term::Scratch> new_scratch() const override { return std::make_unique<Scratch>(); }
 
-  /// Is there a vertex that layers alone hold? A flat sheet has no stiffness across itself.
+  /// Is there a vertex that layers alone hold? A flat sheet has no stiffness across itself, or hardly any: one that
+  /// bends counts where a chamber begins flat.
   [[nodiscard]] bool limp() const { return !alone_.empty(); }
   /// Are these where they were cut?
   [[nodiscard]] bool flat(const Points& positions) const;
-  /// The vertices that no element has.
+  /// These vertices.
   [[nodiscard]] const std::vector<Index>& alone() const { return alone_; }
   /// Adds to the forces what moves of the vertices call up under a tension of 1 N/mm in every direction, which is all
   /// that the sheets are taken to resist with [N].
