@@ -130,13 +130,18 @@ test-arm:
 	cmake --build build-arm/build --target test_core test_linear test_energy test_contact
 	$(any_target) ctest --test-dir build-arm/build --parallel $(cores) --no-tests=error --tests-regex '^(core|(linear|energy|contact)_neon)$$'
 
+# What builds the package stays in the folder of its own, as pip's isolated builds lie in another place each time, and
+# the module would be compiled anew.
+build_requires = $(shell sed -n '/^requires = /s/.*\[\(.*\)\].*/\1/p' pyproject.toml | tr -d ,)
+
 # the package with its $(extras), in a folder of its own: built where test-release built all but the extension module
 define install_package
 	@PYTHON=$(PYTHON) $(SETUP) --python
 	rm -rf build-wheel/test
 	$(PYTHON) -m venv build-wheel/venv
-	CXX=$${CXX:-c++} build-wheel/venv/bin/pip wheel --quiet --no-deps --wheel-dir build-wheel/test --config-settings=build-dir=build \
-	  --config-settings=cmake.define.SOFTKIN_TESTS=ON .
+	build-wheel/venv/bin/pip install --quiet $(build_requires)
+	CXX=$${CXX:-c++} build-wheel/venv/bin/pip wheel --quiet --no-deps --no-build-isolation --wheel-dir build-wheel/test \
+	  --config-settings=build-dir=build --config-settings=cmake.define.SOFTKIN_TESTS=ON .
 	cmake --preset release
 	build-wheel/venv/bin/pip install --quiet --force-reinstall --no-deps build-wheel/test/*.whl
 	build-wheel/venv/bin/pip install --quiet "$$(ls build-wheel/test/*.whl)[$(extras)]"
@@ -146,13 +151,13 @@ test-python: extras = test
 test-python:
 	$(install_package)
 	build-wheel/venv/bin/mypy --strict --no-error-summary python/softkin
-	build-wheel/venv/bin/pytest -q -m 'not deep' python/tests
+	build-wheel/venv/bin/pytest -q -n $(cores) -m 'not deep' python/tests
 
 test-python-deep: extras = all,docs,test
 test-python-deep:
 	$(install_package)
 	build-wheel/venv/bin/mypy --strict --no-error-summary examples/python scripts/notebooks.py scripts/site.py
-	build-wheel/venv/bin/pytest -q -m deep python/tests
+	build-wheel/venv/bin/pytest -q -n $(cores) -m deep python/tests
 
 docs: build
 	@PYTHON=$(PYTHON) $(SETUP) --python

@@ -113,15 +113,14 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Processor time of the bellows finger with and without contact.", "bench_contact_cost"};
-  app.option_defaults()->always_capture_default();
+  CommandLine app{"Processor time of the bellows finger with and without contact.", "bench_contact_cost"};
   Options options;
   app.add_option("--size", options.size, "body tetrahedra");
   app.add_option("--large", options.large, "body tetrahedra of the finger that is timed with contact alone; 0: none");
-  app.add_option("--distance", options.distance, "of contact [mm]")->check(CLI::PositiveNumber);
+  app.add_option("--distance", options.distance, "of contact [mm]").check(positive());
   app.add_option("--free", options.free, "volume ratio at which nothing touches");
   app.add_option("--curled", options.curled, "volume ratio at which the finger lies on its base");
-  app.add_option("--threads", options.threads, "0: all")->check(CLI::Range(0, 256));
-  app.add_option("--repeat", options.repeat, "pairs of sweeps")->check(CLI::Range(1, 100));
+  app.add_option("--threads", options.threads, "0: all").check(within(0, 256));
+  app.add_option("--repeat", options.repeat, "pairs of sweeps").check(within(1, 100));
   return run_benchmark(app, argc, argv, [&] { return run(options); });
 }

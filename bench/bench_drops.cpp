@@ -101,13 +101,13 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Random drops: no shape that comes back has surfaces that cross", "bench_drops");
+  using namespace softkin::bench;
+  CommandLine app("Random drops: no shape that comes back has surfaces that cross", "bench_drops");
   Options options;
   app.add_option("--first", options.first, "first seed");
   app.add_option("--count", options.count, "how many seeds");
-  app.add_option("--threads", options.threads, "drops at once")->check(CLI::PositiveNumber);
-  app.add_option("--steps", options.steps, "per drop; 0: 1 in those of even seeds, 3 in others")
-      ->check(CLI::NonNegativeNumber);
+  app.add_option("--threads", options.threads, "drops at once").check(positive());
+  app.add_option("--steps", options.steps, "per drop; 0: 1 in those of even seeds, 3 in others").check(not_negative());
   app.add_flag("--verbose", options.verbose, "a line for every shape");
-  return softkin::bench::run_benchmark(app, argc, argv, [&] { return run(options); });
+  return run_benchmark(app, argc, argv, [&] { return run(options); });
 }

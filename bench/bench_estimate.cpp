@@ -435,8 +435,9 @@ void run_map(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
+  using namespace softkin::bench;
   Options options;
-  CLI::App app{"What is told of a force of unknown place on a made-up finger"};
+  CommandLine app{"What is told of a force of unknown place on a made-up finger"};
   app.add_option("--draws", options.draws, "Forces that are drawn and told");
   app.add_option("--swaps", options.swaps, "Readings with two markers exchanged, and with one 30 mm off");
   app.add_option("--map-draws", options.map_draws, "Forces at a known place that are told by a map");
@@ -451,13 +452,14 @@ int main(int argc, char** argv) {
   app.add_flag("--quadratic", options.quadratic, "Elements of order 2");
   app.add_flag("--verbose", options.verbose, "A line for each of the swaps, and for updates that took long");
   app.add_flag("--volume-only", options.volume_only, "Read the chamber's volume at a pressure instead of markers");
-  CLI11_PARSE(app, argc, argv);
-  const Model model = compile(softkin::bench::touched_finger(options.quadratic));
-  std::printf("%zu tetrahedra of order %d, %lld vertices\n", model.tetrahedra.size(), options.quadratic ? 2 : 1,
-              static_cast<long long>(model.rest.rows()));
-  if (options.map_draws > 0) run_map(options);
-  if (options.draws > 0) run_draws(model, options);
-  if (options.updates > 1) run_updates(model, options);
-  if (options.swaps > 0) run_swaps(model, options);
-  return 0;
+  return run_benchmark(app, argc, argv, [&] {
+    const Model model = compile(touched_finger(options.quadratic));
+    std::printf("%zu tetrahedra of order %d, %lld vertices\n", model.tetrahedra.size(), options.quadratic ? 2 : 1,
+                static_cast<long long>(model.rest.rows()));
+    if (options.map_draws > 0) run_map(options);
+    if (options.draws > 0) run_draws(model, options);
+    if (options.updates > 1) run_updates(model, options);
+    if (options.swaps > 0) run_swaps(model, options);
+    return 0;
+  });
 }

@@ -289,15 +289,14 @@ int run_each(const Options& options, int argc, char** argv) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Factorisation and solution of the physical formulation's Hessians, beside CHOLMOD and Eigen.",
-               "bench_factor"};
-  app.option_defaults()->always_capture_default();
+  CommandLine app{"Factorisation and solution of the physical formulation's Hessians, beside CHOLMOD and Eigen.",
+                  "bench_factor"};
   Options options;
-  app.add_option("--sizes", options.sizes, "body tetrahedra of the fingers")->delimiter(',');
-  app.add_option("--threads", options.threads, "one run with each number")->delimiter(',')->check(CLI::Range(1, 256));
-  app.add_option("--repeat", options.repeat, "of which the median is given")->check(CLI::Range(1, 1000));
+  app.add_option("--sizes", options.sizes, "body tetrahedra of the fingers").split_at_commas();
+  app.add_option("--threads", options.threads, "one run with each number").split_at_commas().check(within(1, 256));
+  app.add_option("--repeat", options.repeat, "of which the median is given").check(within(1, 1000));
   app.add_option("--eigen-up-to", options.eigen_up_to, "body tetrahedra of the largest finger for Eigen");
-  app.add_option("--only", options.only, "with this many threads, in this process")->group("");
+  app.add_option("--only", options.only, "with this many threads, in this process").hide();
   return run_benchmark(app, argc, argv, [&] {
     return options.only > 0 ? run_with(options.only, options) : run_each(options, argc, argv);
   });

@@ -146,10 +146,10 @@ int run(const Options& options) {
 
 int main(int argc, char** argv) {
   Options options;
-  CLI::App app{"Steps of a finger that is viscous or magnetic over those of one that is not.", "bench_fields"};
-  app.add_option("--sizes", options.sizes, "body tetrahedra of order 1")->delimiter(',');
-  app.add_option("--quadratic-sizes", options.quadratic_sizes, "of order 2")->delimiter(',');
-  app.add_option("--steps", options.steps, "of the path")->check(CLI::PositiveNumber);
+  CommandLine app{"Steps of a finger that is viscous or magnetic over those of one that is not.", "bench_fields"};
+  app.add_option("--sizes", options.sizes, "body tetrahedra of order 1").split_at_commas();
+  app.add_option("--quadratic-sizes", options.quadratic_sizes, "of order 2").split_at_commas();
+  app.add_option("--steps", options.steps, "of the path").check(positive());
   app.add_option("--only", options.only, "one of what the robot is moved by, to profile it");
   app.add_option("--threads", options.threads, "0: as many as the machine has");
   return run_benchmark(app, argc, argv, [&] { return run(options); });

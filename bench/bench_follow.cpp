@@ -12,6 +12,7 @@
 #include <string>
 
 #include "command_line.hpp"
+#include "machine.hpp"
 #include "model/block_mesh.hpp"
 
 namespace {
@@ -244,27 +245,26 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Paths on the three-tendon finger: Gauss-Newton against Algorithm 2, the same solver inside.",
-               "bench_follow"};
-  app.option_defaults()->always_capture_default();
+  CommandLine app{"Paths on the three-tendon finger: Gauss-Newton against Algorithm 2, the same solver inside.",
+                  "bench_follow"};
   Options options;
   app.add_option("--scene", options.scene, "of the three-tendon finger");
-  app.add_option("--paths", options.paths, "of its tip, .csv")->delimiter(',');
+  app.add_option("--paths", options.paths, "of its tip, .csv").split_at_commas();
   app.add_option("--formulations", options.formulations, "with newton inside")
-      ->delimiter(',')
-      ->check(CLI::IsMember({"physical", "target-shape"}));
-  app.add_option("--size", options.size, "tetrahedra")->check(CLI::Range(200.0, 1e6));
-  app.add_option("--order", options.order, "of the tetrahedra, physical")->check(CLI::Range(1, 2));
+      .split_at_commas()
+      .check(one_of({"physical", "target-shape"}));
+  app.add_option("--size", options.size, "tetrahedra").check(within(200.0, 1e6));
+  app.add_option("--order", options.order, "of the tetrahedra, physical").check(within(1, 2));
   app.add_option("--local-size", options.local_size, "tetrahedra with local-global inside; 0: not")
-      ->check(CLI::Range(0.0, 1e6));
+      .check(within(0.0, 1e6));
   app.add_option(
          "--local-tolerance", options.local_tolerance_mm,
          "step at which local-global ends [mm]; at the paper's 1e-5 its error is as large as the tolerance of newton")
-      ->check(CLI::PositiveNumber);
+      .check(positive());
   app.add_option("--anderson", options.anderson, "steps that Anderson acceleration combines; 0: as the paper ran it")
-      ->check(CLI::Range(0, 20));
-  app.add_option("--waypoints", options.waypoints, "of each path, at most")->check(CLI::Range(1, 1000000));
-  app.add_option("--limit", options.limit, "of each method on each path [s]")->check(CLI::PositiveNumber);
-  app.add_option("--threads", options.threads, "0: all")->check(CLI::Range(0, 256));
+      .check(within(0, 20));
+  app.add_option("--waypoints", options.waypoints, "of each path, at most").check(within(1, 1000000));
+  app.add_option("--limit", options.limit, "of each method on each path [s]").check(positive());
+  app.add_option("--threads", options.threads, "0: all").check(within(0, 256));
   return run_benchmark(app, argc, argv, [&] { return run(options); });
 }

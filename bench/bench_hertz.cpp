@@ -54,11 +54,12 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Balls in contact beside Hertz's theory", "bench_hertz");
+  using namespace softkin::bench;
+  CommandLine app("Balls in contact beside Hertz's theory", "bench_hertz");
   Options options;
-  app.add_option("--cells", options.cells, "at the pole, over the radius")->delimiter(',');
-  app.add_option("--distances", options.distances, "of contact, over the radius")->delimiter(',');
-  app.add_option("--approaches", options.approaches, "over the radius")->delimiter(',');
+  app.add_option("--cells", options.cells, "at the pole, over the radius").split_at_commas();
+  app.add_option("--distances", options.distances, "of contact, over the radius").split_at_commas();
+  app.add_option("--approaches", options.approaches, "over the radius").split_at_commas();
   app.add_flag("--two", options.two, "ball on ball");
-  return softkin::bench::run_benchmark(app, argc, argv, [&] { return run(options); });
+  return run_benchmark(app, argc, argv, [&] { return run(options); });
 }

@@ -9,6 +9,7 @@
 #include <softkin/kinematics/inverse.hpp>
 
 #include "command_line.hpp"
+#include "machine.hpp"
 #include "model/block_mesh.hpp"
 
 namespace {
@@ -293,24 +294,22 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Inverse kinematics of a robot: random targets, or a target that moves.", "bench_inverse"};
-  app.option_defaults()->always_capture_default();
+  CommandLine app{"Inverse kinematics of a robot: random targets, or a target that moves.", "bench_inverse"};
   Options options;
   app.add_option("--robot", options.robot, "a scene, or 'beam': three chambers in a block");
   app.add_option("--mode", options.mode, "reach: random targets; drag: one that moves")
-      ->check(CLI::IsMember({"reach", "drag"}));
+      .check(one_of({"reach", "drag"}));
   app.add_option("--press", options.press, "a support, an obstacle or a body on which random poses press");
-  app.add_option("--method", options.method)->check(CLI::IsMember({"newton", "gradient"}));
+  app.add_option("--method", options.method).check(one_of({"newton", "gradient"}));
   app.add_option("--targets", options.targets, "reachable ones, made by forward kinematics");
   app.add_option("--unreachable", options.unreachable);
   app.add_flag("--touching", options.touching, "only reachable targets at which the robot touches something");
-  app.add_option("--tolerance", options.tolerance_mm, "[mm]")->check(CLI::PositiveNumber);
-  app.add_option("--other-starts", options.other_starts)->check(CLI::Range(0, 100));
-  app.add_option("--updates", options.updates, "drag: how many")->check(CLI::Range(1, 1000000));
-  app.add_option("--move", options.millimetres_per_update, "drag: of the target per update [mm]")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--size", options.size, "of the beam, tetrahedra")->check(CLI::Range(1000.0, 1e6));
+  app.add_option("--tolerance", options.tolerance_mm, "[mm]").check(positive());
+  app.add_option("--other-starts", options.other_starts).check(within(0, 100));
+  app.add_option("--updates", options.updates, "drag: how many").check(within(1, 1000000));
+  app.add_option("--move", options.millimetres_per_update, "drag: of the target per update [mm]").check(positive());
+  app.add_option("--size", options.size, "of the beam, tetrahedra").check(within(1000.0, 1e6));
   app.add_option("--seed", options.seed);
-  app.add_option("--threads", options.threads, "0: all")->check(CLI::Range(0, 256));
+  app.add_option("--threads", options.threads, "0: all").check(within(0, 256));
   return run_benchmark(app, argc, argv, [&] { return run(options); });
 }

@@ -5,6 +5,7 @@
 #include "child_process.hpp"
 #include "command_line.hpp"
 #include "finger.hpp"
+#include "machine.hpp"
 
 namespace {
 
@@ -97,14 +98,13 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"A finger of a million linear tetrahedra, bent by 90 degrees: time, iterations and peak memory.",
-               "bench_large"};
-  app.option_defaults()->always_capture_default();
+  CommandLine app{"A finger of a million linear tetrahedra, bent by 90 degrees: time, iterations and peak memory.",
+                  "bench_large"};
   Options options;
   app.add_option("--size", options.size, "body tetrahedra");
   app.add_option("--guide", options.guide, "body tetrahedra of the finger that tells the volume ratio");
-  app.add_option("--bend", options.degrees, "[degrees]")->check(CLI::Range(1.0, 170.0));
-  app.add_option("--limit", options.limit, "[s]")->check(CLI::PositiveNumber);
-  app.add_option("--threads", options.threads, "0: all")->check(CLI::Range(0, 256));
+  app.add_option("--bend", options.degrees, "[degrees]").check(within(1.0, 170.0));
+  app.add_option("--limit", options.limit, "[s]").check(positive());
+  app.add_option("--threads", options.threads, "0: all").check(within(0, 256));
   return run_benchmark(app, argc, argv, [&] { return run(options); });
 }

@@ -249,11 +249,10 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Kinematic maps: equilibria for an accuracy, and whether stated errors are honest.", "bench_maps"};
-  app.option_defaults()->always_capture_default();
+  CommandLine app{"Kinematic maps: equilibria for an accuracy, and whether stated errors are honest.", "bench_maps"};
   Options options;
   app.add_option("--accuracy", options.accuracy, "of the tip [mm]");
-  app.add_option("--inputs", options.inputs, "tendons of the arms")->delimiter(',');
+  app.add_option("--inputs", options.inputs, "tendons of the arms").split_at_commas();
   app.add_option("--check", options.checks, "random actuations at which a map is checked");
   app.add_option("--fresh", options.fresh, "random actuations beside what the checks found, of ten robots; 0: none");
   app.add_flag("--errors", options.errors, "errors against equilibria, for accuracies from 10 mm to 1e-4 mm");

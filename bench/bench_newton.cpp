@@ -319,30 +319,27 @@ void print_summary(const std::vector<Row>& rows, const NewtonOptions& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Every solver from rest to 90, 180 and 240 degrees of bend of the tip face (the paper's Table III).",
-               "bench_newton"};
-  app.option_defaults()->always_capture_default();
+  CommandLine app{"Every solver from rest to 90, 180 and 240 degrees of bend of the tip face (the paper's Table III).",
+                  "bench_newton"};
   NewtonOptions options;
   options.solvers = {"local-global", "anderson", "newton", "physical", "physical-quadratic"};
   if (on_path("ccx")) options.solvers.insert(options.solvers.end(), {"calculix", "calculix-quadratic"});
-  app.add_option("--sizes", options.sizes, "body tetrahedra of the fingers")->delimiter(',');
+  app.add_option("--sizes", options.sizes, "body tetrahedra of the fingers").split_at_commas();
   app.add_option("--mesh", options.mesh, "this mesh instead (regions body, chamber, fixed, tip)")
-      ->check(CLI::ExistingFile);
-  app.add_option("--bends", options.bends, "angles [degrees], ascending")
-      ->delimiter(',')
-      ->check(CLI::Range(1.0, 1000.0));
-  app.add_option("--solvers", options.solvers, "of these")->delimiter(',')->check(CLI::IsMember(solution_names()));
-  app.add_option("--repeat", options.repeat, "runs of each, of which the median is given")->check(CLI::Range(1, 100));
-  app.add_option("--limit", options.run.limit, "longest run [s]")->check(CLI::PositiveNumber);
+      .check(existing_file());
+  app.add_option("--bends", options.bends, "angles [degrees], ascending").split_at_commas().check(within(1.0, 1000.0));
+  app.add_option("--solvers", options.solvers, "of these").split_at_commas().check(one_of(solution_names()));
+  app.add_option("--repeat", options.repeat, "runs of each, of which the median is given").check(within(1, 100));
+  app.add_option("--limit", options.run.limit, "longest run [s]").check(positive());
   app.add_option("--tip-error", options.run.tip_error_mm, "distance from the converged tip that counts as done [mm]")
-      ->check(CLI::PositiveNumber);
-  app.add_option("--threads", options.run.threads, "of softkin; 0: all")->check(CLI::Range(0, 256));
+      .check(positive());
+  app.add_option("--threads", options.run.threads, "of softkin; 0: all").check(within(0, 256));
   app.add_option("--calculix-threads", options.calculix_threads, "of CalculiX, a row for each")
-      ->delimiter(',')
-      ->check(CLI::Range(1, 256));
+      .split_at_commas()
+      .check(within(1, 256));
   app.add_option("--quadratic-up-to", options.quadratic_up_to, "body tetrahedra of the largest finger of order 2");
   app.add_option("--chamber-weight", options.chamber_weight, "w of the chamber's elements, target-shape")
-      ->check(CLI::PositiveNumber);
+      .check(positive());
   app.add_option("--folder", options.folder, "where CalculiX works and its files stay; none: a temporary one");
   return run_benchmark(app, argc, argv, [&] {
     print_machine();

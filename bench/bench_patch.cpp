@@ -43,10 +43,11 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("Blocks with other meshes pressed on each other", "bench_patch");
+  using namespace softkin::bench;
+  CommandLine app("Blocks with other meshes pressed on each other", "bench_patch");
   Options options;
-  app.add_option("--distances", options.distances, "of contact, over the edge of the blocks")->delimiter(',');
-  app.add_option("--cells", options.cells, "of the lower block, along an edge")->delimiter(',');
-  app.add_option("--orders", options.orders, "of the tetrahedra")->delimiter(',');
-  return softkin::bench::run_benchmark(app, argc, argv, [&] { return run(options); });
+  app.add_option("--distances", options.distances, "of contact, over the edge of the blocks").split_at_commas();
+  app.add_option("--cells", options.cells, "of the lower block, along an edge").split_at_commas();
+  app.add_option("--orders", options.orders, "of the tetrahedra").split_at_commas();
+  return run_benchmark(app, argc, argv, [&] { return run(options); });
 }

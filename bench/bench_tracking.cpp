@@ -141,15 +141,15 @@ int run(Options options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Converged shapes per second along a path of 1 % steps of the chamber's volume, and what bounds them.",
-               "bench_tracking"};
-  app.option_defaults()->always_capture_default();
+  CommandLine app{
+      "Converged shapes per second along a path of 1 % steps of the chamber's volume, and what bounds them.",
+      "bench_tracking"};
   Options options;
-  app.add_option("--sizes", options.sizes, "body tetrahedra of the fingers")->delimiter(',');
-  app.add_option("--quadratic-sizes", options.quadratic_sizes, "the same of order 2, physical")->delimiter(',');
-  app.add_option("--steps", options.steps, "of 1 %")->check(CLI::Range(1, 100));
-  app.add_option("--threads", options.threads, "0: all")->check(CLI::Range(0, 256));
+  app.add_option("--sizes", options.sizes, "body tetrahedra of the fingers").split_at_commas();
+  app.add_option("--quadratic-sizes", options.quadratic_sizes, "the same of order 2, physical").split_at_commas();
+  app.add_option("--steps", options.steps, "of 1 %").check(within(1, 100));
+  app.add_option("--threads", options.threads, "0: all").check(within(0, 256));
   app.add_option("--chamber-weight", options.chamber_weight, "w of the chamber's elements, target-shape")
-      ->check(CLI::PositiveNumber);
+      .check(positive());
   return run_benchmark(app, argc, argv, [&] { return run(options); });
 }

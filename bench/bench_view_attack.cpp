@@ -16,6 +16,7 @@
 
 #include "command_line.hpp"
 #include "finger.hpp"
+#include "machine.hpp"
 #include "view/live_client.hpp"
 #include "view/live_server.hpp"
 
@@ -279,11 +280,12 @@ int run(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app("softkin view under attack", "bench_view_attack");
+  using namespace softkin::bench;
+  CommandLine app("softkin view under attack", "bench_view_attack");
   Options options;
-  app.add_option("--seconds", options.seconds, "of attack")->check(CLI::Range(0.1, 1e6));
-  app.add_option("--clients", options.clients)->check(CLI::Range(4, 240));
-  app.add_option("--size", options.size, "tetrahedra of the finger")->check(CLI::PositiveNumber);
-  app.add_option("--threads", options.threads, "of the solver")->check(CLI::Range(0, 512));
-  return softkin::bench::run_benchmark(app, argc, argv, [&] { return run(options); });
+  app.add_option("--seconds", options.seconds, "of attack").check(within(0.1, 1e6));
+  app.add_option("--clients", options.clients).check(within(4, 240));
+  app.add_option("--size", options.size, "tetrahedra of the finger").check(positive());
+  app.add_option("--threads", options.threads, "of the solver").check(within(0, 512));
+  return run_benchmark(app, argc, argv, [&] { return run(options); });
 }

@@ -114,11 +114,11 @@ int measure(const Options& options) {
 }  // namespace
 
 int main(int argc, char** argv) {
-  CLI::App app{"Cost of a sample of a workspace, over that of a solve from rest", "bench_workspace"};
+  CommandLine app{"Cost of a sample of a workspace, over that of a solve from rest", "bench_workspace"};
   Options options;
   app.add_option("--scene", options.scene);
   app.add_option("--samples", options.samples);
-  app.add_option("--sampling", options.sampling)->check(CLI::IsMember({"grid", "sobol", "random"}));
-  app.add_option("--groups", options.groups)->check(CLI::PositiveNumber);
+  app.add_option("--sampling", options.sampling).check(one_of({"grid", "sobol", "random"}));
+  app.add_option("--groups", options.groups).check(positive());
   return run_benchmark(app, argc, argv, [&] { return measure(options); });
 }

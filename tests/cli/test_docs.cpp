@@ -390,10 +390,19 @@ bool has_heading(const fs::path& document, const std::string& anchor) {
 
 }  // namespace
 
-TEST(Docs, EveryCommandDoesWhatTheDocumentSays) {
+namespace {
+
+/// Two halves, which take as long, beside each other: each of them a clone of its own, where a command that stands in
+/// several documents runs once.
+bool is_of_first_half(const fs::path& document) {
+  return document <= source / "docs/troubleshooting.md";
+}
+
+void expect_commands_do_what_documents_say(bool first_half) {
   Checker checker;
   std::size_t shown = 0;
-  for (const fs::path& document : documents())
+  for (const fs::path& document : documents()) {
+    if (is_of_first_half(document) != first_half) continue;
     for (const CommandBlock& block : Parser(document).parse()) {
       const auto begin = std::chrono::steady_clock::now();
       checker.check(block);
@@ -401,8 +410,19 @@ TEST(Docs, EveryCommandDoesWhatTheDocumentSays) {
       const std::chrono::duration<double> seconds = std::chrono::steady_clock::now() - begin;
       if (seconds.count() > 5) std::printf("%.1f s: %s\n", seconds.count(), block.commands.front().second.c_str());
     }
+  }
   EXPECT_GE(checker.runs(), 15u);
   EXPECT_GE(shown, 3u);
+}
+
+}  // namespace
+
+TEST(Docs, EveryCommandDoesWhatTheDocumentSays) {
+  expect_commands_do_what_documents_say(true);
+}
+
+TEST(Docs, EveryCommandDoesWhatTheDocumentSaysInTheSecondHalf) {
+  expect_commands_do_what_documents_say(false);
 }
 
 namespace {
