@@ -4,7 +4,7 @@ set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/softkin)
 
 # Not the library's own headers: those that need a library beyond Eigen, those of kernels, and those with vectors, which
 # a program built for another processor would pass in other registers.
-set(own lanes.hpp statics_parts.hpp contact energy linear physical target_shape supports vision records_json.hpp contacts_json.hpp reinforcement_json.hpp map_tables.hpp)
+set(own lanes.hpp statics_parts.hpp contact energy linear physical target_shape supports vision records_json.hpp physical_json.hpp contacts_json.hpp reinforcement_json.hpp map_tables.hpp vtu_document.hpp)
 list(TRANSFORM own REPLACE "(.+)" "PATTERN;\\1;EXCLUDE")
 install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/softkin DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.hpp
         ${own})

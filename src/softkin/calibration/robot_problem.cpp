@@ -326,6 +326,16 @@ std::vector<Actuation> RobotProblem::acting(const Model& model) const {
   return all;
 }
 
+/// By each number that changes.
+void RobotProblem::find_acting(Changes& changes) const {
+  for (const Perturbed& number : changes.perturbed) {
+    std::vector<Actuation>& slopes = changes.acting.emplace_back(acting(number.more));
+    const std::vector<Actuation> less = acting(number.less);
+    for (std::size_t pose = 0; pose < less.size(); ++pose)
+      slopes[pose] = (slopes[pose] - less[pose]) / number.difference;
+  }
+}
+
 std::optional<RobotPoint> RobotProblem::solve(const Eigen::VectorXd& values, const RobotPoint* near, bool slopes) {
   RobotPoint point;
   point.values = values;
@@ -335,14 +345,7 @@ std::optional<RobotPoint> RobotProblem::solve(const Eigen::VectorXd& values, con
     point.model = std::make_shared<const Model>(robot_.model(values));
     point.statics = std::make_shared<const Statics>(*point.model, *first_statics_);
     point.acting = acting(*point.model);
-    if (slopes) changes.emplace(robot_, point);
-    for (std::size_t k = 0; changes && k < changes->perturbed.size(); ++k) {
-      const Perturbed& number = changes->perturbed[k];
-      changes->acting.push_back(acting(number.more));
-      const std::vector<Actuation> less = acting(number.less);
-      for (std::size_t pose = 0; pose < less.size(); ++pose)
-        changes->acting[k][pose] = (changes->acting[k][pose] - less[pose]) / number.difference;
-    }
+    if (slopes) find_acting(changes.emplace(robot_, point));
   } catch (const InvalidInput& error) {
     if (!near) throw;
     point.refusal = error.what();

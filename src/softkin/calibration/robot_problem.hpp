@@ -110,6 +110,7 @@ class RobotProblem {
   struct Changes;
   void compute(RobotPoint& point, const Changes* changes, Index pose) const;
   [[nodiscard]] std::vector<Actuation> acting(const Model& model) const;
+  void find_acting(Changes& changes) const;
   void add_changes_of_acting(ParameterSensitivity& found, const RobotPoint& point, const Changes& changes,
                              Index pose) const;
   void add_slopes_of_frame(RobotPoint& point, const Changes& changes, Index pose, const Points& reactions) const;

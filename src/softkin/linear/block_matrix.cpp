@@ -97,10 +97,10 @@ void BlockPattern::multiply(const LargeVector<double>& blocks, const Points& x, 
 
 namespace {
 
-/// row -= B x_column and, but on the diagonal, column -= B^T x_row, for one column-major block.
+/// row -= B x_column and column -= B^T x_row, for one column-major block. column: null on the diagonal
 template <class Height, class Width>
-void subtract_block(const double* block, Height height, Width width, bool diagonal, const double* x_row,
-                    const double* x_column, double* row, double* column) {
+void subtract_block(const double* block, Height height, Width width, const double* x_row, const double* x_column,
+                    double* row, double* column) {
   for (Index c = 0; c < width; ++c) {
     double across = 0;
     for (Index r = 0; r < height; ++r) {
@@ -108,7 +108,7 @@ void subtract_block(const double* block, Height height, Width width, bool diagon
       row[r] -= value * x_column[c];
       across += value * x_row[r];
     }
-    if (!diagonal) column[c] -= across;
+    if (column != nullptr) column[c] -= across;
   }
 }
 
@@ -127,10 +127,11 @@ void subtract_product(const BlockColumns& pattern, const LargeVector<double>& va
       const Index row = pattern.unknowns[pattern.rows[e]], height = pattern.width(pattern.rows[e]);
       const double* block = values.data() + pattern.offsets[e];
       double* to = row >= from ? below + (row - from) : own + row;
+      double* across = row == begin ? nullptr : own + begin;
       if (width == 3 && height == 3)
-        subtract_block(block, Three(), Three(), row == begin, xs + row, xs + begin, to, own + begin);
+        subtract_block(block, Three(), Three(), xs + row, xs + begin, to, across);
       else
-        subtract_block(block, height, width, row == begin, xs + row, xs + begin, to, own + begin);
+        subtract_block(block, height, width, xs + row, xs + begin, to, across);
     }
   };
   for (Index column = 0; column < static_cast<Index>(x.cols()); ++column) {

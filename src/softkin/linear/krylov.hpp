@@ -6,6 +6,31 @@
 
 namespace softkin::linear {
 
+/// Givens rotations that make a Hessenberg matrix upper triangular, column by column.
+struct GivensRotations {
+  Eigen::VectorXd cosines, sines;
+
+  explicit GivensRotations(int columns) : cosines(columns), sines(columns) {}
+
+  /// Column j of the matrix, and of the right-hand side what its rotation changes. False where it has no length: the
+  /// matrix is singular, or a number is not finite.
+  bool rotate(int j, Eigen::MatrixXd& upper, Eigen::VectorXd& right) {
+    for (int i = 0; i < j; ++i) {
+      const double above = upper(i, j);
+      upper(i, j) = cosines[i] * above + sines[i] * upper(i + 1, j);
+      upper(i + 1, j) = cosines[i] * upper(i + 1, j) - sines[i] * above;
+    }
+    const double length = std::hypot(upper(j, j), upper(j + 1, j));
+    if (!(length > 0)) return false;
+    cosines[j] = upper(j, j) / length;
+    sines[j] = upper(j + 1, j) / length;
+    upper(j, j) = length;
+    right[j + 1] = -sines[j] * right[j];
+    right[j] *= cosines[j];
+    return true;
+  }
+};
+
 /// Solves A x = b by restarted GMRES, from x = 0.
 ///
 /// product    product(v, out): out = A v; out is of the right size
@@ -21,7 +46,8 @@ bool gmres(const Product& product, const Eigen::VectorXd& b, double tolerance, i
   const int columns = static_cast<int>(basis.size()) - 1;
   const double goal = tolerance * b.norm();
   Eigen::MatrixXd upper = Eigen::MatrixXd::Zero(columns + 1, columns);
-  Eigen::VectorXd right(columns + 1), cosines(columns), sines(columns), residual = b;
+  Eigen::VectorXd right(columns + 1), residual = b;
+  GivensRotations rotations(columns);
   x = Eigen::VectorXd::Zero(b.size());
   double left = residual.norm();
   for (int round = 0; round < rounds && left > goal; ++round) {
@@ -40,21 +66,10 @@ bool gmres(const Product& product, const Eigen::VectorXd& b, double tolerance, i
       }
       const double norm = next.norm();
       upper(j + 1, j) = norm;
-      for (int i = 0; i < j; ++i) {
-        const double above = upper(i, j);
-        upper(i, j) = cosines[i] * above + sines[i] * upper(i + 1, j);
-        upper(i + 1, j) = cosines[i] * upper(i + 1, j) - sines[i] * above;
-      }
-      const double length = std::hypot(upper(j, j), upper(j + 1, j));
-      if (!(length > 0)) {  // A is singular along this vector, or a number is not finite
+      if (!rotations.rotate(j, upper, right)) {  // A is singular along this vector
         --used;
         break;
       }
-      cosines[j] = upper(j, j) / length;
-      sines[j] = upper(j + 1, j) / length;
-      upper(j, j) = length;
-      right[j + 1] = -sines[j] * right[j];
-      right[j] *= cosines[j];
       left = std::abs(right[j + 1]);
       if (!(norm > 0)) break;  // the solution lies in the basis
       next /= norm;
@@ -75,6 +90,11 @@ bool gmres(const Product& product, const Eigen::VectorXd& b, double tolerance, i
 struct Remainder {
   double left = 0;   // of what is left
   double apart = 0;  // of A b - b: how far A is from the identity
+
+  /// most: one of these; also where a value is not a number
+  static void raise(double& most, double value) {
+    if (!(value <= most)) most = value;
+  }
 };
 
 /// Solves A X = B for a few right-hand sides together; each gains from the directions that the others ask for. Meant
@@ -93,9 +113,6 @@ Remainder conjugate_residuals(const Product& product, double tolerance, int roun
   const auto share_left = [&](Eigen::Index column) {
     return sizes[column] > 0 ? left.col(column).norm() / sizes[column] : 0.0;
   };
-  const auto raise = [](double& most, double value) {
-    if (!(value <= most)) most = value;  // also where it is not a number
-  };
   std::vector<Eigen::VectorXd> directions, images;  // images: orthonormal
   Eigen::MatrixXd asked, answered;
   Remainder remainder;
@@ -110,7 +127,7 @@ Remainder conjugate_residuals(const Product& product, double tolerance, int roun
     product(asked, answered);
     if (round == 0)
       for (Eigen::Index i = 0; i < asked.cols(); ++i)
-        raise(remainder.apart, (answered.col(i) - asked.col(i)).norm() / asked.col(i).norm());
+        Remainder::raise(remainder.apart, (answered.col(i) - asked.col(i)).norm() / asked.col(i).norm());
     const std::size_t known = images.size();
     for (Eigen::Index i = 0; i < asked.cols(); ++i) {
       Eigen::VectorXd direction = asked.col(i), image = answered.col(i);
@@ -131,7 +148,7 @@ Remainder conjugate_residuals(const Product& product, double tolerance, int roun
       }
     }
     remainder.left = 0;
-    for (const Eigen::Index i : open) raise(remainder.left, share_left(i));
+    for (const Eigen::Index i : open) Remainder::raise(remainder.left, share_left(i));
     if (images.size() == known) break;
     if (round > 1 && std::pow(remainder.left, static_cast<double>(rounds) / (round + 1)) > tolerance) break;
   }

@@ -35,6 +35,126 @@ std::string branch_text(const Model& model, const Finding& finding) {
   return text;
 }
 
+std::string strain_text(const std::vector<double>& v) {
+  return "principal strain of the body: " + percent(v[0]) + " to " + percent(v[1]) + ", 95 % of the volume within " +
+         percent(v[2]);
+}
+
+std::string beyond_range_text(const Finding& finding) {
+  return percent(finding.values[0]) + " of region '" + finding.name + "' is strained beyond its linear range of " +
+         percent(finding.values[1]);
+}
+
+std::string slack_text(const Finding& finding) {
+  return "cable '" + finding.name + "' is slack: its path is " + number(finding.values[0], 5) +
+         " of its length at rest, the cable " + number(finding.values[1], 5);
+}
+
+std::string charged_text(const Finding& finding) {
+  const std::vector<double>& v = finding.values;
+  return "dea '" + finding.name + "' holds " + number(v[0], 4) + " nC, " + number(v[1], 4) +
+         " pF; the field in its layer is at most " + number(v[2], 4) + " kV/mm, where it is " + number(v[3], 4) +
+         " mm thick, at " + place_text(&v[4]) + " mm";
+}
+
+std::string rubbing_text(const Finding& finding) {
+  const std::vector<double>& v = finding.values;
+  return "cable '" + finding.name + "' rubs: of " + number(v[0], 4) + " N at the motor " + number(v[1], 4) +
+         " N are left at its far end; it sticks in " + percent(v[2]) + " of its friction";
+}
+
+std::string fibre_text(const Finding& finding) {
+  const std::vector<double>& v = finding.values;
+  return "fibre '" + finding.name + "' carries " + number(v[0], 4) + " N in the mean, " + number(v[2], 4) + " to " +
+         number(v[1], 4) + " N, the most at " + place_text(&v[3]) + " mm; it is " + number(v[6], 6) +
+         " times as long as at rest" + (v[7] > 0 ? ", and slack in " + percent(v[7]) + " of it" : "");
+}
+
+std::string layer_text(const Finding& finding) {
+  const std::vector<double>& v = finding.values;
+  return "layer '" + finding.name + "' carries " + number(v[1], 4) + " to " + number(v[0], 4) + " N/mm, the most at " +
+         place_text(&v[2]) + " mm; it is stretched by up to " + percent(v[5]) +
+         (v[6] > 0 ? ", wrinkled in " + percent(v[6]) + " of its area" : "") +
+         (v[7] > 0 ? ", slack in " + percent(v[7]) : "");
+}
+
+std::string accuracy_text(const std::vector<double>& v) {
+  return "last step of the iteration " + number(v[0], 2) + " mm; estimated distance from the equilibrium " +
+         number(v[1], 2) + " mm" +
+         (v.size() > 2 ? "; " + number(v[2], 2) + " N out of balance, elements pull with " + number(v[3], 3) + " N"
+                       : "");
+}
+
+std::string stress_text(const Finding& finding) {
+  const std::vector<double>& v = finding.values;
+  return "stress in the body: von Mises at most " + number(v[0], 4) + " MPa, at " + place_text(&v[1]) + " mm" +
+         (finding.name.empty() ? "" : " in region '" + finding.name + "'") + "; principal " + number(v[5], 4) + " to " +
+         number(v[4], 4) + " MPa";
+}
+
+/// "(1, 0, 0) N and (0, 0, 0) N mm" of a force and a moment
+std::string wrench_text(const double* xyz) {
+  return place_text(xyz) + " N and " + place_text(xyz + 3) + " N mm";
+}
+
+std::string reaction_text(const Finding& finding) {
+  const std::vector<double>& v = finding.values;
+  return "support '" + finding.name + "' exerts " + wrench_text(&v[0]) + " about " + place_text(&v[6]) + " mm";
+}
+
+std::string magnetic_text(const std::vector<double>& v) {
+  return "magnetic fields exert " + wrench_text(&v[0]) + " about " + place_text(&v[6]) + " mm";
+}
+
+std::string contact_text(const Finding& finding) {
+  const std::vector<double>& v = finding.values;
+  const bool itself = finding.other.empty();
+  return finding.name +
+         (itself ? " presses on itself with " + number(v[9], 4) + " N" : " exerts " + wrench_text(&v[0])) + " about " +
+         place_text(&v[6]) + " mm" + (itself ? "" : " on " + finding.other) + ", at most " + number(v[10], 4) +
+         " kPa over " + number(v[11], 4) + " mm^2; least gap " + number(v[12], 3) + " mm" +
+         (v.size() > 13 ? slipping_text(v[13]) : "");
+}
+
+std::string buckled_text(const std::vector<double>& v) {
+  return "the robot left " + counted(static_cast<std::size_t>(v[0]), "unstable equilibrium", "unstable equilibria") +
+         " for a stable one, moving by up to " + number(v[1], 3) + " mm";
+}
+
+std::string warning_text(const Model& model, const Finding& finding) {
+  using Kind = Finding::Kind;
+  const std::vector<double>& v = finding.values;
+  switch (finding.kind) {
+    case Kind::inverted:
+      return counted(static_cast<std::size_t>(v[0]), "element") + (v[0] == 1 ? " is" : " are") + " inverted";
+    case Kind::self_overlap:
+      return "the shape passes through itself: " + counted(static_cast<std::size_t>(v[0]), "point") +
+             " of its surface " + (v[0] == 1 ? "lies" : "lie") + " inside it, the deepest " +
+             depth_text(v[1], {v[2], v[3], v[4]}) + overlap_cause(model);
+    case Kind::motionless:
+      return "nothing moved: the largest displacement is " + number(v[0], 2) +
+             " mm; are what is asked for and the moduli in the right units?" + units_text;
+    case Kind::far_strained:
+      return "the body is strained by up to " + percent(v[0]) +
+             ", where most elastomers have broken; are the loads and the moduli in the right units?" + units_text;
+    case Kind::far_moved:
+      return "a point moved by " + number(v[0], 4) + " mm, and the robot is " + number(v[1], 4) +
+             " mm across; are the loads and the moduli in the right units?" + units_text;
+    case Kind::unstable:
+      return "this equilibrium is unstable in " + counted(static_cast<std::size_t>(v[0]), "way") +
+             ": the robot would buckle or snap away from it";
+    case Kind::snapped:
+      return "at " + percent(v[1]) + " of the way the shape jumps by " + number(v[0], 3) +
+             " mm: the robot snaps through, and what it does there depends on how fast it is moved";
+    case Kind::unstable_way:
+      return "from " + percent(v[0]) +
+             " of the way on equilibria were unstable: the robot would leave the way there, for a shape that may be "
+             "another one";
+    default:
+      return "the iteration diverged";
+  }
+}
+
 }  // namespace
 
 std::string overlap_cause(const Model& model) {
@@ -52,93 +172,49 @@ std::string depth_text(double deepest_mm, const Vec3& where) {
 
 std::string finding_text(const Model& model, const Finding& finding) {
   using Kind = Finding::Kind;
-  const std::vector<double>& v = finding.values;
   switch (finding.kind) {
     case Kind::strain:
-      return "principal strain of the body: " + percent(v[0]) + " to " + percent(v[1]) +
-             ", 95 % of the volume within " + percent(v[2]);
+      return strain_text(finding.values);
     case Kind::beyond_linear_range:
-      return percent(v[0]) + " of region '" + finding.name + "' is strained beyond its linear range of " +
-             percent(v[1]);
-    case Kind::inverted:
-      return "warning: " + counted(static_cast<std::size_t>(v[0]), "element") + (v[0] == 1 ? " is" : " are") +
-             " inverted";
+      return beyond_range_text(finding);
     case Kind::slack:
-      return "cable '" + finding.name + "' is slack: its path is " + number(v[0], 5) +
-             " of its length at rest, the cable " + number(v[1], 5);
+      return slack_text(finding);
     case Kind::charged:
-      return "dea '" + finding.name + "' holds " + number(v[0], 4) + " nC, " + number(v[1], 4) +
-             " pF; the field in its layer is at most " + number(v[2], 4) + " kV/mm, where it is " + number(v[3], 4) +
-             " mm thick, at " + place_text(&v[4]) + " mm";
+      return charged_text(finding);
     case Kind::rubbing:
-      return "cable '" + finding.name + "' rubs: of " + number(v[0], 4) + " N at the motor " + number(v[1], 4) +
-             " N are left at its far end; it sticks in " + percent(v[2]) + " of its friction";
+      return rubbing_text(finding);
     case Kind::fibre:
-      return "fibre '" + finding.name + "' carries " + number(v[0], 4) + " N in the mean, " + number(v[2], 4) + " to " +
-             number(v[1], 4) + " N, the most at " + place_text(&v[3]) + " mm; it is " + number(v[6], 6) +
-             " times as long as at rest" + (v[7] > 0 ? ", and slack in " + percent(v[7]) + " of it" : "");
+      return fibre_text(finding);
     case Kind::layer:
-      return "layer '" + finding.name + "' carries " + number(v[1], 4) + " to " + number(v[0], 4) +
-             " N/mm, the most at " + place_text(&v[2]) + " mm; it is stretched by up to " + percent(v[5]) +
-             (v[6] > 0 ? ", wrinkled in " + percent(v[6]) + " of its area" : "") +
-             (v[7] > 0 ? ", slack in " + percent(v[7]) : "");
-    case Kind::self_overlap:
-      return "warning: the shape passes through itself: " + counted(static_cast<std::size_t>(v[0]), "point") +
-             " of its surface " + (v[0] == 1 ? "lies" : "lie") + " inside it, the deepest " +
-             depth_text(v[1], {v[2], v[3], v[4]}) + overlap_cause(model);
-    case Kind::motionless:
-      return "warning: nothing moved: the largest displacement is " + number(v[0], 2) +
-             " mm; are what is asked for and the moduli in the right units?" + units_text;
-    case Kind::far_strained:
-      return "warning: the body is strained by up to " + percent(v[0]) +
-             ", where most elastomers have broken; are the loads and the moduli in the right units?" + units_text;
-    case Kind::far_moved:
-      return "warning: a point moved by " + number(v[0], 4) + " mm, and the robot is " + number(v[1], 4) +
-             " mm across; are the loads and the moduli in the right units?" + units_text;
+      return layer_text(finding);
     case Kind::accuracy:
-      return "last step of the iteration " + number(v[0], 2) + " mm; estimated distance from the equilibrium " +
-             number(v[1], 2) + " mm" +
-             (v.size() > 2 ? "; " + number(v[2], 2) + " N out of balance, elements pull with " + number(v[3], 3) + " N"
-                           : "");
+      return accuracy_text(finding.values);
     case Kind::stress:
-      return "stress in the body: von Mises at most " + number(v[0], 4) + " MPa, at " + place_text(&v[1]) + " mm" +
-             (finding.name.empty() ? "" : " in region '" + finding.name + "'") + "; principal " + number(v[5], 4) +
-             " to " + number(v[4], 4) + " MPa";
+      return stress_text(finding);
     case Kind::reaction:
-      return "support '" + finding.name + "' exerts " + place_text(&v[0]) + " N and " + place_text(&v[3]) +
-             " N mm about " + place_text(&v[6]) + " mm";
+      return reaction_text(finding);
     case Kind::contact:
-      return finding.name +
-             (finding.other.empty() ? " presses on itself with " + number(v[9], 4) + " N"
-                                    : " exerts " + place_text(&v[0]) + " N and " + place_text(&v[3]) + " N mm") +
-             " about " + place_text(&v[6]) + " mm" + (finding.other.empty() ? "" : " on " + finding.other) +
-             ", at most " + number(v[10], 4) + " kPa over " + number(v[11], 4) + " mm^2; least gap " +
-             number(v[12], 3) + " mm" + (v.size() > 13 ? slipping_text(v[13]) : "");
+      return contact_text(finding);
     case Kind::magnetic:
-      return "magnetic fields exert " + place_text(&v[0]) + " N and " + place_text(&v[3]) + " N mm about " +
-             place_text(&v[6]) + " mm";
+      return magnetic_text(finding.values);
     case Kind::untouched:
       return "nothing touches";
-    case Kind::unstable:
-      return "warning: this equilibrium is unstable in " + counted(static_cast<std::size_t>(v[0]), "way") +
-             ": the robot would buckle or snap away from it";
     case Kind::buckled:
-      return "the robot left " +
-             counted(static_cast<std::size_t>(v[0]), "unstable equilibrium", "unstable equilibria") +
-             " for a stable one, moving by up to " + number(v[1], 3) + " mm";
-    case Kind::snapped:
-      return "warning: at " + percent(v[1]) + " of the way the shape jumps by " + number(v[0], 3) +
-             " mm: the robot snaps through, and what it does there depends on how fast it is moved";
-    case Kind::unstable_way:
-      return "warning: from " + percent(v[0]) +
-             " of the way on equilibria were unstable: the robot would leave the way there, for a shape that may be "
-             "another one";
+      return buckled_text(finding.values);
     case Kind::branch:
       return branch_text(model, finding);
+    case Kind::inverted:
+    case Kind::self_overlap:
+    case Kind::motionless:
+    case Kind::far_strained:
+    case Kind::far_moved:
+    case Kind::unstable:
+    case Kind::snapped:
+    case Kind::unstable_way:
     case Kind::diverged:
       break;
   }
-  return "warning: the iteration diverged";
+  return "warning: " + warning_text(model, finding);
 }
 
 void OverlapTally::add(std::size_t number, const StepRecord& record) {

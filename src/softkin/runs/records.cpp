@@ -257,58 +257,76 @@ void add_forces(const Model& model, const StepRecord& record, std::vector<Findin
   add_branch(model, record, found);
 }
 
-}  // namespace
-
-std::vector<Finding> findings(const Model& model, const StepRecord& record) {
-  std::vector<Finding> found;
+/// How far the body is strained.
+void add_strain(const StepRecord& record, std::vector<Finding>& found) {
   const StrainHistogram& strain = record.strain;
   if (!strain.shares.empty())
-    found.push_back({Finding::Kind::strain, "", {strain.least, strain.greatest, strain.percentile_95}});
+    found.push_back({Kind::strain, "", {strain.least, strain.greatest, strain.percentile_95}});
   constexpr double least_shown = 0.0005;  // what is shown as 0.0 % is nothing to tell
   for (const auto& beyond : strain.beyond)
     if (beyond.share >= least_shown)
-      found.push_back({Finding::Kind::beyond_linear_range, beyond.region, {beyond.share, beyond.linear_range}});
-  if (record.inverted_elements > 0)
-    found.push_back({Finding::Kind::inverted, "", {static_cast<double>(record.inverted_elements)}});
+      found.push_back({Kind::beyond_linear_range, beyond.region, {beyond.share, beyond.linear_range}});
+}
+
+void add_actuators(const Model& model, const StepRecord& record, std::vector<Finding>& found) {
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     if (const ActuatorRecord& actuator = record.actuators[a]; actuator.slack)
-      found.push_back({Finding::Kind::slack, model.actuators[a].name, {actuator.achieved, actuator.requested}});
+      found.push_back({Kind::slack, model.actuators[a].name, {actuator.achieved, actuator.requested}});
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     if (const auto& layer = record.actuators[a].layer; layer && layer->charge_nC > 0)
-      found.push_back({Finding::Kind::charged,
+      found.push_back({Kind::charged,
                        model.actuators[a].name,
                        {layer->charge_nC, layer->capacitance_pF, layer->field_kV_mm, layer->thickness_mm, layer->at.x(),
                         layer->at.y(), layer->at.z()}});
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     if (const ActuatorRecord& actuator = record.actuators[a]; actuator.tendon && actuator.multiplier != 0)
-      found.push_back({Finding::Kind::rubbing,
+      found.push_back({Kind::rubbing,
                        model.actuators[a].name,
                        {actuator.multiplier, actuator.tendon->end_N, actuator.tendon->sticks}});
+}
+
+void add_reinforcements(const Model& model, const StepRecord& record, std::vector<Finding>& found) {
   for (std::size_t f = 0; f < record.fibres.size(); ++f) {
     const FibreForces& fibre = record.fibres[f];
-    found.push_back({Finding::Kind::fibre,
+    found.push_back({Kind::fibre,
                      model.fibres[f].name,
                      {fibre.mean_N, fibre.largest_N, fibre.least_N, fibre.where.x(), fibre.where.y(), fibre.where.z(),
                       fibre.stretch, fibre.slack}});
   }
   for (std::size_t l = 0; l < record.layers.size(); ++l) {
     const LayerForces& layer = record.layers[l];
-    found.push_back({Finding::Kind::layer,
+    found.push_back({Kind::layer,
                      model.layers[l]->name,
                      {layer.largest_N_mm, layer.least_N_mm, layer.where.x(), layer.where.y(), layer.where.z(),
                       layer.strain, layer.wrinkled, layer.slack}});
   }
-  add_forces(model, record, found);
-  add_implausible(model, record, found);
+}
+
+/// How near the iteration came to the equilibrium.
+void add_accuracy(const Model& model, const StepRecord& record, std::vector<Finding>& found) {
   if (model.formulation == Formulation::physical && record.status != Status::converged)
-    return found;  // the iteration was of another shape
-  if (record.answered()) return found;
+    return;  // the iteration was of another shape
+  if (record.answered()) return;
   if (!std::isfinite(record.step_mm) || !std::isfinite(record.estimated_error_mm))
-    found.push_back({Finding::Kind::diverged});
+    found.push_back({Kind::diverged});
   else
-    found.push_back({Finding::Kind::accuracy, "", {record.step_mm, record.estimated_error_mm}});
+    found.push_back({Kind::accuracy, "", {record.step_mm, record.estimated_error_mm}});
   if (model.formulation == Formulation::physical)
     for (const double force : {record.residual_N, record.pull_N}) found.back().values.push_back(force);
+}
+
+}  // namespace
+
+std::vector<Finding> findings(const Model& model, const StepRecord& record) {
+  std::vector<Finding> found;
+  add_strain(record, found);
+  if (record.inverted_elements > 0)
+    found.push_back({Kind::inverted, "", {static_cast<double>(record.inverted_elements)}});
+  add_actuators(model, record, found);
+  add_reinforcements(model, record, found);
+  add_forces(model, record, found);
+  add_implausible(model, record, found);
+  add_accuracy(model, record, found);
   return found;
 }
 

@@ -6,11 +6,10 @@
 #include <nlohmann/json.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/chamber_json.hpp>
-#include <softkin/runs/contacts_json.hpp>
 #include <softkin/runs/layer_json.hpp>
+#include <softkin/runs/physical_json.hpp>
 #include <softkin/runs/record_log.hpp>
 #include <softkin/runs/records_json.hpp>
-#include <softkin/runs/reinforcement_json.hpp>
 #include <stdexcept>
 
 namespace softkin::runs {
@@ -28,24 +27,6 @@ Value named(const std::array<Value, N>& values, const std::string& name) {
   for (const Value value : values)
     if (name == name_of(value)) return value;
   throw std::out_of_range("no such status: " + name);
-}
-
-void write_number(double value, Json& json) {
-  json = known(value);
-}
-
-template <class Count>
-void write_number(Count value, Json& json) {
-  json = value;
-}
-
-void read_number(const Json& json, double& value) {
-  value = number_or_nan(json);
-}
-
-template <class Count>
-void read_number(const Json& json, Count& value) {
-  value = json.get<Count>();
 }
 
 Json strain_json(const StrainHistogram& histogram) {
@@ -84,139 +65,6 @@ SelfOverlap overlap_of(const Json& json) {
   SelfOverlap overlap{json.at("points").get<std::size_t>(), json.at("deepest_mm").get<double>()};
   if (overlap.points > 0) overlap.where = point_of(json.at("where_mm"));
   return overlap;
-}
-
-/// visit(key, extreme) of each.
-template <class Extremes, class Visit>
-void each_extreme(Extremes& stress, const Visit& visit) {
-  visit("von_mises_MPa", stress.von_mises);
-  visit("principal_max_MPa", stress.greatest);
-  visit("principal_min_MPa", stress.least);
-}
-
-Json stress_json(const StressExtremes& stress) {
-  Json json;
-  each_extreme(stress, [&json](const char* key, const StressExtremes::Extreme& extreme) {
-    json[key] = {{"value", known(extreme.value)}, {"at_mm", json_of(extreme.at)}, {"region", extreme.region}};
-  });
-  return json;
-}
-
-StressExtremes stress_of(const Json& json) {
-  StressExtremes stress;
-  each_extreme(stress, [&json](const char* key, StressExtremes::Extreme& extreme) {
-    const Json& of = json.at(key);
-    extreme = {number_or_nan(of.at("value")), point_of(of.at("at_mm")), of.at("region").get<std::string>()};
-  });
-  return stress;
-}
-
-Json reaction_json(const Support& support, const Reaction& reaction) {
-  return {{"support", support.name},
-          {"force_N", json_of(reaction.force)},
-          {"moment_N_mm", json_of(reaction.moment)},
-          {"center_mm", json_of(reaction.center)}};
-}
-
-Json magnetic_json(const MagneticLoad& load) {
-  return {{"force_N", json_of(load.force)}, {"moment_N_mm", json_of(load.moment)}, {"center_mm", json_of(load.center)}};
-}
-
-Json worst_json(const WorstPlace& worst) {
-  return {{"kind", worst.prism ? "prism" : "tetrahedron"},
-          {"element", worst.element},
-          {"region", worst.region},
-          {"at_mm", json_of(worst.at)},
-          {"strain", known(worst.strain)},
-          {"volume_ratio", known(worst.volume_ratio)},
-          {"beside", worst.beside}};
-}
-
-WorstPlace worst_of(const Json& json) {
-  WorstPlace worst;
-  worst.prism = json.at("kind").get<std::string>() == "prism";
-  worst.element = json.at("element").get<Index>();
-  worst.region = json.at("region").get<std::string>();
-  worst.at = point_of(json.at("at_mm"));
-  worst.strain = number_or_nan(json.at("strain"));
-  worst.volume_ratio = number_or_nan(json.at("volume_ratio"));
-  worst.beside = json.at("beside").get<std::string>();
-  return worst;
-}
-
-/// What the physical formulation knows of forces and of stability.
-template <class Record, class Visit>
-void forces(Record& record, const Visit& visit) {
-  visit("residual_N", record.residual_N);
-  visit("pull_N", record.pull_N);
-  visit("unstable_modes", record.unstable_modes);
-  visit("buckled", record.buckled);
-  visit("buckled_mm", record.buckled_mm);
-  visit("snapped_mm", record.snapped_mm);
-  visit("snapped_from", record.snapped_from);
-  visit("unstable_from", record.unstable_from);
-}
-
-Json branch_json(const Model& model, const LoadBranch& branch) {
-  const Actuator& actuator = model.actuators[static_cast<std::size_t>(branch.actuator)];
-  Json json = {{"actuator", actuator.name}, {"ratio", Json::array()}, {multiplier_key(actuator), Json::array()}};
-  for (const LoadBranch::Point& point : branch.points) {
-    json["ratio"].push_back(known(point.measure));
-    json[multiplier_key(actuator)].push_back(known(point.load));
-  }
-  return json;
-}
-
-LoadBranch branch_of(const Model& model, const Json& json) {
-  LoadBranch branch;
-  for (std::size_t a = 0; a < model.actuators.size(); ++a)
-    if (model.actuators[a].name == json.at("actuator").get<std::string>()) branch.actuator = static_cast<Index>(a);
-  if (branch.actuator < 0) throw std::out_of_range("no such actuator");
-  const Json& loads = json.at(multiplier_key(model.actuators[static_cast<std::size_t>(branch.actuator)]));
-  for (std::size_t i = 0; i < loads.size(); ++i)
-    branch.points.push_back({number_or_nan(json.at("ratio").at(i)), number_or_nan(loads.at(i))});
-  return branch;
-}
-
-Json physical_json(const Model& model, const StepRecord& record) {
-  Json json = {{"shape_load_share", record.shape_load_share}};
-  forces(record, [&json](const char* key, const auto& value) { write_number(value, json[key]); });
-  json["stress"] = record.stress ? stress_json(*record.stress) : Json();
-  if (!record.branch.points.empty()) json["branch"] = branch_json(model, record.branch);
-  json["limit"] = record.worst ? worst_json(*record.worst) : Json();
-  json["reactions"] = Json::array();
-  for (std::size_t s = 0; s < record.reactions.size(); ++s)
-    json["reactions"].push_back(reaction_json(model.supports[s], record.reactions[s]));
-  if (model.magnetism) json["magnetic"] = record.magnetic ? magnetic_json(*record.magnetic) : Json();
-  if (!record.fibres.empty()) json["fibres"] = fibres_json(model, record.fibres);
-  if (!record.layers.empty()) json["layers"] = layers_json(model, record.layers);
-  if (model.contact.any()) json["contacts"] = contacts_json(model, record.contacts);
-  if (model.contact.rubs()) json["friction_change"] = known(record.friction_change);
-  if (!record.anchors.empty()) json["anchors"] = anchors_json(record.anchors);
-  if (!record.eyelets.empty()) json["eyelets_mm"] = record.eyelets;
-  return json;
-}
-
-void read_physical(const Model& model, const Json& json, StepRecord& record) {
-  record.shape_load_share = json.at("shape_load_share").get<double>();
-  forces(record, [&json](const char* key, auto& value) { read_number(json.at(key), value); });
-  if (const Json& stress = json.at("stress"); !stress.is_null()) record.stress = stress_of(stress);
-  if (json.contains("branch")) record.branch = branch_of(model, json.at("branch"));
-  if (const Json& worst = json.at("limit"); !worst.is_null()) record.worst = worst_of(worst);
-  for (const Json& each : json.at("reactions"))
-    record.reactions.push_back(
-        {point_of(each.at("force_N")), point_of(each.at("moment_N_mm")), point_of(each.at("center_mm"))});
-  if (model.magnetism)
-    if (const Json& load = json.at("magnetic"); !load.is_null())
-      record.magnetic = {point_of(load.at("force_N")), point_of(load.at("moment_N_mm")),
-                         point_of(load.at("center_mm"))};
-  if (json.contains("fibres")) record.fibres = fibres_of(json.at("fibres"));
-  if (json.contains("layers")) record.layers = layers_of(json.at("layers"));
-  if (json.contains("eyelets_mm")) record.eyelets = json.at("eyelets_mm").get<std::vector<double>>();
-  if (!model.contact.any()) return;
-  if (const Json& contacts = json.at("contacts"); !contacts.is_null()) record.contacts = contacts_of(model, contacts);
-  if (model.contact.rubs()) record.friction_change = number_or_nan(json.at("friction_change"));
-  if (json.contains("anchors")) record.anchors = anchors_of(model, json.at("anchors"));
 }
 
 /// As many digits as a curve needs.
@@ -386,6 +234,30 @@ std::string line_of(const Json& json) {
 
 Json known(double value) {
   return std::isfinite(value) ? Json(value) : Json();
+}
+
+void write_number(double value, Json& json) {
+  json = known(value);
+}
+
+void write_number(int value, Json& json) {
+  json = value;
+}
+
+void write_number(std::size_t value, Json& json) {
+  json = value;
+}
+
+void read_number(const Json& json, double& value) {
+  value = number_or_nan(json);
+}
+
+void read_number(const Json& json, int& value) {
+  value = json.get<int>();
+}
+
+void read_number(const Json& json, std::size_t& value) {
+  value = json.get<std::size_t>();
 }
 
 Json to_json(const Model& model, const StepRecord& record) {

@@ -22,6 +22,13 @@ void from_json(const Model& model, const Json& json, WalkRecord& record);
 /// JSON knows no NaN: what a diverged solve does not know is null.
 [[nodiscard]] Json known(double value);
 [[nodiscard]] double number_or_nan(const Json& json);
+/// A measure, which may not be known, or a count.
+void write_number(double value, Json& json);
+void write_number(int value, Json& json);
+void write_number(std::size_t value, Json& json);
+void read_number(const Json& json, double& value);
+void read_number(const Json& json, int& value);
+void read_number(const Json& json, std::size_t& value);
 /// Of a list of three numbers.
 [[nodiscard]] Vec3 point_of(const Json& json);
 /// throws  std::out_of_range where it is none

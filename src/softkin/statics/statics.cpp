@@ -15,6 +15,18 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+void check_formulation(const StaticsOptions& options, Formulation formulation) {
+  if (formulation == Formulation::physical) {
+    if (options.solver == Solver::local_global)
+      throw InvalidInput("solver local-global is for the target-shape formulation; the physical one has newton");
+    return;
+  }
+  if (options.beyond > 0)
+    throw InvalidInput("beyond is for the physical formulation: target shapes have no pressures and tensions");
+  if (options.stable)
+    throw InvalidInput("stable is for the physical formulation: target shapes have no stiffness that buckles");
+}
+
 }  // namespace
 
 const char* name_of(Solver solver) {
@@ -87,15 +99,10 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   const TeamPool::Lent team = parts_->team(options);
   Equilibrium result;
   parts_->check_history(options.history.get(), options.elapsed_s);
+  check_formulation(options, parts_->physical ? Formulation::physical : Formulation::target_shape);
   if (parts_->physical) {
-    if (options.solver == Solver::local_global)
-      throw InvalidInput("solver local-global is for the target-shape formulation; the physical one has newton");
     result = parts_->solve(actuation, begun, options, progress, *team);
   } else {
-    if (options.beyond > 0)
-      throw InvalidInput("beyond is for the physical formulation: target shapes have no pressures and tensions");
-    if (options.stable)
-      throw InvalidInput("stable is for the physical formulation: target shapes have no stiffness that buckles");
     result.actuation = actuation;
     result.state.positions = begun.positions;
     result.report.tolerance_mm = parts_->tolerance(options);

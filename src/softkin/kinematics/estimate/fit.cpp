@@ -150,18 +150,30 @@ bool Fitter::exhausted() const {
   return problem_.lost() - lost_before_ > many_failures;
 }
 
-/// A step is gone to first order alone where what that leaves, as the last steps shrank, is below the accuracy.
-Fit Fitter::refine_by(Guess from, const Readings& readings, const Start& start) const {
-  Fit fit{std::move(from)};
-  const auto nearby_of = [&](const Guess& at) { return std::make_shared<const Nearby>(problem_.nearby(at)); };
-  Pace pace;
-  pace.fresh = start.nearby == nullptr;
-  fit.nearby = pace.fresh ? nearby_of(fit.at) : start.nearby;
-  Actuation elsewhere;  // by how much the commands differ from those of the equilibrium
+/// Slopes of where the fit is.
+void Fitter::renew(Fit& fit) const {
+  fit.nearby = std::make_shared<const Nearby>(problem_.nearby(fit.at));
+}
+
+/// Where a search begins.
+///
+/// elsewhere  by how much the commands differ from those of the equilibrium; empty: they do not
+Fit Fitter::begin(Guess from, const Readings& readings, const Start& start, Actuation& elsewhere) const {
+  Fit fit{std::move(from), start.nearby};
+  if (fit.nearby == nullptr) renew(fit);
   if (start.before != nullptr) {
     elsewhere = readings.commands - *start.before;
     problem_.follow(*fit.nearby, fit.at, fit.at, elsewhere, fit.at.computed, nullptr);
   }
+  return fit;
+}
+
+/// A step is gone to first order alone where what that leaves, as the last steps shrank, is below the accuracy.
+Fit Fitter::refine_by(Guess from, const Readings& readings, const Start& start) const {
+  Actuation elsewhere;
+  Fit fit = begin(std::move(from), readings, start, elsewhere);
+  Pace pace;
+  pace.fresh = start.nearby == nullptr;
   while (true) {
     fit.told = least(fit, readings, pace.hold);
     set_normal(fit, readings);
@@ -172,7 +184,7 @@ Fit Fitter::refine_by(Guess from, const Readings& readings, const Start& start) 
     if (fit.converged) return fit;
     if (fit.iterations >= start.most_iterations) break;
     if (!pace.fresh && elsewhere.size() == 0 && length > contraction * pace.last) {
-      fit.nearby = nearby_of(fit.at);
+      renew(fit);
       pace.renewed();
       continue;
     }
@@ -197,7 +209,7 @@ Fit Fitter::refine_by(Guess from, const Readings& readings, const Start& start) 
       pace.fresh = false;
     }
     if (!pace.fresh) {
-      fit.nearby = nearby_of(fit.at);
+      renew(fit);
       pace.renewed();
     }
     if (!pace.shorten(!next.solved(), exhausted() ? 1 : most_failures)) break;

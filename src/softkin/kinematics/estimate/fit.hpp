@@ -53,6 +53,8 @@ class Fitter {
   [[nodiscard]] Eigen::VectorXd step_of(const Guess& at, const Normal& normal, double damping) const;
   [[nodiscard]] Guess least(const Fit& fit, const Readings& readings, double holding) const;
   [[nodiscard]] Guess stepped(const Fit& fit, const Readings& readings, const Actuation& elsewhere, double reach) const;
+  void renew(Fit& fit) const;
+  [[nodiscard]] Fit begin(Guess from, const Readings& readings, const Start& start, Actuation& elsewhere) const;
   void set_normal(Fit& fit, const Readings& readings) const;
 
   const Problem& problem_;

@@ -169,6 +169,9 @@ class Body : public Term {
     }
   };
 
+  template <int K, int Q>
+  static Set<K, Q>& set_of(std::vector<Set<K, Q>>& sets, const Model& model, const ElementRole& role, Index grower,
+                           bool mixed);
   template <int K, int Q, class Element>
   void add(std::vector<Set<K, Q>>& sets, const Model& model, const ElementRole& role, Index element,
            const Element& nodes, const Pressures* pressures, Index grower);

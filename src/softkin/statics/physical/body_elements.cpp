@@ -62,60 +62,68 @@ void Body::set_pressures(Set<K, Q>& set, const ElasticLaw& law, const std::array
   }
 }
 
+/// The set of such elements, begun where there is none yet.
+template <int K, int Q>
+Body::Set<K, Q>& Body::set_of(std::vector<Set<K, Q>>& sets, const Model& model, const ElementRole& role, Index grower,
+                              bool mixed) {
+  const Material& material = model.materials[role.material];
+  const Law law = material.elastic.law;
+  const auto branches = static_cast<int>(material.viscosity.size());
+  const auto found = std::find_if(sets.begin(), sets.end(), [&](const Set<K, Q>& s) {
+    return s.law == law && s.actuator == role.actuator && s.grower == grower && s.branches == branches &&
+           s.mixed == mixed;
+  });
+  if (found != sets.end()) return *found;
+  Set<K, Q>& set = sets.emplace_back();
+  set.law = law;
+  set.branches = branches;
+  set.mixed = mixed;
+  set.actuator = role.actuator;
+  set.grower = grower;
+  if (grower >= 0) set.growth = model.growths[static_cast<std::size_t>(grower)];
+  if (role.actuator >= 0) {
+    set.charged = under_voltage(model.actuators[role.actuator]);
+    set.prestretch = model.actuators[role.actuator].prestretch;
+  }
+  return set;
+}
+
 template <int K, int Q, class Element>
 void Body::add(std::vector<Set<K, Q>>& sets, const Model& model, const ElementRole& role, Index element,
                const Element& nodes, const Pressures* pressures, Index grower) {
   const Material& material = model.materials[role.material];
-  const Law law = material.elastic.law;
-  const auto branches = static_cast<int>(material.viscosity.size());
   const bool mixed = pressures && material.mixed;
-  auto set = std::find_if(sets.begin(), sets.end(), [&](const Set<K, Q>& s) {
-    return s.law == law && s.actuator == role.actuator && s.grower == grower && s.branches == branches &&
-           s.mixed == mixed;
-  });
-  if (set == sets.end()) {
-    set = sets.insert(sets.end(), Set<K, Q>{});
-    set->law = law;
-    set->branches = branches;
-    set->mixed = mixed;
-    set->actuator = role.actuator;
-    set->grower = grower;
-    if (grower >= 0) set->growth = model.growths[static_cast<std::size_t>(grower)];
-    if (role.actuator >= 0) {
-      set->charged = under_voltage(model.actuators[role.actuator]);
-      set->prestretch = model.actuators[role.actuator].prestretch;
-    }
-  }
+  Set<K, Q>& set = set_of(sets, model, role, grower, mixed);
   Eigen::Matrix<double, K, 3> rest;
   for (int i = 0; i < K; ++i) rest.row(i) = model.rest.row(nodes[i]);
   const ElasticRest<K, Q> shape = elastic_rest(rest);
-  const int lane = set->count % lanes;
+  const int lane = set.count % lanes;
   if (lane == 0) {
-    set->blocks.emplace_back();
-    set->nodes.emplace_back();
-    set->frames.emplace_back();
-    set->moduli.resize(set->moduli.size() + material.viscosity.size());
-    set->times.resize(set->moduli.size());
+    set.blocks.emplace_back();
+    set.nodes.emplace_back();
+    set.frames.emplace_back();
+    set.moduli.resize(set.moduli.size() + material.viscosity.size());
+    set.times.resize(set.moduli.size());
   }
-  ElasticBlock<K, Q>& block = set->blocks.back();
+  ElasticBlock<K, Q>& block = set.blocks.back();
   for (int l = lane; l < lanes; ++l) {  // later elements overwrite the lanes that this one fills in advance
     set_law(block.law, l, material.elastic);
-    for (std::size_t i = 0, at = set->moduli.size() - material.viscosity.size(); i < material.viscosity.size(); ++i) {
-      set->moduli[at + i][l] = material.viscosity[i].modulus_MPa;
-      set->times[at + i][l] = material.viscosity[i].time_s;
+    for (std::size_t i = 0, at = set.moduli.size() - material.viscosity.size(); i < material.viscosity.size(); ++i) {
+      set.moduli[at + i][l] = material.viscosity[i].modulus_MPa;
+      set.times[at + i][l] = material.viscosity[i].time_s;
     }
     for (int q = 0; q < Q; ++q) {
       for (int i = 0; i < K; ++i) set_lane(block.slope[q][i], l, shape.slope[q].row(i).transpose());
       block.volume[q][l] = l == lane ? shape.volume[q] : 0;
     }
-    for (int i = 0; i < K; ++i) set->nodes.back()[i][l] = nodes[i];
+    for (int i = 0; i < K; ++i) set.nodes.back()[i][l] = nodes[i];
   }
   if constexpr (K == 6)
-    set->frames.back()[lane] = layer_frame(rest);
+    set.frames.back()[lane] = layer_frame(rest);
   else if (mixed)
-    set_pressures(*set, material.elastic, pressures->of[static_cast<std::size_t>(element)], lane);
-  set->elements.push_back(element);
-  ++set->count;
+    set_pressures(set, material.elastic, pressures->of[static_cast<std::size_t>(element)], lane);
+  set.elements.push_back(element);
+  ++set.count;
 }
 
 void Body::add_elements(const Model& model, const Pressures* pressures) {

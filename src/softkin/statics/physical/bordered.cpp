@@ -56,10 +56,22 @@ linear::Remainder Bordered::solve(const Columns& right, double accuracy, int rou
     if (part.moves.cols() != count) return remainder;
     found.moves.middleCols(first, count) = part.moves;
     found.multipliers.middleCols(first, count) = part.multipliers;
-    if (!(remainder.left <= worst.left)) worst.left = remainder.left;  // also where it is not a number
-    if (!(remainder.apart <= worst.apart)) worst.apart = remainder.apart;
+    linear::Remainder::raise(worst.left, remainder.left);
+    linear::Remainder::raise(worst.apart, remainder.apart);
   }
   return worst;
+}
+
+/// Of multipliers beside moves, for one norm of both: that of the moves, and of those that would cost the multipliers'
+/// energy.
+Eigen::VectorXd Bordered::weights_of(const Columns& about, const Columns& right) const {
+  const double squares = about.moves.squaredNorm();
+  const double energy = std::abs(about.moves.cwiseProduct(right.moves - pulls() * about.multipliers).sum());
+  const double stiffness = squares > 0 && energy > 0 ? energy / squares : 1;
+  Eigen::VectorXd weights(slopes_.cols());
+  for (Index i = 0; i < static_cast<Index>(weights.size()); ++i)
+    weights[i] = 1 / (saddle_.scale()[i] * std::sqrt(stiffness));
+  return weights;
 }
 
 linear::Remainder Bordered::solve_block(const Columns& right, double accuracy, int rounds, Columns& found,
@@ -75,13 +87,7 @@ linear::Remainder Bordered::solve_block(const Columns& right, double accuracy, i
   }
   precondition(begin);
   if (!begin.moves.allFinite() || !begin.multipliers.allFinite()) return failed;
-  // moves and multipliers in one norm: that of the moves, and of those that would cost the multipliers' energy
-  const Columns& about = guess != nullptr ? *guess : begin;
-  const double squares = about.moves.squaredNorm();
-  const double energy = std::abs(about.moves.cwiseProduct(right.moves - pulls() * about.multipliers).sum());
-  const double stiffness = squares > 0 && energy > 0 ? energy / squares : 1;
-  Eigen::VectorXd weights(count);
-  for (Index i = 0; i < count; ++i) weights[i] = 1 / (saddle_.scale()[i] * std::sqrt(stiffness));
+  const Eigen::VectorXd weights = weights_of(guess != nullptr ? *guess : begin, right);
   const auto split = [&](const Eigen::MatrixXd& joined) {
     return Columns{joined.topRows(size), weights.cwiseInverse().asDiagonal() * joined.bottomRows(count)};
   };

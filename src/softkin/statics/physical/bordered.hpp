@@ -40,6 +40,7 @@ class Bordered {
  private:
   linear::Remainder solve_block(const Columns& right, double accuracy, int rounds, Columns& found,
                                 const Columns* guess);
+  [[nodiscard]] Eigen::VectorXd weights_of(const Columns& about, const Columns& right) const;
   void precondition(Columns& columns);
   void multiply(const Columns& columns, Columns& product);
   [[nodiscard]] const Eigen::MatrixXd& pulls() const { return pulls_.cols() > 0 ? pulls_ : slopes_; }

@@ -66,7 +66,10 @@ std::optional<Continuation::Pushed> Continuation::pushed(const Demand& demand, c
   double shift = mode.steep_shift();
   bool settled = false;
   for (int i = 0; i < most_downhill && !settled; ++i) {
-    if (!step_down(system_, demand, active_, shift, found.at, work_, team_, report_)) return std::nullopt;
+    const Descent down = step_down(system_, demand, active_, shift, found.at, work_, team_);
+    report_.factorisations += down.factorisations;
+    report_.factorisations_in_double += down.factorisations_in_double;
+    if (!down.lower) return std::nullopt;
     if (prepare(demand, found.at) != 0) continue;
     Iterate there = found.at;
     const auto outcome = settle(demand, Newton::Policy::descend, there);

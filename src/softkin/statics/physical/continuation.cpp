@@ -59,6 +59,13 @@ Continuation::Continuation(const System& system, Workspace& work, Team& team, co
       report_(report),
       tracer_(options.trace, report) {}
 
+/// Moves to the end of a whole way where it is known without a tangent: foretold, foreseen or as the last ones led.
+bool Continuation::lead(const Demand& here, const Demand& there, Iterate& trial) {
+  return !system_.contact() && (follow_foretold(here, there, work_, trial) ||
+                                follow_foreseen(system_, here, there, active_, work_, team_, trial) ||
+                                work_.trail.lead(here, there, active_, tolerance_mm_, trial));
+}
+
 /// One step; trial begins at `at` and ends at the equilibrium.
 Newton::Outcome Continuation::step(const Demand& here, const Demand& there, double length, const Iterate& at,
                                    Iterate& trial) {
@@ -74,20 +81,18 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
   const bool whole = way_.done == 0 && length == 1;  // steps of a way are short where it is difficult
   bool led = false;
   const auto prediction = [&] {
-    led = whole && !led && !system_.contact() &&
-          (follow_foretold(here, there, work_, trial) ||
-           follow_foreseen(system_, here, there, active_, work_, team_, trial) ||
-           work_.trail.lead(here, there, active_, tolerance_mm_, trial));
+    led = whole && !led && lead(here, there, trial);
     if (led) {
       system_.placement().hold(there, trial.positions);
       predicted_ = begun_ = trial.positions;
       move_mm_ = system_.largest_move(at.positions, predicted_);
       return true;
     }
-    const auto move = predict_clear(system_, here, there, active_, work_, team_, trial, predicted_);
-    move_mm_ = move.value_or(system_.largest_move(at.positions, predicted_));
+    const ClearPrediction clear = predict_clear(system_, here, there, active_, work_, team_, trial);
+    predicted_ = clear.predicted;
+    move_mm_ = clear.move_mm.value_or(system_.largest_move(at.positions, predicted_));
     begun_ = trial.positions;
-    return move.has_value();
+    return clear.move_mm.has_value();
   };
   if (!prediction()) return Newton::Outcome::blocked;
   if (whole && !led && leads_too_far(here, there, at)) return Newton::Outcome::too_far;
@@ -177,15 +182,16 @@ double Continuation::whole(double done) const {
   return way_.then ? way_.before : way_.before + (1 - way_.before) * done;
 }
 
-/// Tries one step and takes it, or chooses a shorter one; a status where the way ends.
-std::optional<Status> Continuation::go_on(Iterate& at) {
+/// Where the next step ends. One that leaves hardly anything is as long as what is left.
+double Continuation::next_share() {
   const double turn = system_.placement().largest_turn(way_.from, way_.to);
   if (way_.advance * turn > most_turn) way_.advance = most_turn / turn;
-  // a step that leaves hardly anything is as long as what is left
   const double ahead = way_.done + way_.advance;
-  const double next = ahead + least_left * way_.advance < 1 ? ahead : 1, length = next - way_.done;
-  const Demand there = between(way_.from, way_.to, next);
-  Iterate trial = at;
+  return ahead + least_left * way_.advance < 1 ? ahead : 1;
+}
+
+/// Makes ready for a step; a status where the way ends without one.
+std::optional<Status> Continuation::start_step(const Demand& there, Iterate& at) {
   if (release(there, at, false)) way_.factorised = false;
   const int modes = way_.factorised ? last_.modes : prepare(way_.here, at);
   if (modes < 0) return limit(way_.done, "the stiffness at the start is not stable", at);
@@ -196,63 +202,82 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
     if (back == Climb::arrived) return arrive(way_.to, at);
     way_.factorised = prepare(way_.here, at) >= 0;
   }
+  return std::nullopt;
+}
+
+/// What a step of this length that ended so is worth.
+Continuation::StepEnd Continuation::judge(Newton::Outcome outcome, const Demand& there, double length,
+                                          const Iterate& at, const Iterate& trial) {
+  StepEnd end{.why = outcome == Newton::Outcome::stuck     ? newton_.why_stuck()
+                     : outcome == Newton::Outcome::blocked ? "something is in the way"
+                     : outcome == Newton::Outcome::too_far ? "it is far more than the load can be foretold for"
+                     : outcome == Newton::Outcome::unmet   ? "what actuators command contradicts each other"
+                                                           : ""};
+  end.blocked = outcome == Newton::Outcome::blocked || outcome == Newton::Outcome::too_far;
+  end.found = outcome != Newton::Outcome::stuck && !end.blocked;
+  const auto reject = [&](const char* because) {
+    end.found = false;
+    end.why = because;
+  };
+  if (end.found && way_.loads_change && snapped(move_mm_, system_.largest_move(begun_, trial.positions)) &&
+      jumped(way_.here, there, at, trial))
+    reject("the equilibrium lies beyond a jump");
+  end.snap = end.found && !way_.loads_change && jumped(way_.here, there, at, trial);
+  end.unstable = end.found && outcome == Newton::Outcome::unstable;
+  if (newton_.inverted() && !last_.inverted && length > most_inverting) reject("an element is inverted");
+  // a body that nothing holds has no stiffness, and so no step
+  if (end.found && system_.surroundings().any_body() && !newton_.balanced()) reject("a body is out of balance");
+  return end;
+}
+
+/// Tries one step and takes it, or chooses a shorter one; a status where the way ends.
+std::optional<Status> Continuation::go_on(Iterate& at) {
+  const double next = next_share(), length = next - way_.done;
+  const Demand there = between(way_.from, way_.to, next);
+  Iterate trial = at;
+  if (const std::optional<Status> end = start_step(there, at)) return end;
   const int before = report_.iterations;
   const std::vector<bool> active = active_;
   work_.left_field = false;
   tracer_.begin(whole(way_.done), whole(next), length);
-  auto outcome = step(way_.here, there, length, at, trial);
+  const auto outcome = step(way_.here, there, length, at, trial);
   if (outcome == Newton::Outcome::interrupted) return Status::interrupted;
-  std::string why = outcome == Newton::Outcome::stuck     ? newton_.why_stuck()
-                    : outcome == Newton::Outcome::blocked ? "something is in the way"
-                    : outcome == Newton::Outcome::too_far ? "it is far more than the load can be foretold for"
-                    : outcome == Newton::Outcome::unmet   ? "what actuators command contradicts each other"
-                                                          : "";
-  const auto reject = [&](const char* because) {
-    outcome = Newton::Outcome::stuck;
-    why = because;
-  };
-  const bool blocked = outcome == Newton::Outcome::blocked || outcome == Newton::Outcome::too_far;
-  if (outcome != Newton::Outcome::stuck && !blocked && way_.loads_change &&
-      snapped(move_mm_, system_.largest_move(begun_, trial.positions)) && jumped(way_.here, there, at, trial))
-    reject("the equilibrium lies beyond a jump");
-  if (blocked) outcome = Newton::Outcome::stuck;
-  const bool snap = outcome != Newton::Outcome::stuck && !way_.loads_change && jumped(way_.here, there, at, trial);
-  const bool unstable = outcome == Newton::Outcome::unstable;
-  if (newton_.inverted() && !last_.inverted && length > most_inverting) reject("an element is inverted");
-  // a body that nothing holds has no stiffness, and so no step
-  if (outcome != Newton::Outcome::stuck && system_.surroundings().any_body() && !newton_.balanced())
-    reject("a body is out of balance");
-
-  std::optional<Status> end;
-  const double longest = longest_step(snap, unstable);
-  const double corrected_mm = outcome == Newton::Outcome::stuck ? 0 : system_.largest_move(begun_, trial.positions);
+  const StepEnd came = judge(outcome, there, length, at, trial);
+  const double longest = longest_step(came.snap, came.unstable);
+  const double corrected_mm = came.found ? system_.largest_move(begun_, trial.positions) : 0;
   const auto trace = [&](bool taken, const std::string& told) { tracer_.end(taken, told, move_mm_, corrected_mm); };
-  if (outcome == Newton::Outcome::stuck) {
-    trace(false, why);
-    way_.factorised = blocked;
+  std::optional<Status> end;
+  if (!came.found) {
+    trace(false, came.why);
+    way_.factorised = came.blocked;
     active_ = active;
     end = shorten(length, at);
   } else if (length > 1.001 * longest) {
-    trace(false, snap ? "it jumps: shorter ones may not" : "it is unstable: a shorter one shows where it becomes so");
-    if (snap) way_.beyond = Beyond{std::move(trial), there, next, active_, judged(), jump_mm_};
+    trace(false,
+          came.snap ? "it jumps: shorter ones may not" : "it is unstable: a shorter one shows where it becomes so");
+    if (came.snap) way_.beyond = Beyond{std::move(trial), there, next, active_, judged(), jump_mm_};
     way_.factorised = false;
     active_ = active;
     way_.advance = std::max(longest, 0.4 * length);
   } else {
-    trace(true, snap ? "it jumps" : unstable ? "unstable" : why);
-    if (snap) tell_snap(jump_mm_, whole(way_.done));
+    trace(true, came.snap ? "it jumps" : came.unstable ? "unstable" : came.why);
+    if (came.snap) tell_snap(jump_mm_, whole(way_.done));
     take(at, std::move(trial));
-    if (!come_to(there, next, unstable, at)) return Status::interrupted;
-    const int used = (report_.iterations - before) / rounds_;  // those for new normal forces are as many each
-    way_.advance *= lengthened(used);
-    if (unstable) way_.advance = std::min(way_.advance, follow_below);
-    if (leads_beyond(at)) {
-      take_beyond(at);
-    } else if (way_.beyond && system_.contact()) {  // a step as long would end there again
-      way_.advance = std::min(way_.advance, std::max(finest, 0.5 * (way_.beyond->done - way_.done)));
-    }
+    if (!come_to(there, next, came.unstable, at)) return Status::interrupted;
+    lengthen(report_.iterations - before, came.unstable, at);
   }
   return end ? end : out_of_patience(at);
+}
+
+/// Chooses the next step after one that was taken, in so many iterations.
+void Continuation::lengthen(int iterations, bool unstable, Iterate& at) {
+  way_.advance *= lengthened(iterations / rounds_);  // those for new normal forces are as many each
+  if (unstable) way_.advance = std::min(way_.advance, follow_below);
+  if (leads_beyond(at)) {
+    take_beyond(at);
+  } else if (way_.beyond && system_.contact()) {  // a step as long would end there again
+    way_.advance = std::min(way_.advance, std::max(finest, 0.5 * (way_.beyond->done - way_.done)));
+  }
 }
 
 /// The next step over one that took so many iterations. Where things touch they hardly depend on its length, as
@@ -269,9 +294,10 @@ bool Continuation::leads_beyond(const Iterate& at) {
   const Demand& there = way_.beyond->demand;
   Iterate predicted = at;
   if (!way_.factorised && prepare(way_.here, at) < 0) return false;
-  const bool clear = predict_clear(system_, way_.here, there, active_, work_, team_, predicted, predicted_).has_value();
+  const ClearPrediction clear = predict_clear(system_, way_.here, there, active_, work_, team_, predicted);
+  predicted_ = clear.predicted;
   way_.factorised = false;
-  return clear && !jumped(way_.here, there, at, way_.beyond->at);
+  return clear.move_mm && !jumped(way_.here, there, at, way_.beyond->at);
 }
 
 void Continuation::take_beyond(Iterate& at) {

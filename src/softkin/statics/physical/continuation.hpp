@@ -36,6 +36,12 @@ class Continuation {
     bool balanced = true, inverted = false;
     int modes = 0;  // ways in which it is unstable
   };
+  /// What a step came to.
+  struct StepEnd {
+    std::string why{};                    // it ended
+    bool found = false, blocked = false;  // an equilibrium; the way there
+    bool snap = false, unstable = false;  // of what was found
+  };
   /// A shape that a push leads to.
   struct Pushed {
     Iterate at;
@@ -62,6 +68,16 @@ class Continuation {
     double gain = 0;      // of the load that was asked for, by the measure on its way
     double share = 1;     // of weights and forces
     double short_of = 0;  // measure that is left to the maximum, about
+  };
+  /// A way up along the measure of a load, with its maximum between the last points once they are on both sides of it.
+  struct Ascent {
+    double up = 1, way = 1;                    // signs of the changes of load and measure
+    double begin = 0, length = 0;              // measure where it began; next step of it
+    Measured low{};                            // the highest point before the maximum
+    std::optional<Measured> high{}, passed{};  // beyond the maximum; before low
+
+    [[nodiscard]] const Measured* beside() const { return high ? &*high : passed ? &*passed : nullptr; }
+    void take(Measured&& next);
   };
   enum class Climb { lost, arrived, summit, interrupted };
   /// What stopped a way along a measure: the load that was asked, the measure, or nothing that follows.
@@ -101,9 +117,11 @@ class Continuation {
   void bend(Index a, const Demand& here, const Demand& there, const Measured& from, const Measured& beside,
             Iterate& trial);
   bool leads_too_far(const Demand& here, const Demand& there, const Iterate& at);
+  [[nodiscard]] Ascent ascent_from(Index a, const Demand& here, const Demand& to, const Iterate& at);
   Climb climb(Index a, const Demand& from, const Demand& here, const Demand& to, Iterate& at);
   [[nodiscard]] static double left_to_summit(double way, const Measured* beside, const Measured& low,
                                              const Measured& next);
+  [[nodiscard]] static bool at_maximum(const Measured& point);
   double slope_at(Index a, const Demand& load, const Measured& point);
   Climb arrive_at(const Demand& to, const Measured& near, Iterate& at, Newton::Policy policy);
   Climb stop_at(Index a, double way, double begin, const Demand& from, const Demand& to, const Measured& summit,
@@ -130,7 +148,12 @@ class Continuation {
   [[nodiscard]] std::string instead_of_loads() const;
   void tell_balance();
   Status limit(double done, const std::string& why, const Iterate& at);
+  [[nodiscard]] double next_share();
+  std::optional<Status> start_step(const Demand& there, Iterate& at);
+  [[nodiscard]] StepEnd judge(Newton::Outcome outcome, const Demand& there, double length, const Iterate& at,
+                              const Iterate& trial);
   std::optional<Status> go_on(Iterate& at);
+  void lengthen(int iterations, bool unstable, Iterate& at);
   std::optional<Status> shorten(double length, Iterate& at);
   bool come_to(const Demand& there, double next, bool unstable, Iterate& at);
   void pass(const Demand& demand, double done);
@@ -141,6 +164,7 @@ class Continuation {
   [[nodiscard]] bool runs_into_flat(const Demand& there, const Iterate& at);
   [[nodiscard]] Demand pressed(Demand demand, double times) const;
   void give_loads(const Demand& demand, Iterate& at) const;
+  bool lead(const Demand& here, const Demand& there, Iterate& trial);
   Newton::Outcome step(const Demand& here, const Demand& there, double length, const Iterate& at, Iterate& trial);
   bool leads_beyond(const Iterate& at);
   void take_beyond(Iterate& at);

@@ -59,6 +59,13 @@ void Derivative::ask(const Iterate& at, Index column, const Points& force, Point
   moves_[static_cast<std::size_t>(column)] = std::move(moves);
 }
 
+/// How forces change with a command that no measure answers to, and how what it moves itself does.
+void Derivative::by_command(const Iterate& at, const Demand& demand, Index actuator, Points& force, Points& moves) {
+  system_.placement().velocity(actuator, demand, moves);
+  system_.command_force(at, demand, actuator, work_, force, team_);
+  if (!moves.isZero(0)) system_.add_pull(at, demand, balance_, moves, work_, force, team_);
+}
+
 /// The right-hand sides of the commands.
 void Derivative::ask(const Iterate& at, const Demand& demand) {
   by_commands_ = true;
@@ -69,7 +76,7 @@ void Derivative::ask(const Iterate& at, const Demand& demand) {
   Points force, moves;
   for (Index a = 0; a < system_.actuators(); ++a) {
     if (system_.measures().constrains(a)) continue;
-    system_.command_force(at, demand, balance_, a, work_, force, moves, team_);
+    by_command(at, demand, a, force, moves);
     ask(at, a, force, moves);
   }
 }
@@ -172,7 +179,7 @@ Points Derivative::ask_along(const Iterate& at, const Demand& demand, Index colu
       system_.surroundings().add_force(a, change[a], sum);  // of hundreds where a force may act anywhere
       continue;
     }
-    system_.command_force(at, demand, balance_, a, work_, force, moves, team_);
+    by_command(at, demand, a, force, moves);
     sum += change[a] * force;
     if (!moves.isZero(0)) way += change[a] * moves;
   }
@@ -220,45 +227,35 @@ std::vector<Points> Derivative::under(const Iterate& at, const Demand& demand, c
   return found;
 }
 
-namespace {
-
-/// What a robot's equations find in a shape, and where it has what is held.
-struct Found {
-  Points gradient, held;
-  Eigen::VectorXd constraint, multipliers;
-};
-
-Found found_by(const System& system, const Iterate& at, const Demand& demand, const std::vector<bool>& active,
-               const Eigen::VectorXd& slips, const std::shared_ptr<const ViscousHistory>& history, double elapsed_s,
-               Team& team) {
-  Workspace work(system);
-  Iterate own = at;  // what acts of a command may be one of the numbers
-  for (Index a = 0; a < system.actuators(); ++a)
-    if (system.measures().measures(a) && system.measures().given_load(a))
-      own.multipliers[a] = system.measures().given(a, demand.actuation[a]);
-  system.set_time(history, elapsed_s, work, team);
-  own.eyelets = system.tendons().lengths(own.positions, slips);  // what slips goes on
-  hold_friction(system, own, work, team);
-  Balance balance;
-  system.evaluate(own, demand, active, work, balance, team);
-  Found found{std::move(work.gradient), at.positions, std::move(balance.constraint), std::move(own.multipliers)};
-  system.placement().hold(demand, found.held);
-  return found;
-}
-
-}  // namespace
-
 Perturbation::Perturbation(const Perturbed& perturbed, const System& like)
     : more(std::make_unique<const System>(perturbed.more, like)),
       less(std::make_unique<const System>(perturbed.less, like)),
       difference(perturbed.difference) {}
 
+/// system: of this robot with another number
+Derivative::Found Derivative::found_by(const System& system, const Iterate& at, const Demand& demand,
+                                       const std::shared_ptr<const ViscousHistory>& history, double elapsed_s) const {
+  Workspace work(system);
+  Iterate own = at;  // what acts of a command may be one of the numbers
+  for (Index a = 0; a < system.actuators(); ++a)
+    if (system.measures().measures(a) && system.measures().given_load(a))
+      own.multipliers[a] = system.measures().given(a, demand.actuation[a]);
+  system.set_time(history, elapsed_s, work, team_);
+  own.eyelets = system.tendons().lengths(own.positions, balance_.slips);  // what slips goes on
+  hold_friction(system, own, work, team_);
+  Balance balance;
+  system.evaluate(own, demand, active_, work, balance, team_);
+  Found found{std::move(work.gradient), at.positions, std::move(balance.constraint), std::move(own.multipliers)};
+  system.placement().hold(demand, found.held);
+  return found;
+}
+
 /// The right-hand side of a number.
 Derivative::Direct Derivative::ask_number(const Iterate& at, const Demand& demand, Index column,
                                           const Perturbation& number,
                                           const std::shared_ptr<const ViscousHistory>& history, double elapsed_s) {
-  Found more = found_by(*number.more, at, demand, active_, balance_.slips, history, elapsed_s, team_);
-  const Found less = found_by(*number.less, at, demand, active_, balance_.slips, history, elapsed_s, team_);
+  Found more = found_by(*number.more, at, demand, history, elapsed_s);
+  const Found less = found_by(*number.less, at, demand, history, elapsed_s);
   const Direct direct{(more.gradient - less.gradient) / number.difference,
                       (more.multipliers - less.multipliers) / number.difference};
   Points moves = (more.held - less.held) / number.difference, force = direct.force;

@@ -49,7 +49,16 @@ class Derivative {
     Eigen::VectorXd loads;  // those that are given, in internal units
   };
 
+  /// What a robot's equations find in a shape, and where it has what is held.
+  struct Found {
+    Points gradient, held;
+    Eigen::VectorXd constraint, multipliers;
+  };
+
   void hold(const Iterate& at, const Demand& demand);
+  void by_command(const Iterate& at, const Demand& demand, Index actuator, Points& force, Points& moves);
+  [[nodiscard]] Found found_by(const System& system, const Iterate& at, const Demand& demand,
+                               const std::shared_ptr<const ViscousHistory>& history, double elapsed_s) const;
   void make_room(Index columns);
   void ask(const Iterate& at, const Demand& demand);
   void ask(const Iterate& at, Index column, const Points& force, Points moves);

@@ -180,6 +180,49 @@ Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, co
   return found;
 }
 
+/// The start as it is held, with the multipliers of what it is an equilibrium of.
+Iterate Equilibria::iterate_at(const State& start, const Demand& from) const {
+  Iterate at{start.positions, Eigen::VectorXd::Zero(system_.actuators()), start.anchors, start.eyelets};
+  system_.placement().hold(from, at.positions);
+  if (at.eyelets.empty()) at.eyelets = system_.tendons().lengths(at.positions);
+  if (start.multipliers.size() > 0)
+    for (Index a = 0; a < system_.actuators(); ++a)
+      at.multipliers[a] = system_.measures().measures(a) && system_.measures().given_load(a)
+                              ? system_.measures().given(a, from.actuation[a])  // of this robot's factor
+                              : system_.measures().unit(a) * start.multipliers[a];
+  else if (start.positions != system_.model().rest)
+    fill_chambers(system_.measures(), from, at);
+  return at;
+}
+
+/// Sets the time, and says what the start is an equilibrium of then: what is viscous has crept since.
+Demand Equilibria::demand_now(const State& start, const Demand& from, const Iterate& at, const Options& options,
+                              Workspace& work, Team& team) const {
+  system_.set_time(options.history, options.elapsed_s, work, team);
+  const bool rests = start.positions == system_.model().rest && start.actuation.size() == 0;
+  const bool same_time =
+      rests ? !options.history : start.history == options.history && start.elapsed_s == options.elapsed_s;
+  if (!system_.viscous() || same_time || !(rests || start.knows(system_.actuators()))) return from;
+  hold_friction(system_, at, work, team);
+  return system_.unbalanced(at, from, work, team);
+}
+
+State Equilibria::state_at(Iterate&& at, const Demand& demand, const Options& options) const {
+  State state;
+  state.positions = std::move(at.positions);
+  state.anchors = std::move(at.anchors);
+  state.eyelets = std::move(at.eyelets);
+  state.actuation = demand.actuation;
+  state.share = demand.share;
+  state.multipliers = at.multipliers;
+  for (Index a = 0; a < system_.actuators(); ++a) state.multipliers[a] /= system_.measures().unit(a);
+  if (system_.viscous()) {
+    state.history = options.history;
+    state.elapsed_s = options.elapsed_s;
+  }
+  return state;
+}
+
 Equilibrium Equilibria::solve_inside(const Actuation& actuation, const State& start, const Options& options,
                                      const ProgressCallback& progress, Team& team) const {
   const Model& model = system_.model();
@@ -194,24 +237,8 @@ Equilibrium Equilibria::solve_inside(const Actuation& actuation, const State& st
 
   Demand from = demand_of(system_, model, start, actuation);
   const Demand to{actuation, 1};
-  Iterate at{start.positions, Eigen::VectorXd::Zero(system_.actuators()), start.anchors, start.eyelets};
-  system_.placement().hold(from, at.positions);
-  if (at.eyelets.empty()) at.eyelets = system_.tendons().lengths(at.positions);
-  if (start.multipliers.size() > 0)
-    for (Index a = 0; a < system_.actuators(); ++a)
-      at.multipliers[a] = system_.measures().measures(a) && system_.measures().given_load(a)
-                              ? system_.measures().given(a, from.actuation[a])  // of this robot's factor
-                              : system_.measures().unit(a) * start.multipliers[a];
-  else if (start.positions != model.rest)
-    fill_chambers(system_.measures(), from, at);
-  system_.set_time(options.history, options.elapsed_s, lease.work(), team);
-  const bool rests = start.positions == model.rest && start.actuation.size() == 0;
-  const bool same_time =
-      rests ? !options.history : start.history == options.history && start.elapsed_s == options.elapsed_s;
-  if (system_.viscous() && !same_time && (rests || start.knows(system_.actuators()))) {
-    hold_friction(system_, at, lease.work(), team);
-    from = system_.unbalanced(at, from, lease.work(), team);
-  }
+  Iterate at = iterate_at(start, from);
+  from = demand_now(start, from, at, options, lease.work(), team);
   // a start whose supports are elsewhere may have no way there
   const bool clear = !system_.contact() || largest_move(start.positions, at.positions) == 0 ||
                      comes_to(start.positions, at.positions, lease.work(), team);
@@ -229,27 +256,15 @@ Equilibrium Equilibria::solve_inside(const Actuation& actuation, const State& st
     begin_again(to, options, progress, team, lease.work(), at, report);
   if (report.status == Status::converged) lease.work().home = at.positions;
   report.estimated_error_mm = report.step_mm;
-  result.state.positions = std::move(at.positions);
-  result.state.anchors = std::move(at.anchors);
-  result.state.eyelets = std::move(at.eyelets);
-  result.state.actuation = actuation;
-  if (report.status != Status::converged && report.reached < 1) {
-    result.state.actuation = clear ? continuation.here().actuation : from.actuation;
-    result.state.share = clear ? continuation.here().share : from.share;
-  }
-  if (system_.viscous()) {
-    result.state.history = options.history;
-    result.state.elapsed_s = options.elapsed_s;
-  }
   const bool unknown = (start.actuation.size() == 0 && start.positions != model.rest && report.reached == 0) ||
                        (from.fading > 0 && report.reached < 1);
+  const bool arrived = report.status == Status::converged || report.reached >= 1;
+  result.state = state_at(std::move(at), arrived ? to : clear ? continuation.here() : from, options);
   if (report.status != Status::converged && unknown) {  // of nothing known
     result.state.actuation.resize(0);
+    result.state.multipliers.resize(0);
     result.state.share = -1;
-    return result;
   }
-  result.state.multipliers = at.multipliers;
-  for (Index a = 0; a < system_.actuators(); ++a) result.state.multipliers[a] /= system_.measures().unit(a);
   return result;
 }
 

@@ -87,6 +87,10 @@ class Equilibria {
   bool comes_to(const Points& from, const Points& to, Workspace& work, Team& team) const;
   [[nodiscard]] Equilibrium solve_inside(const Actuation& actuation, const State& start, const Options& options,
                                          const ProgressCallback& progress, Team& team) const;
+  [[nodiscard]] Iterate iterate_at(const State& start, const Demand& from) const;
+  [[nodiscard]] Demand demand_now(const State& start, const Demand& from, const Iterate& at, const Options& options,
+                                  Workspace& work, Team& team) const;
+  [[nodiscard]] State state_at(Iterate&& at, const Demand& demand, const Options& options) const;
   void find_pressures(State& at, Team& team) const;
   void drop_vertices(Points& points) const;
   void begin_again(const Demand& to, const Options& options, const ProgressCallback& progress, Team& team,

@@ -89,14 +89,14 @@ double predict(const System& system, const Demand& here, const Demand& there, co
   return system.largest_move(before, at.positions);
 }
 
-std::optional<double> predict_clear(const System& system, const Demand& here, const Demand& there,
-                                    const std::vector<bool>& active, Workspace& work, Team& team, Iterate& at,
-                                    Points& predicted) {
+ClearPrediction predict_clear(const System& system, const Demand& here, const Demand& there,
+                              const std::vector<bool>& active, Workspace& work, Team& team, Iterate& at) {
   constexpr double shorter = 0.9;                    // than what is clear
   constexpr double most_cut = 0.5, long_way = 0.05;  // of the way, of the diagonal
   constexpr double least = 1e-3;
   const Tangent tangent(system, here, there, active, work, team, at);
   const Points from = at.positions;
+  ClearPrediction clear;
   // what is held comes to its place whatever is left of the way
   double held = 1;
   const Way way = [&](double share, Points& out) {
@@ -108,22 +108,23 @@ std::optional<double> predict_clear(const System& system, const Demand& here, co
   for (bool first = true;; first = false) {
     held = end;
     const double share = clear_share(system, from, way, end, work, at.positions, team);
-    if (first) predicted = at.positions;
+    if (first) clear.predicted = at.positions;
     if (share >= end) break;
     end = shorter * share;
-    if (end < most_cut && system.largest_move(from, predicted) > long_way * system.model().diagonal_mm)
-      return std::nullopt;
+    if (end < most_cut && system.largest_move(from, clear.predicted) > long_way * system.model().diagonal_mm)
+      return clear;
     if (end >= least) continue;
     end = 0;  // only what is held moves
     const Way alone = [&](double part, Points& out) {
       out = from;
       system.placement().hold(between(here, there, part), out);
     };
-    if (clear_share(system, from, alone, 1, work, at.positions, team) < 1) return std::nullopt;
+    if (clear_share(system, from, alone, 1, work, at.positions, team) < 1) return clear;
     break;
   }
   follow(tangent, end, system, there, active, at.multipliers);
-  return system.largest_move(from, at.positions);
+  clear.move_mm = system.largest_move(from, at.positions);
+  return clear;
 }
 
 bool foresee(const System& system, const Demand& here, const Demand& there, Workspace& work, Team& team,
@@ -213,9 +214,8 @@ Predictor::Predictor(const System& system, Workspace& work, const State& at, Tea
 
 State Predictor::predict(const Actuation& actuation, Team& team) {
   Iterate there = iterate_;
-  Points predicted;
-  if (!predict_clear(system_, {at_.actuation, at_.share}, {actuation, 1}, active_, work_, team, there, predicted))
-    return at_;
+  const Demand here{at_.actuation, at_.share}, asked{actuation, 1};
+  if (!predict_clear(system_, here, asked, active_, work_, team, there).move_mm) return at_;
   if (!there.positions.allFinite() || !there.multipliers.allFinite()) return at_;
   State state{std::move(there.positions),
               actuation,

@@ -11,14 +11,14 @@ namespace softkin::physical {
 double predict(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
                Workspace& work, Team& team, Iterate& at);
 
+struct ClearPrediction {
+  Points predicted;               // as predict() gives it
+  std::optional<double> move_mm;  // the largest of a vertex, as far as it is clear; none where a shorter way is better:
+                                  // supports are in each other's way, or little of a long one is left
+};
 /// The same, less far where otherwise something would pass through something.
-///
-/// predicted  becomes what predict() gives
-/// returns    the largest move of a vertex [mm]; none where a shorter way is better: supports are in each other's way,
-///            or little of a long one is left
-std::optional<double> predict_clear(const System& system, const Demand& here, const Demand& there,
-                                    const std::vector<bool>& active, Workspace& work, Team& team, Iterate& at,
-                                    Points& predicted);
+ClearPrediction predict_clear(const System& system, const Demand& here, const Demand& there,
+                              const std::vector<bool>& active, Workspace& work, Team& team, Iterate& at);
 
 /// The equilibrium under other commands by second order, from the derivative that was asked for at the shape: what the
 /// tangent leaves out of balance there, through the factor at hand. The workspace keeps it.

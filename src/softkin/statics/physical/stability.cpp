@@ -125,15 +125,16 @@ double lagrangian(const System& system, const Demand& demand, const Balance& bal
 
 }  // namespace
 
-bool step_down(const System& system, const Demand& demand, const std::vector<bool>& active, double& shift, Iterate& at,
-               Workspace& work, Team& team, SolveReport& report) {
+Descent step_down(const System& system, const Demand& demand, const std::vector<bool>& active, double& shift,
+                  Iterate& at, Workspace& work, Team& team) {
+  Descent down;
   Balance balance, there;
   Eigen::VectorXd step, change;
   for (; shift < most_shift; shift *= 4) {
     system.evaluate(at, demand, active, work, balance, team);
-    ++report.factorisations;
+    ++down.factorisations;
     const int modes = system.factorise(at, demand, active, balance, {System::Stiffness::exact, shift}, work, team);
-    report.factorisations_in_double += work.saddle.factor().in_double();
+    down.factorisations_in_double += work.saddle.factor().in_double();
     if (modes > 0) continue;
     work.saddle.step(balance, step, change, team);
     if (!step.allFinite() || !change.allFinite()) continue;
@@ -148,9 +149,10 @@ bool step_down(const System& system, const Demand& demand, const std::vector<boo
       continue;
     at = std::move(trial);
     shift = std::max(least_shift, shift / 4);
-    return true;
+    down.lower = true;
+    break;
   }
-  return false;
+  return down;
 }
 
 double potential(const System& system, const Iterate& at, const Demand& demand, const std::vector<bool>& active,

@@ -28,14 +28,18 @@ struct LowestMode {
 [[nodiscard]] LowestMode lowest_mode(const System& system, const Iterate& at, const Demand& demand,
                                      const std::vector<bool>& active, Workspace& work, Team& team, SolveReport& report);
 
+/// Is there a shape of less energy, and how often the stiffness was factorised to tell.
+struct Descent {
+  bool lower = false;
+  int factorisations = 0, factorisations_in_double = 0;
+};
 /// A step with K + shift mean(diag K) 1 to a shape of less energy, measured with the multipliers at its begin. shift, a
-/// share, grows until the stiffness is positive and the energy falls, and shrinks for the next step. False: there is
-/// none.
+/// share, grows until the stiffness is positive and the energy falls, and shrinks for the next step.
 /// The workspace is left with another factorisation.
 ///
 /// source  Levenberg and Marquardt; active measures are closed to first order, as by Newton's method
-[[nodiscard]] bool step_down(const System& system, const Demand& demand, const std::vector<bool>& active, double& shift,
-                             Iterate& at, Workspace& work, Team& team, SolveReport& report);
+[[nodiscard]] Descent step_down(const System& system, const Demand& demand, const std::vector<bool>& active,
+                                double& shift, Iterate& at, Workspace& work, Team& team);
 
 /// Elastic energy less the work of dead loads and of the pressures and tensions that are given [mJ]: what a stable
 /// equilibrium has least of among the shapes around it.

@@ -69,7 +69,9 @@ std::optional<Continuation::Measured> Continuation::at_measure(Index a, double m
   if (prepared || prepare(here, from.at) >= 0) {
     Iterate trial = from.at;
     tracer_.begin(from.measure, measure, std::abs(measure - from.measure), system_.model().actuators[a].name);
-    const bool clear = predict_clear(system_, here, there, active_, work_, team_, trial, predicted_).has_value();
+    const ClearPrediction prediction = predict_clear(system_, here, there, active_, work_, team_, trial);
+    const bool clear = prediction.move_mm.has_value();
+    predicted_ = prediction.predicted;
     if (clear && beside && beside->share == there.share) bend(a, here, there, from, *beside, trial);
     const Points begun = trial.positions;
     const auto outcome = clear ? settle(there, Newton::Policy::descend, trial) : Newton::Outcome::stuck;
@@ -147,41 +149,64 @@ double Continuation::slope_at(Index a, const Demand& load, const Measured& point
   return slope;
 }
 
+bool Continuation::at_maximum(const Measured& point) {
+  return std::abs(point.gain) * point.measure < flat * std::abs(point.load);
+}
+
+/// An ascent where it begins.
+Continuation::Ascent Continuation::ascent_from(Index a, const Demand& here, const Demand& to, const Iterate& at) {
+  Ascent ascent;
+  ascent.up = to.actuation[a] > here.actuation[a] ? 1 : -1;  // a chamber grows with its pressure, a cable
+  ascent.way = -ascent.up * system_.measures().sign(a);      // shortens with its tension
+  ascent.begin = system_.measures().value(a, at.positions) / system_.measures().rest(a);
+  ascent.length = first_step * ascent.begin;
+  ascent.low = {ascent.begin, here.actuation[a], at, last_, 0, here.share};
+  ascent.low.at.multipliers[a] = system_.measures().given(a, ascent.low.load);
+  ascent.low.gain = ascent.up * ascent.way * slope_at(a, here, ascent.low);
+  return ascent;
+}
+
+/// Goes on from a point that is not yet at the maximum, or before it from one beyond it; chooses the next step.
+void Continuation::Ascent::take(Measured&& next) {
+  const double went = way * (next.measure - low.measure), left = next.short_of;
+  if (next.gain < 0) {
+    high = std::move(next);
+    length = std::clamp(went + left, margin * went, (1 - margin) * went);
+    return;
+  }
+  const bool by_three = beside() != nullptr;
+  passed = std::move(low);
+  low = std::move(next);
+  length = std::min({growth * went, most_growth * low.measure, by_three ? left : ahead * left});
+  if (high) length = std::min(length, (1 - margin) * way * (high->measure - low.measure));
+}
+
 /// Riks' idea with the load's own measure as the parameter: a maximum of the load is no end of the way along the volume
 /// or the length. Where the load's slope by the measure is zero it is at its maximum.
 Continuation::Climb Continuation::climb(Index a, const Demand& from, const Demand& here, const Demand& to,
                                         Iterate& at) {
-  const double up = to.actuation[a] > here.actuation[a] ? 1 : -1;  // a chamber grows with its pressure, a cable
-  const double way = -up * system_.measures().sign(a);             // shortens with its tension
-  const double begin = system_.measures().value(a, at.positions) / system_.measures().rest(a);
-  Measured low{begin, here.actuation[a], at, last_, 0, here.share};
-  low.at.multipliers[a] = system_.measures().given(a, low.load);
-  const auto gain = [&](const Measured& point) { return up * way * slope_at(a, here, point); };
-  const auto at_maximum = [&](const Measured& point) {
-    return std::abs(point.gain) * point.measure < flat * std::abs(point.load);
-  };
-  low.gain = gain(low);
+  Ascent ascent = ascent_from(a, here, to, at);
+  const double up = ascent.up, way = ascent.way, begin = ascent.begin;
+  const Measured& low = ascent.low;
   if (!std::isfinite(low.gain)) return Climb::lost;
   report_.branch = {};
   note_branch(a, low);
   const bool may_stand_there = at_maximum(low);
   if (low.gain < 0 && !may_stand_there) return Climb::lost;
-  std::optional<Measured> high, passed;
-  double length = first_step * begin;
-  if (!may_stand_there) length = std::clamp(up * (to.actuation[a] - low.load) / low.gain, length, first_growth * begin);
+  if (!may_stand_there)
+    ascent.length = std::clamp(up * (to.actuation[a] - low.load) / low.gain, ascent.length, first_growth * begin);
   bool prepared = true;
   int missed = 0;
-  for (int i = 0; i < most_steps && length > shortest_step * begin; ++i) {
+  for (int i = 0; i < most_steps && ascent.length > shortest_step * begin; ++i) {
     if (report_.iterations >= max_iterations_) return Climb::lost;
-    const Measured* beside = high ? &*high : passed ? &*passed : nullptr;
-    std::optional<Measured> next = at_measure(a, low.measure + way * length, to, low, prepared, beside);
+    std::optional<Measured> next = at_measure(a, low.measure + way * ascent.length, to, low, prepared, ascent.beside());
     if (interrupted_) {
       keep(a, from, to, low, at);
       return Climb::interrupted;
     }
     prepared = false;
     if (!next) {
-      length *= 0.4;
+      ascent.length *= 0.4;
       if (++missed > most_missed) break;
       continue;
     }
@@ -191,26 +216,15 @@ Continuation::Climb Continuation::climb(Index a, const Demand& from, const Deman
       if (end == Climb::interrupted) keep(a, from, to, low, at);
       return end;
     }
-    next->gain = gain(*next);
+    next->gain = up * way * slope_at(a, here, *next);
     if (!std::isfinite(next->gain)) return Climb::lost;
     if (may_stand_there && i == 0 && next->gain < 0) return stop_at(a, way, begin, from, to, low, at);
-    const double went = way * (next->measure - low.measure);
-    const double left = left_to_summit(way, beside, low, *next);
-    const double summit = went + left;  // from low on
-    next->short_of = left;
+    next->short_of = left_to_summit(way, ascent.beside(), low, *next);
     if (at_maximum(*next) && !(may_stand_there && next->gain > low.gain))
       return stop_at(a, way, begin, from, to, *next, at);
-    if (next->gain < 0) {
-      high = std::move(next);
-      length = std::clamp(summit, margin * went, (1 - margin) * went);
-      continue;
-    }
-    passed = std::move(low);
-    low = std::move(*next);
-    report_.reached = whole(share_of(a, from, to, low.load));
-    prepared = true;
-    length = std::min({growth * went, most_growth * low.measure, beside ? left : ahead * left});
-    if (high) length = std::min(length, (1 - margin) * way * (high->measure - low.measure));
+    prepared = next->gain >= 0;
+    ascent.take(std::move(*next));
+    if (prepared) report_.reached = whole(share_of(a, from, to, low.load));
   }
   if (low.measure != begin) keep(a, from, to, low, at);  // and loads go on from there
   return Climb::lost;

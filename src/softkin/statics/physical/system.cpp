@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <initializer_list>
 #include <limits>
 #include <softkin/core/error.hpp>
 #include <softkin/statics/physical/contact_at_rest.hpp>
@@ -33,26 +34,15 @@ System::System(const Model& given, std::unique_ptr<const Pressures> pressures, c
   body_.add_cliques(cliques_);
   actuator_loads_.add_cliques(cliques_);
   surroundings_.add_cliques(cliques_);
-  if (Tractions::act(model)) {
-    tractions_ = std::make_unique<Tractions>(model);
-    tractions_->add_cliques(cliques_);
-  }
-  if (Hydrostatics::acts(model)) {
-    hydrostatics_ = std::make_unique<Hydrostatics>(model);
-    hydrostatics_->add_cliques(cliques_);
-  }
-  if (!model.moments.empty()) {
-    moments_ = std::make_unique<Moments>(model);
-    moments_->add_cliques(cliques_);
-  }
-  if (!model.fibres.empty()) {
-    fibres_ = std::make_unique<Fibres>(model);
-    fibres_->add_cliques(cliques_);
-  }
-  if (!model.layers.empty()) {
-    layers_ = std::make_unique<Layers>(model);
-    layers_->add_cliques(cliques_);
-  }
+  const auto make = [&]<class Part>(std::unique_ptr<Part>& part) {
+    part = std::make_unique<Part>(model);
+    part->add_cliques(cliques_);
+  };
+  if (Tractions::act(model)) make(tractions_);
+  if (Hydrostatics::acts(model)) make(hydrostatics_);
+  if (!model.moments.empty()) make(moments_);
+  if (!model.fibres.empty()) make(fibres_);
+  if (!model.layers.empty()) make(layers_);
   if (FibreFamilies::any(model)) {
     families_ = std::make_unique<const FibreFamilies>(model, body_.element_slots());
     body_.add_stress_of(*families_);
@@ -68,14 +58,10 @@ System::System(const Model& given, std::unique_ptr<const Pressures> pressures, c
     cliques_ = {};
   placement_ = std::make_unique<const Placement>(model, body_, *freedoms_, like ? like->placement_.get() : nullptr);
   terms_ = {&body_, &dead_loads_, &fading_loads_, &surroundings_};
-  if (tractions_) terms_.push_back(tractions_.get());
-  if (hydrostatics_) terms_.push_back(hydrostatics_.get());
-  if (moments_) terms_.push_back(moments_.get());
-  if (fibres_) terms_.push_back(fibres_.get());
-  if (layers_) terms_.push_back(layers_.get());
-  if (families_) terms_.push_back(families_.get());
-  if (magnets_) terms_.push_back(magnets_.get());
-  if (contacts_) terms_.push_back(contacts_.get());
+  for (const Term* term :
+       std::initializer_list<const Term*>{tractions_.get(), hydrostatics_.get(), moments_.get(), fibres_.get(),
+                                          layers_.get(), families_.get(), magnets_.get(), contacts_.get()})
+    if (term != nullptr) terms_.push_back(term);
 }
 
 void System::make_layout() {
@@ -315,14 +301,12 @@ void System::multiply(const Iterate& at, const Eigen::MatrixXd& vectors, Workspa
   }
 }
 
-void System::command_force(const Iterate& at, const Demand& demand, const Balance& balance, Index actuator,
-                           Workspace& work, Points& force, Points& moves, Team& team) const {
-  placement_->velocity(actuator, demand, moves);
+void System::command_force(const Iterate& at, const Demand& demand, Index actuator, Workspace& work, Points& force,
+                           Team& team) const {
   actuator_loads_.derivative(actuator, at, force);
   each_term(work, [&](const Term& term, Term::Scratch& scratch) {
     term.add_derivative(actuator, demand, at.positions, scratch, force, team);
   });
-  if (!moves.isZero(0)) add_pull(at, demand, balance, moves, work, force, team);
 }
 
 void System::add_pull(const Iterate& at, const Demand& demand, const Balance& balance, const Points& moves,

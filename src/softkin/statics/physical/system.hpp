@@ -83,10 +83,10 @@ class System {
   void multiply(const Iterate& at, const Eigen::MatrixXd& vectors, Workspace& work, Eigen::MatrixXd& product,
                 Team& team) const;
 
-  /// Derivative of the gradient of the Lagrangian by a command that no measure answers to, at fixed positions of all
-  /// that is free, #V by 3 [N per unit of command]. moves: of what is commanded to move, per unit
-  void command_force(const Iterate& at, const Demand& demand, const Balance& balance, Index actuator, Workspace& work,
-                     Points& force, Points& moves, Team& team) const;
+  /// Derivative of the gradient of the Lagrangian by a command that no measure answers to, at fixed positions, #V by 3
+  /// [N per unit of command].
+  void command_force(const Iterate& at, const Demand& demand, Index actuator, Workspace& work, Points& force,
+                     Team& team) const;
 
   /// Adds what moves of vertices that are no unknowns pull with, at the balance's iterate [N].
   void add_pull(const Iterate& at, const Demand& demand, const Balance& balance, const Points& moves, Workspace& work,

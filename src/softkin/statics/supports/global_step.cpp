@@ -112,9 +112,40 @@ GlobalStep::Handles GlobalStep::handles_of(const std::vector<Pose>& poses) const
   return handles;
 }
 
+/// J of one coordinate of the handles: dH = J (slide, turn) to first order, center moves by the slide, column k of R by
+/// turn x R_k.
+Eigen::MatrixXd GlobalStep::tangent_of(const std::vector<Pose>& poses, int axis) const {
+  const auto count = static_cast<Index>(poses.size());
+  Eigen::MatrixXd tangent = Eigen::MatrixXd::Zero(4 * count, 6 * count);
+  for (std::size_t r = 0; r < poses.size(); ++r) {
+    const Index row = 4 * static_cast<Index>(r), column = 6 * static_cast<Index>(r);
+    if (regions_[r].slides[axis]) tangent(row, column + axis) = 1;
+    for (int k = 0; k < 3; ++k)
+      for (int about = 0; about < 3; ++about)
+        if (regions_[r].turns[about])
+          tangent(row + 1 + k, column + 3 + about) = Vec3::Unit(about).cross(poses[r].rotation.col(k))[axis];
+  }
+  return tangent;
+}
+
+/// Slides and turns that minimise the quadratic to first order of the poses.
+Eigen::VectorXd GlobalStep::gauss_newton_move(const Handles& slope, const std::vector<Pose>& poses) const {
+  const Index unknowns = 6 * static_cast<Index>(poses.size());
+  Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(unknowns, unknowns);
+  Eigen::VectorXd right = Eigen::VectorXd::Zero(unknowns);
+  for (const Group& group : groups_)
+    for (const int axis : group.axes) {
+      const Eigen::MatrixXd tangent = tangent_of(poses, axis);
+      normal += tangent.transpose() * group.schur * tangent;
+      right += tangent.transpose() * slope.col(axis);
+    }
+  for (Index i = 0; i < unknowns; ++i)
+    if (normal(i, i) == 0) normal(i, i) = 1;  // held: its row, column and right side are zero
+  return solve_symmetric(normal, right);
+}
+
 /// Minimises sum_axis (dH' S dH - 2 dH' asked) over the poses, dH = H - H at the start.
 void GlobalStep::move_poses(const Handles& asked, std::vector<Pose>& poses) const {
-  const Index unknowns = 6 * static_cast<Index>(poses.size());
   const Handles start = handles_of(poses);
   const auto slope_at = [&](const Handles& handles, double& value) {
     const Handles moved = handles - start;
@@ -128,26 +159,7 @@ void GlobalStep::move_poses(const Handles& asked, std::vector<Pose>& poses) cons
   Handles slope = slope_at(start, value);
   constexpr int max_rounds = 20;
   for (int round = 0; round < max_rounds; ++round) {
-    // dH = J (slide, turn) to first order: center moves by the slide, column k of R by turn x R_k
-    Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(unknowns, unknowns);
-    Eigen::VectorXd right = Eigen::VectorXd::Zero(unknowns);
-    for (const Group& group : groups_)
-      for (const int axis : group.axes) {
-        Eigen::MatrixXd tangent = Eigen::MatrixXd::Zero(asked.rows(), unknowns);
-        for (std::size_t r = 0; r < poses.size(); ++r) {
-          const Index row = 4 * static_cast<Index>(r), column = 6 * static_cast<Index>(r);
-          if (regions_[r].slides[axis]) tangent(row, column + axis) = 1;
-          for (int k = 0; k < 3; ++k)
-            for (int about = 0; about < 3; ++about)
-              if (regions_[r].turns[about])
-                tangent(row + 1 + k, column + 3 + about) = Vec3::Unit(about).cross(poses[r].rotation.col(k))[axis];
-        }
-        normal += tangent.transpose() * group.schur * tangent;
-        right += tangent.transpose() * slope.col(axis);
-      }
-    for (Index i = 0; i < unknowns; ++i)
-      if (normal(i, i) == 0) normal(i, i) = 1;  // held: its row, column and right side are zero
-    const Eigen::VectorXd move = solve_symmetric(normal, right);
+    const Eigen::VectorXd move = gauss_newton_move(slope, poses);
     bool better = false;
     double scale = 1;
     for (; scale > 1e-3 && !better; scale /= 2) {

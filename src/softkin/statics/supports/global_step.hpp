@@ -56,6 +56,8 @@ class GlobalStep {
   void place(const RigidBody& region, const Pose& pose, Points& positions) const;
   [[nodiscard]] Handles handles_of(const Points& residual) const;
   [[nodiscard]] Handles handles_of(const std::vector<Pose>& poses) const;
+  [[nodiscard]] Eigen::MatrixXd tangent_of(const std::vector<Pose>& poses, int axis) const;
+  [[nodiscard]] Eigen::VectorXd gauss_newton_move(const Handles& slope, const std::vector<Pose>& poses) const;
   void move_poses(const Handles& asked, std::vector<Pose>& poses) const;
 
   std::vector<Group> groups_;

@@ -112,6 +112,14 @@ void ReducedMatrix::to_unknowns(const Eigen::MatrixXd& columns, Eigen::Ref<Eigen
 void ReducedMatrix::reduce(const linear::BlockPattern& pattern, const LargeVector<double>& slots,
                            const Points& gradient, const Points& positions, LargeVector<double>& values,
                            Team& team) const {
+  reduce_vertices(slots, values, team);
+  if (freedoms_->regions_.empty()) return;
+  add_regions(pattern, slots, positions, values);
+  add_turning(gradient, positions, values);
+}
+
+/// All blocks but those of a region, which become zero.
+void ReducedMatrix::reduce_vertices(const LargeVector<double>& slots, LargeVector<double>& values, Team& team) const {
   const Freedoms& f = *freedoms_;
   values.resize(static_cast<std::size_t>(columns_.offsets.back()));
   const auto sources = static_cast<std::int64_t>(sources_.size());
@@ -138,7 +146,11 @@ void ReducedMatrix::reduce(const linear::BlockPattern& pattern, const LargeVecto
             if (!row_fixed[r] && !column_fixed[c]) *value++ = block[3 * r + c];
       }
   });
-  if (f.regions_.empty()) return;
+}
+
+void ReducedMatrix::add_regions(const linear::BlockPattern& pattern, const LargeVector<double>& slots,
+                                const Points& positions, LargeVector<double>& values) const {
+  const Freedoms& f = *freedoms_;
   const std::vector<Vec3> middles = f.centers(positions);
   for (const RegionBlock& part : region_blocks_) {
     double sum[9];
@@ -157,6 +169,11 @@ void ReducedMatrix::reduce(const linear::BlockPattern& pattern, const LargeVecto
       target += product;
     if (same_node && part.row != part.column) target += product.transpose();
   }
+}
+
+/// What the gradient adds of the regions that turn.
+void ReducedMatrix::add_turning(const Points& gradient, const Points& positions, LargeVector<double>& values) const {
+  const Freedoms& f = *freedoms_;
   for (std::size_t r = 0; r < f.regions_.size(); ++r) {
     const Freedoms::Region& region = f.regions_[r];
     const Mat3 bend = Freedoms::bend_of(region, gradient, positions);

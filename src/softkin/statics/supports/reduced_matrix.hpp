@@ -47,6 +47,10 @@ class ReducedMatrix {
 
   ReducedMatrix(const Freedoms& freedoms, const linear::BlockPattern& pattern, const Eigen::SparseMatrix<double>& graph,
                 const std::vector<Index>& order, const std::vector<Index>& pieces);
+  void reduce_vertices(const LargeVector<double>& slots, LargeVector<double>& values, Team& team) const;
+  void add_regions(const linear::BlockPattern& pattern, const LargeVector<double>& slots, const Points& positions,
+                   LargeVector<double>& values) const;
+  void add_turning(const Points& gradient, const Points& positions, LargeVector<double>& values) const;
   void find_sources(const linear::BlockPattern& pattern, const std::vector<Index>& place);
 
   const Freedoms* freedoms_;

@@ -17,7 +17,7 @@ constexpr int symmetric_rounds = 8, most_rounds = 60;
 }  // namespace
 
 bool Tangent::solve_exactly(const System::Scratch& local, const Points& positions, const Eigen::MatrixXd& rights,
-                            int rounds, double accuracy, double apart, Team& team, Eigen::MatrixXd& steps) {
+                            const Accuracy& asked, Team& team, Eigen::MatrixXd& steps) {
   const auto precondition_all = [&](Eigen::MatrixXd& columns) {
     factor_.solve(columns, team);
     if (sources_.cols() > 0) columns -= sources_ * (capacitance_ * (targets_.transpose() * columns));
@@ -33,8 +33,9 @@ bool Tangent::solve_exactly(const System::Scratch& local, const Points& position
   Eigen::MatrixXd left = rights;
   precondition_all(left);
   if (!left.allFinite()) return false;
-  const linear::Remainder remainder = linear::conjugate_residuals(multiply_all, accuracy, rounds, left, steps);
-  return remainder.apart <= apart && remainder.left <= accuracy && steps.allFinite();
+  const linear::Remainder remainder =
+      linear::conjugate_residuals(multiply_all, asked.residual, asked.rounds, left, steps);
+  return remainder.apart <= asked.apart && remainder.left <= asked.residual && steps.allFinite();
 }
 
 Sensitivity Newton::sensitivity(const State& at, bool reuse_factor, double accuracy, Team& team) const {
@@ -61,7 +62,7 @@ Sensitivity Newton::sensitivity(const State& at, bool reuse_factor, double accur
   }
   const bool near = reuse_factor && workspace->home.rows() == at.positions.rows() && workspace->home == at.positions;
   const auto solve = [&](int rounds, double apart) {
-    return tangent.solve_exactly(local, at.positions, rights, rounds, accuracy, apart, team, steps);
+    return tangent.solve_exactly(local, at.positions, rights, {rounds, accuracy, apart}, team, steps);
   };
   result.regular = near && solve(tangent.symmetric() ? symmetric_rounds : most_rounds, unbounded);
   if (!result.regular) {

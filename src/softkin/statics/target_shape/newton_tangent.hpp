@@ -90,14 +90,18 @@ class Tangent {
   bool solve(const System::Scratch& local, const Points& positions, const Eigen::VectorXd& right, double tolerance,
              Team& team, Eigen::VectorXd& step);
 
+  /// How a solution is asked for.
+  struct Accuracy {
+    int rounds = 0;       // at most
+    double residual = 0;  // preconditioned, relative
+    double apart = 0;  // how far the preconditioned K may be from the identity, in the preconditioned right-hand sides
+  };
   /// Solves K steps = rights, a column each, for the exact K at a shape near that of the factor, symmetric or not, by
   /// conjugate residuals.
   ///
-  /// accuracy  of the preconditioned residual, relative
-  /// apart     how far the preconditioned K may be from the identity, in the preconditioned right-hand sides
-  /// returns   false where it is farther, or so many rounds do not do
+  /// returns  false where K is farther from the identity, or so many rounds do not do
   [[nodiscard]] bool solve_exactly(const System::Scratch& local, const Points& positions, const Eigen::MatrixXd& rights,
-                                   int rounds, double accuracy, double apart, Team& team, Eigen::MatrixXd& steps);
+                                   const Accuracy& asked, Team& team, Eigen::MatrixXd& steps);
 
   [[nodiscard]] const supports::Freedoms& freedoms() const { return unknowns_.freedoms; }
   [[nodiscard]] bool symmetric() const { return unknowns_.symmetric; }
