@@ -59,6 +59,9 @@ struct Layer {
 /// Of its elements, or where it has none of its sheets: 1 or 2.
 [[nodiscard]] int order_of(const Model& model);
 
+/// A face as flat triangles: itself, or of order 2 quarters().
+[[nodiscard]] std::vector<Triangle> flat_triangles(const CavityFace& face);
+
 /// Per vertex: is it of an element, edge nodes too. Sheets beside the body have others.
 [[nodiscard]] std::vector<bool> vertices_of_elements(const Model& model);
 

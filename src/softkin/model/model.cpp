@@ -7,6 +7,7 @@
 #include <softkin/model/growth.hpp>
 #include <softkin/model/layer.hpp>
 #include <softkin/model/magnetic_field.hpp>
+#include <softkin/model/mesh/mesh_order.hpp>
 #include <softkin/model/mesh/quadratic_elements.hpp>
 #include <softkin/model/mesh/surface_tree.hpp>
 #include <softkin/model/model.hpp>
@@ -184,6 +185,12 @@ std::vector<Index> nodes_of(const CavityFace& face) {
 int order_of(const Model& model) {
   const auto is_quadratic = [](const auto& layer) { return !layer->faces.empty() && layer->faces[0].edges[0] >= 0; };
   return !model.edge_nodes.empty() || std::any_of(model.layers.begin(), model.layers.end(), is_quadratic) ? 2 : 1;
+}
+
+std::vector<Triangle> flat_triangles(const CavityFace& face) {
+  if (face.edges[0] < 0) return {face.corners};
+  const std::array<Triangle, 4> parts = quarters(face.corners, face.edges);
+  return {parts.begin(), parts.end()};
 }
 
 std::vector<bool> vertices_of_elements(const Model& model) {

@@ -20,12 +20,8 @@ std::vector<Triangle> sheets_of(const Model& model) {
       Triangle key = t;
       std::sort(key.begin(), key.end());
       if (!known.insert(key).second) continue;
-      if (face.edges[0] < 0) {
-        sheets.push_back(t);
-        continue;
-      }
-      const std::array<Triangle, 4> parts = quarters(t, face.edges);
-      sheets.insert(sheets.end(), parts.begin(), parts.end());
+      const std::vector<Triangle> flat = flat_triangles(face);
+      sheets.insert(sheets.end(), flat.begin(), flat.end());
     }
   return sheets;
 }

@@ -5,7 +5,6 @@
 #include <set>
 #include <softkin/model/compile/layers.hpp>
 #include <softkin/model/compile/parts.hpp>
-#include <softkin/model/mesh/mesh_order.hpp>
 
 namespace softkin {
 
@@ -143,13 +142,8 @@ void add_sheets(Compilation& c, std::vector<Index>& owners) {
     Triangle key = t;
     std::sort(key.begin(), key.end());
     if (!known.insert(key).second) continue;
-    const CavityFace face = face_of(c, t);
-    if (face.edges[0] < 0) {
-      contact.triangles.push_back(t);
-      continue;
-    }
-    const std::array<Triangle, 4> parts = quarters(t, face.edges);
-    contact.triangles.insert(contact.triangles.end(), parts.begin(), parts.end());
+    const std::vector<Triangle> flat = flat_triangles(face_of(c, t));
+    contact.triangles.insert(contact.triangles.end(), flat.begin(), flat.end());
   }
   contact.sheets[1] = static_cast<Index>(contact.triangles.size());
   owners.resize(contact.triangles.size(), -1);
