@@ -26,7 +26,10 @@ Sheet random_rectangle(Draw& draw) {
       sheet.rim.push_back(rim);
       if (i == along || j == across) continue;
       const Index a = place(i, j), b = place(i + 1, j), c = place(i + 1, j + 1), d = place(i, j + 1);
-      if (draw.chance(0.5))
+      // a triangle of the rim alone would lie on its like
+      const bool up = (i == 0 && j == 0) || (i == along - 1 && j == across - 1);
+      const bool down = (i == 0 && j == across - 1) || (i == along - 1 && j == 0);
+      if (draw.chance(0.5) ? !down : up)
         sheet.triangles.insert(sheet.triangles.end(), {{a, b, c}, {a, c, d}});
       else
         sheet.triangles.insert(sheet.triangles.end(), {{a, b, d}, {b, c, d}});

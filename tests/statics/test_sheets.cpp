@@ -281,6 +281,18 @@ TEST(Sheets, AreRefusedWithAReason) {
                 spec.layers[0] = std::make_shared<const LayerSpec>(film);
               }),
               "order 2");
+  expect_says(refusal([](RobotSpec& spec) {  // a mesh of order 2 whose triangles have no nodes on their edges
+                Mesh mesh = elevated(block_mesh({1, 1, 1}, {10, 10, 10}));
+                const auto before = static_cast<Index>(mesh.vertices.rows());
+                mesh.vertices.conservativeResize(before + 1, 3);
+                mesh.vertices.bottomRows(1) << 20, 0, 0;
+                mesh.regions.push_back({"flap", 2, {}, {}, {static_cast<Index>(mesh.triangles.size())}, {}, {}});
+                mesh.triangles.push_back({0, 1, before});
+                RobotSpec flagged = physical_robot(std::move(mesh));
+                flagged.layers = {film_layer("flap", 0.1, 50)};
+                spec = std::move(flagged);
+              }),
+              "of which a vertex belongs to no element");
   expect_says(refusal([](RobotSpec& spec) { spec.markers = {{"far", {Vec3(0, 0, 40), {}}}}; }), "from the mesh");
 }
 

@@ -92,8 +92,9 @@ std::vector<CavityFace> faces_of(const Compilation& c, const LayerSpec& spec, co
   std::vector<CavityFace> faces;
   for (const Triangle& t : triangles) {
     const CavityFace face = face_of(c, t);
+    const bool bare = !c.regions.edges().empty() && *std::min_element(face.edges.begin(), face.edges.end()) < 0;
     for (const Index v : nodes_of(face))
-      if (v < 0 || !c.model.used[v])
+      if (bare || !c.model.used[v])
         refuse_layer(spec, "has a face at " + point_text(vertex_at(c.model.rest, t[0])) +
                                " mm, of which a vertex belongs to no element of the robot: a layer beside the body "
                                "takes a mesh of order 1, which 'order: 2' raises");
@@ -229,7 +230,7 @@ void use_sheets(Compilation& c) {
   }
   for (const Triangle& t : c.sheets)
     for (const Index v : nodes_of(face_of(c, t)))
-      if (v >= 0) c.model.used[v] = true;
+      if (v >= 0) c.model.used[v] = true;  // else the layer is refused
 }
 
 void compile_layers(Compilation& c) {

@@ -108,9 +108,11 @@ Layers::Layers(const Model& model) : model_(model) {
   std::vector<bool> held = vertices_of_elements(model);
   // what bends has a shape of its own, but a bag that is flat begins swollen: there the film has far to go
   if (std::none_of(model.actuators.begin(), model.actuators.end(), [](const Actuator& each) { return each.flat; }))
-    for (const auto& layer : model.layers)
-      for (const CavityFace& face : layer->bends.empty() ? std::vector<CavityFace>() : layer->faces)
+    for (const auto& layer : model.layers) {
+      if (layer->bends.empty()) continue;
+      for (const CavityFace& face : layer->faces)
         for (const Index v : nodes_of(face)) held[static_cast<std::size_t>(v)] = true;
+    }
   for (const Face& face : faces_)
     std::copy_if(face.vertices.begin(), face.vertices.end(), std::back_inserter(alone_),
                  [&](Index v) { return !held[static_cast<std::size_t>(v)]; });
