@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <softkin/model/compile/layers.hpp>
 #include <softkin/model/compile/parts.hpp>
 #include <softkin/model/mesh/boundary.hpp>
 
@@ -12,8 +13,7 @@ void add_faces(const Compilation& c, const ActuatorSpec& spec, const std::vector
                Actuator& actuator) {
   const EdgeTable& edges = c.regions.edges();
   for (const Triangle& corners : triangles) {
-    CavityFace face{corners};
-    if (!edges.empty()) face.edges = edges.of(corners);
+    const CavityFace face = face_of(c, corners);
     if (!edges.empty() && *std::min_element(face.edges.begin(), face.edges.end()) < 0)
       refuse(spec, "has a wall with a face that is none of an element of order 2: vertices " +
                        std::to_string(corners[0]) + ", " + std::to_string(corners[1]) + " and " +

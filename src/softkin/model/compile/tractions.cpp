@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <softkin/model/compile/layers.hpp>
 #include <softkin/model/compile/parts.hpp>
 #include <softkin/model/mesh/boundary.hpp>
 #include <softkin/model/mesh/triangle_points.hpp>
@@ -114,9 +115,7 @@ void add_dead(Model& model, const Vec3& traction_MPa, const LoadedFace& loaded) 
 }  // namespace
 
 LoadedFace loaded_face(const Compilation& c, const Triangle& corners, double share) {
-  LoadedFace face{{corners}, share};
-  if (!c.regions.edges().empty()) face.face.edges = c.regions.edges().of(corners);
-  return face;
+  return {face_of(c, corners), share};
 }
 
 std::vector<LoadedFace> surface_faces(const Compilation& c, const RegionRef& where) {
