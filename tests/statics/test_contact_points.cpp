@@ -73,7 +73,7 @@ TEST(ContactPoints, GradientAndStiffnessAreDerivatives) {
       (void)blocks.energy(at);
       std::vector<Anchor> anchors;
       if (friction > 0) {
-        blocks.contacts.renew(at + noise(at.rows(), 0.02, 8), at, *blocks.scratch, anchors);
+        blocks.contacts.renew(at + noise(at.rows(), 0.02, 8), at, {at, at}, *blocks.scratch, anchors);
         blocks.contacts.friction().hold(blocks.scratch->terms, anchors, blocks.scratch->holds);
         ASSERT_GT(blocks.scratch->holds.size(), 10u);
       }

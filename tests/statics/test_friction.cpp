@@ -70,6 +70,25 @@ TEST(Friction, WhatSticksStays) {
   EXPECT_GT(std::abs(before.x()), 0.01 * std::abs(before.z()));
 }
 
+/// What begins to touch on the way sticks where it does so, however long the step: as if the way began there.
+TEST(Friction, WhatComesToTouchSticksWhereItDoes) {
+  const auto reaction_over = [](double gap, const Vec3& move) {
+    RobotSpec spec = block_on_rough_floor(2, move);
+    spec.contact->obstacles[0].shape = Halfspace{{0, 0, -gap}, {0, 0, 1}};
+    const Model model = compile(spec);
+    const Statics statics(model);
+    return reaction(model, statics, moved(model, statics, 1).state);
+  };
+  const double reach = 0.05, sideways = 0.12, down = 0.2;  // from where it touches
+  const auto from = [&](double gap) {
+    const double times = (gap - reach + down) / down;
+    return reaction_over(gap, {times * sideways, 0, -times * down});
+  };
+  const Vec3 near = from(0.051), far = from(0.35);
+  EXPECT_GT(near.x(), 0.1 * std::abs(near.z()));
+  EXPECT_LT((far - near).norm(), 0.03 * near.x());
+}
+
 namespace {
 
 void expect_derivatives(const Model& model) {

@@ -191,7 +191,7 @@ struct TermsSample : PhysicalEquations {
     system.placement().hold({demand.actuation, 0, 0}, at.positions);
     at.multipliers = Eigen::VectorXd::Zero(system.actuators());
     work.fading.force = noise(static_cast<Index>(model.rest.rows()), 1, 9);
-    (void)renew_friction(system, at.positions, at, work, team);
+    (void)renew_friction(system, at.positions, {at.positions, at.positions}, at, work, team);
     along = noise(static_cast<Index>(model.rest.rows()), 1, 7);
   }
 

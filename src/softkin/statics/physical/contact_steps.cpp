@@ -12,11 +12,12 @@ void hold_friction(const System& system, const Iterate& at, Workspace& work, Tea
   system.contacts()->friction().hold(work.contacts->terms, at.anchors, work.contacts->holds);
 }
 
-double renew_friction(const System& system, const Points& from, Iterate& at, Workspace& work, Team& team) {
+double renew_friction(const System& system, const Points& from, const FreeWay& free, Iterate& at, Workspace& work,
+                      Team& team) {
   if (!system.friction()) return 0;
   const Contacts& contacts = *system.contacts();
   contacts.find(at.positions, *work.contacts, team);
-  contacts.renew(from, at.positions, *work.contacts, at.anchors);
+  contacts.renew(from, at.positions, free, *work.contacts, at.anchors);
   const Friction::Holds before = work.contacts->holds;
   contacts.friction().hold(work.contacts->terms, at.anchors, work.contacts->holds);
   return contacts.disagreement(at.positions, before, work.contacts->holds);

@@ -13,7 +13,12 @@ void hold_friction(const System& system, const Iterate& at, Workspace& work, Tea
 /// The same, with new anchors where something began to touch on the way from an earlier shape.
 ///
 /// returns  how far the friction at the iterate was by other normal forces, over the largest force on a vertex [-]
-double renew_friction(const System& system, const Points& from, Iterate& at, Workspace& work, Team& team);
+double renew_friction(const System& system, const Points& from, const FreeWay& free, Iterate& at, Workspace& work,
+                      Team& team);
+/// Does friction act on the shapes that are evaluated?
+[[nodiscard]] inline bool rubs(const Workspace& work) {
+  return work.contacts && (work.contacts->friction_follows || !work.contacts->holds.empty());
+}
 /// Share of what rubs that slips, or nearly [-].
 [[nodiscard]] double slipping_share(const System& system, const Iterate& at, Workspace& work, Team& team);
 /// Lets what slips at an equilibrium go on from there.

@@ -264,9 +264,12 @@ void Contacts::add_friction_response(const Points& positions, const Scratch& scr
   });
 }
 
-void Contacts::renew(const Points& from, const Points& to, const Scratch& scratch, std::vector<Anchor>& anchors) const {
+void Contacts::renew(const Points& from, const Points& to, const FreeWay& free, const Scratch& scratch,
+                     std::vector<Anchor>& anchors) const {
   Points room, room_of_end;
-  friction_.renew(points_.of(from, room), points_.of(to, room_of_end), scratch.terms, anchors);
+  FreeWay rooms;
+  const FreeWay free_points{points_.of(free.straight, rooms.straight), points_.of(free.turned, rooms.turned)};
+  friction_.renew(points_.of(from, room), points_.of(to, room_of_end), free_points, scratch.terms, anchors);
 }
 
 void Contacts::slide(const Points& nodes, const Scratch& scratch, std::vector<Anchor>& anchors) const {

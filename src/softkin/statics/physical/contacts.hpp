@@ -51,7 +51,8 @@ class Contacts : public Term {
   [[nodiscard]] const Friction& friction() const { return friction_; }
   // Of the terms that were found: see Friction.
   /// from, to: the way to the shape that was found
-  void renew(const Points& from, const Points& to, const Scratch& scratch, std::vector<Anchor>& anchors) const;
+  void renew(const Points& from, const Points& to, const FreeWay& free, const Scratch& scratch,
+             std::vector<Anchor>& anchors) const;
   void slide(const Points& positions, const Scratch& scratch, std::vector<Anchor>& anchors) const;
   [[nodiscard]] double disagreement(const Points& positions, const Friction::Holds& before,
                                     const Friction::Holds& after) const;

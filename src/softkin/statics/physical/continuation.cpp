@@ -15,6 +15,9 @@ bool same_shape(const Points& a, const Points& b) {
   return a.rows() == b.rows() && a == b;
 }
 
+/// Where a prediction moves farther than this share of the diagonal and something is in its way, what touches is looked
+/// for first.
+constexpr double far = 0.2;
 /// Shortest step of the continuation, over the way asked for.
 constexpr double least_advance = 1e-4;
 /// A step that moves no vertex farther than so many tolerances and yet fails leads nowhere.
@@ -69,17 +72,17 @@ bool Continuation::lead(const Demand& here, const Demand& there, Iterate& trial)
 /// One step; trial begins at `at` and ends at the equilibrium.
 Newton::Outcome Continuation::step(const Demand& here, const Demand& there, double length, const Iterate& at,
                                    Iterate& trial) {
-  swollen_ = false;
+  unforetold_ = false;
   if (system_.limp() && system_.layers()->flat(at.positions)) {
     if (runs_into_flat(there, at)) return Newton::Outcome::blocked;
     const std::optional<Swelling> swelling = swell(system_, there, active_, trial, work_, team_);
-    swollen_ = swelling.has_value();
+    unforetold_ = swelling.has_value();
     predicted_ = begun_ = trial.positions;
     move_mm_ = system_.largest_move(at.positions, predicted_);
     return swelling ? settle_swollen(there, *swelling, trial) : settle(there, Newton::Policy::descend, trial);
   }
   const bool whole = way_.done == 0 && length == 1;  // steps of a way are short where it is difficult
-  bool led = false;
+  bool led = false, cut = false;
   const auto prediction = [&] {
     led = whole && !led && lead(here, there, trial);
     if (led) {
@@ -90,23 +93,30 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
     }
     const ClearPrediction clear = predict_clear(system_, here, there, active_, work_, team_, trial);
     predicted_ = clear.predicted;
+    if (system_.friction()) free_way_ = {clear.straight, clear.predicted};
     move_mm_ = clear.move_mm.value_or(system_.largest_move(at.positions, predicted_));
+    cut = clear.cut && system_.largest_move(at.positions, predicted_) > far * system_.model().diagonal_mm;
     begun_ = trial.positions;
     return clear.move_mm.has_value();
   };
-  if (!prediction()) return Newton::Outcome::blocked;
+  if (!prediction()) return whole ? fall_onto(here, there, at, trial) : Newton::Outcome::blocked;
   if (whole && !led && leads_too_far(here, there, at)) return Newton::Outcome::too_far;
   const bool follows = last_.modes > 0 && !stable_ && length <= 1.001 * follow_below;
   const auto policy = follows ? Newton::Policy::follow : led ? Newton::Policy::near : Newton::Policy::descend;
-  const bool again = system_.contact() && !system_.friction() && !follows;  // what rubs is stuck where it slips, too
+  const bool again = system_.contact() && !follows, first = again && whole && cut;
   const Iterate begun = again ? trial : Iterate{};
-  auto outcome = settle(there, policy, trial, whole && factorised_nearby(trial.positions));
-  if (outcome == Newton::Outcome::stuck && again) {
+  const auto settle_foreseen = [&] {
     trial = begun;
     const auto foreseen = foresee_contact(there, at, trial);
-    if (foreseen == Newton::Outcome::interrupted) return foreseen;
-    if (foreseen == Newton::Outcome::converged) outcome = settle(there, policy, trial);
+    if (foreseen == Newton::Outcome::converged) return settle(there, policy, trial);
+    return foreseen == Newton::Outcome::interrupted ? foreseen : Newton::Outcome::stuck;
+  };
+  auto outcome = first ? settle_foreseen() : Newton::Outcome::stuck;
+  if (outcome == Newton::Outcome::stuck) {
+    if (first) trial = begun;
+    outcome = settle(there, policy, trial, whole && factorised_nearby(trial.positions));
   }
+  if (outcome == Newton::Outcome::stuck && again && !first) outcome = settle_foreseen();
   if (outcome == Newton::Outcome::converged && !led && whole)
     work_.trail.note_tangent(here, there, system_.largest_move(begun_, trial.positions));
   if (outcome == Newton::Outcome::stuck && !follows && length < follow_below && prepare(here, at) >= 0) {
@@ -119,7 +129,7 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
 /// Does a step leave the way? Where a way bends, the tangent at its end, followed back, misses its begin on the side on
 /// which the one at its begin misses its end, and by about as much; where it jumps, on the other side.
 bool Continuation::jumped(const Demand& here, const Demand& there, const Iterate& at, const Iterate& trial) {
-  if (swollen_) return false;
+  if (unforetold_) return false;
   const double correction = system_.largest_move(predicted_, trial.positions);
   const auto jumps = [&] {
     Iterate back = trial;
@@ -146,7 +156,7 @@ Status Continuation::follow_whole(const Demand& from, const Demand& to, Iterate&
   set_out(from, to);
   (void)release(to, at, false);
   from_ = at.positions;
-  (void)renew_friction(system_, from_, at, work_, team_);
+  (void)renew_anchors(at);
   if (!same_shape(work_.home, at.positions)) work_.trail.clear();
   way_.factorised = same_shape(work_.home, at.positions) && factor_holds_active();
   work_.home.resize(0, 3);
@@ -241,6 +251,7 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   work_.left_field = false;
   tracer_.begin(whole(way_.done), whole(next), length);
   const auto outcome = step(way_.here, there, length, at, trial);
+  free_way_ = {};
   if (outcome == Newton::Outcome::interrupted) return Status::interrupted;
   const StepEnd came = judge(outcome, there, length, at, trial);
   const double longest = longest_step(came.snap, came.unstable);

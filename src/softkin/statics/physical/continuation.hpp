@@ -2,6 +2,7 @@
 
 #include <limits>
 #include <optional>
+#include <softkin/statics/physical/contact_steps.hpp>
 #include <softkin/statics/physical/equilibria.hpp>
 #include <softkin/statics/physical/stability.hpp>
 #include <softkin/statics/physical/step_tracer.hpp>
@@ -176,6 +177,10 @@ class Continuation {
   std::optional<Pushed> lower(const Demand& demand, const Iterate& from, const LowestMode& mode);
   std::optional<Pushed> pushed(const Demand& demand, const Iterate& from, const LowestMode& mode, double share);
   int prepare(const Demand& here, const Iterate& at);
+  double renew_anchors(Iterate& at);
+  [[nodiscard]] bool touches(const Iterate& at) const;
+  Newton::Outcome fall_onto(const Demand& here, const Demand& there, const Iterate& at, Iterate& trial);
+  Newton::Outcome settle_softly(const Demand& demand, OtherContact& contact, Iterate& at);
   Newton::Outcome foresee_contact(const Demand& demand, const Iterate& from, Iterate& at);
   Newton::Outcome settle_here(const Demand& demand, Iterate& at);
   Newton::Outcome settle(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised = false);
@@ -199,8 +204,9 @@ class Continuation {
   std::vector<bool> active_;
   Points from_;                       // the last good shape
   Points predicted_, begun_;          // by the last step, and what of it is in nobody's way
+  FreeWay free_way_;                  // of the step at hand; empty: not known
   double move_mm_ = 0, jump_mm_ = 0;  // of it: to what it predicted, and beside the way
-  bool swollen_ = false;              // did it begin with sheets that were flat
+  bool unforetold_ = false;           // does no tangent say where it should have led
   Judgement last_;                    // of the last good shape
   int rounds_ = 1;                    // of normal forces, for the last equilibrium
   std::optional<Together> together_;

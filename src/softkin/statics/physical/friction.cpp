@@ -85,29 +85,42 @@ Vec3 shifted(const contact::FourPoints& x, const Vec3& weights, const Vec3& way)
   return change.allFinite() ? Vec3(weights + Vec3(-change.sum(), change[0], change[1])) : weights;
 }
 
-}  // namespace
-
-/// Of what came into reach on the way the anchor lies where it did so, every vertex on its straight way.
-Anchor Friction::fresh_anchor(const Points& from, const Points& to, const Touch& touch) const {
-  const contact::Nodes nodes = nodes_of_vertex_triangle(surfaces_.surface, touch.term->pair);
-  const Eigen::Vector4d& weights = touch.term->separation.weights;
-  const Vec3 now = contact::points_of(to, nodes) * weights, then = contact::points_of(from, nodes) * weights;
-  const Vec3 normal = touch.force.normalized();
-  const double gap_now = now.dot(normal), gap_then = then.dot(normal);
-  const double outside =
-      gap_then > surfaces_.reach_mm ? (gap_then - surfaces_.reach_mm) / (gap_then - gap_now) : 0;  // share of the way
-  Vec3 way = (1 - outside) * (now - then);
-  way -= way.dot(normal) * normal;
-  return {touch.vertex, touch.part, touch.term->pair.second,
-          shifted(contact::points_of(to, nodes), -weights.tail<3>(), -way)};
+/// The first share of a way at which a + b s + c s^2 is 0; 0 where a is not above it, 1 where it does not come there.
+double first_zero(double a, double b, double c) {
+  if (!(a > 0)) return 0;
+  const double under_root = b * b - 4 * a * c;
+  if (!(under_root >= 0)) return 1;
+  const double root = 2 * a / (-b + std::sqrt(under_root));
+  return root >= 0 && root <= 1 ? root : 1;
 }
 
-void Friction::renew(const Points& from, const Points& to, const Terms& terms, std::vector<Anchor>& anchors) const {
+}  // namespace
+
+/// Of what came into reach on the way the anchor lies where it did so, on the way on which it would go if nothing pushed:
+/// the gap hardly changes any more once something does.
+Anchor Friction::fresh_anchor(const Points& from, const Points& to, const FreeWay& free, const Touch& touch) const {
+  const contact::Nodes nodes = nodes_of_vertex_triangle(surfaces_.surface, touch.term->pair);
+  const auto apart = [&](const Points& shape) -> Vec3 {
+    return contact::points_of(shape, nodes) * touch.term->separation.weights;
+  };
+  const Vec3 normal = touch.force.normalized(), now = apart(to), then = apart(from);
+  Vec3 turned = apart(free.turned), straight = apart(free.straight);
+  if (!(turned.dot(normal) < now.dot(normal))) turned = straight = now;
+  const Vec3 move = straight - then, bend = turned - straight;
+  const double share = first_zero(then.dot(normal) - surfaces_.reach_mm, move.dot(normal), bend.dot(normal));
+  Vec3 way = now - then - share * move - share * share * bend;
+  way -= way.dot(normal) * normal;
+  return {touch.vertex, touch.part, touch.term->pair.second,
+          shifted(contact::points_of(to, nodes), -touch.term->separation.weights.tail<3>(), -way)};
+}
+
+void Friction::renew(const Points& from, const Points& to, const FreeWay& free, const Terms& terms,
+                     std::vector<Anchor>& anchors) const {
   std::vector<Anchor> now;
   for (const Touch& touch : touches(terms)) {
     const auto old = std::lower_bound(anchors.begin(), anchors.end(), touch, before<Anchor, Touch>);
     const bool known = old != anchors.end() && !before(touch, *old);
-    now.push_back(known ? *old : fresh_anchor(from, to, touch));
+    now.push_back(known ? *old : fresh_anchor(from, to, free, touch));
   }
   anchors = std::move(now);
 }

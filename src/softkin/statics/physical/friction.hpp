@@ -5,6 +5,11 @@
 
 namespace softkin::physical {
 
+/// Where a way would lead if nothing were in the way: to first order, and with what turns add to that.
+struct FreeWay {
+  Points straight, turned;
+};
+
 /// Coulomb's friction of vertices on surfaces, with normal forces and directions of an earlier shape: a potential of
 /// how far each vertex is from where it sticks, its anchor, whose slope is the friction coefficient times the normal
 /// force once that is farther than a creep. Anchors stay from step to step where a contact sticks, and follow where it
@@ -37,7 +42,8 @@ class Friction {
 
   /// Anchors of all that is in contact in a shape: those that there are, and new ones where none is.
   /// from, to: the way on which they came
-  void renew(const Points& from, const Points& to, const Terms& terms, std::vector<Anchor>& anchors) const;
+  void renew(const Points& from, const Points& to, const FreeWay& free, const Terms& terms,
+             std::vector<Anchor>& anchors) const;
 
   /// Lets the anchors of what slips follow to within the creep.
   void slide(const Points& positions, const Terms& terms, const Holds& holds, std::vector<Anchor>& anchors) const;
@@ -66,7 +72,8 @@ class Friction {
  private:
   struct Touch;
   [[nodiscard]] std::vector<Touch> touches(const Terms& terms) const;
-  [[nodiscard]] Anchor fresh_anchor(const Points& from, const Points& to, const Touch& touch) const;
+  [[nodiscard]] Anchor fresh_anchor(const Points& from, const Points& to, const FreeWay& free,
+                                    const Touch& touch) const;
 
   const ContactSurfaces& surfaces_;
   bool any_ = false;

@@ -107,7 +107,7 @@ bool Newton::labours(double damping) {
   poor_ = damping < poor ? poor_ + 1 : 0;
   same_ = damping == 1 && next_.size.mean > same * step_.size.mean ? same_ + 1 : 0;
   if (!system_.kinked()) return downhill_ >= most_downhill;
-  return poor_ >= most_poor || (system_.friction() && same_ >= most_same);
+  return poor_ >= most_poor || (rubs(work_) && same_ >= most_same);
 }
 
 /// Where hardly anything is unstable, a stiffness that was made positive element by element is far too stiff along it:

@@ -108,8 +108,16 @@ ClearPrediction predict_clear(const System& system, const Demand& here, const De
   for (bool first = true;; first = false) {
     held = end;
     const double share = clear_share(system, from, way, end, work, at.positions, team);
-    if (first) clear.predicted = at.positions;
+    if (first) {
+      clear.predicted = clear.straight = at.positions;
+      if (system.contact()) {
+        clear.straight = from;
+        system.freedoms().move(tangent.step, 1, clear.straight);
+        system.placement().hold(there, clear.straight);
+      }
+    }
     if (share >= end) break;
+    clear.cut = true;
     end = shorter * share;
     if (end < most_cut && system.largest_move(from, clear.predicted) > long_way * system.model().diagonal_mm)
       return clear;
@@ -125,6 +133,29 @@ ClearPrediction predict_clear(const System& system, const Demand& here, const De
   follow(tangent, end, system, there, active, at.multipliers);
   clear.move_mm = system.largest_move(from, at.positions);
   return clear;
+}
+
+bool carry_held(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
+                Workspace& work, Team& team, Iterate& at) {
+  Points held = at.positions;
+  system.placement().hold(there, held);
+  if (held == at.positions) return true;
+  Balance balance;
+  hold_friction(system, at, work, team);
+  system.evaluate(at, here, active, work, balance, team);
+  system.assemble(at, here, balance, System::Stiffness::exact, work, team);
+  Balance upset;
+  (void)system.upset_by_held(at, there, active, work, upset, team);
+  Eigen::VectorXd step, change;
+  work.saddle.step(upset, step, change, team);
+  if (!step.allFinite()) return false;
+  const Points from = at.positions;
+  const Way way = [&](double share, Points& out) {
+    const Demand to = between(here, there, share);
+    out = from;
+    system.advance(step, share, work, out, team, &to);
+  };
+  return clear_share(system, from, way, 1, work, at.positions, team) >= 1;
 }
 
 bool foresee(const System& system, const Demand& here, const Demand& there, Workspace& work, Team& team,

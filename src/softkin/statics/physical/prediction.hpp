@@ -12,13 +12,19 @@ double predict(const System& system, const Demand& here, const Demand& there, co
                Workspace& work, Team& team, Iterate& at);
 
 struct ClearPrediction {
-  Points predicted;               // as predict() gives it
+  Points predicted, straight;     // as predict() gives it; without what turns add
   std::optional<double> move_mm;  // the largest of a vertex, as far as it is clear; none where a shorter way is better:
                                   // supports are in each other's way, or little of a long one is left
+  bool cut = false;               // is it shorter than predicted
 };
 /// The same, less far where otherwise something would pass through something.
 ClearPrediction predict_clear(const System& system, const Demand& here, const Demand& there,
                               const std::vector<bool>& active, Workspace& work, Team& team, Iterate& at);
+
+/// Brings what is held to its place, and lets the body follow it as if nothing else changed. False where something is in
+/// the way, or the stiffness has no step.
+bool carry_held(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
+                Workspace& work, Team& team, Iterate& at);
 
 /// The equilibrium under other commands by second order, from the derivative that was asked for at the shape: what the
 /// tangent leaves out of balance there, through the factor at hand. The workspace keeps it.

@@ -30,23 +30,53 @@ void Continuation::give_loads(const Demand& demand, Iterate& at) const {
       at.multipliers[a] = system_.measures().given(a, demand.actuation[a]);
 }
 
+/// Does anything push in a shape?
+bool Continuation::touches(const Iterate& at) const {
+  OtherContact contact(system_, work_, team_);
+  contact.straighten(at, 1);
+  return contact.any_push();
+}
+
+/// To where softer contact holds, felt from farther away; from as far as is wanted for steps that what is in the way
+/// does not cut to nothing, then nearer and nearer.
+Newton::Outcome Continuation::settle_softly(const Demand& demand, OtherContact& contact, Iterate& at) {
+  constexpr double modulus = 1e-4;
+  constexpr double nearest = 6, finer = 8;  // reaches, over the contact distance
+  constexpr double farthest = 0.1;          // of the diagonal
+  const double most = std::max(nearest, farthest * system_.model().diagonal_mm / system_.model().contact.distance_mm);
+  constexpr int most_iterations = 20;  // of what was stuck for want of a way
+  const std::vector<bool> before = active_;
+  const Iterate begun = at;
+  auto outcome = Newton::Outcome::stuck;
+  const int iterations = report_.iterations;
+  for (double first = nearest; outcome == Newton::Outcome::stuck && first <= most; first *= finer) {
+    if (report_.iterations - iterations > most_iterations) break;
+    at = begun;
+    active_ = before;
+    outcome = Newton::Outcome::converged;
+    for (double reach = first; outcome == Newton::Outcome::converged && reach > nearest / finer; reach /= finer) {
+      contact.set_firmness({modulus, reach, 1});
+      outcome = settle_constraints(demand, Newton::Policy::descend, at, false);
+    }
+  }
+  if (outcome == Newton::Outcome::converged) contact.straighten(at, nearest);
+  return outcome;
+}
+
 /// From a prediction to where what touches pushes as it will, from an equilibrium: Newton's method on the shape alone
 /// loses a face that rests on another, as it presses so little that it lies within a hundredth of the contact distance
-/// of where forces end. Where nothing touched yet, through softer contact that is felt from farther away.
+/// of where forces end. Where nothing touched yet, through softer contact. What rubs does not yet.
 Newton::Outcome Continuation::foresee_contact(const Demand& demand, const Iterate& from, Iterate& at) {
-  constexpr ContactFirmness soft{1e-4, 6, 1};
   constexpr double foresight = 2;
   const std::vector<bool> before = active_;
   Iterate trial = at;
-  hold_friction(system_, from, work_, team_);
+  work_.contacts->holds.clear();
   OtherContact contact(system_, work_, team_);
   contact.straighten(from, foresight);
   auto outcome = Newton::Outcome::converged;
   if (!contact.any_push()) {
     contact.forget();
-    contact.set_firmness(soft);
-    outcome = settle_constraints(demand, Newton::Policy::descend, trial, false);
-    if (outcome == Newton::Outcome::converged) contact.straighten(trial, soft.reach);
+    outcome = settle_softly(demand, contact, trial);
   } else {
     system_.contacts()->follow_pushes(trial.positions - from.positions, 1, *work_.contacts);
   }
@@ -56,6 +86,26 @@ Newton::Outcome Continuation::foresee_contact(const Demand& demand, const Iterat
   else
     active_ = before;
   return outcome;
+}
+
+/// Where weights would lead far through something: what is held comes to its place, and the body onto what is near.
+Newton::Outcome Continuation::fall_onto(const Demand& here, const Demand& there, const Iterate& at, Iterate& trial) {
+  if (!system_.contact() || here.share == there.share || touches(at)) return Newton::Outcome::blocked;
+  trial = at;
+  if (!carry_held(system_, here, there, active_, work_, team_, trial)) return Newton::Outcome::blocked;
+  give_loads(there, trial);
+  predicted_ = begun_ = trial.positions;
+  unforetold_ = true;
+  const auto outcome = foresee_contact(there, at, trial);
+  if (outcome == Newton::Outcome::interrupted) return outcome;
+  begun_ = trial.positions;
+  return outcome == Newton::Outcome::converged ? settle(there, Newton::Policy::descend, trial)
+                                               : Newton::Outcome::blocked;
+}
+
+double Continuation::renew_anchors(Iterate& at) {
+  const bool known = free_way_.turned.rows() > 0;
+  return renew_friction(system_, from_, known ? free_way_ : FreeWay{at.positions, at.positions}, at, work_, team_);
 }
 
 /// Newton with friction that follows the normal forces by which it is limited; where that leads nowhere, with those
@@ -72,7 +122,7 @@ Newton::Outcome Continuation::settle(const Demand& demand, Newton::Policy policy
     outcome = settle_constraints(demand, policy, at, near);
     rounds_ = round;
     if (outcome != Newton::Outcome::converged && outcome != Newton::Outcome::unstable) return outcome;
-    report_.friction_change = renew_friction(system_, from_, at, work_, team_);
+    report_.friction_change = renew_anchors(at);
     if (report_.friction_change <= frictions_agree) break;
     if (round > 8 || (round & (round - 1)) != 0) continue;  // 1, 2, 4, 8
     const auto followed = settle_following(demand, policy, at, false);
@@ -99,7 +149,7 @@ Newton::Outcome Continuation::settle_following(const Demand& demand, Newton::Pol
       active_ = before;
       return outcome;
     }
-    report_.friction_change = renew_friction(system_, from_, trial, work_, team_);
+    report_.friction_change = renew_anchors(trial);
     if (report_.friction_change <= frictions_agree) {
       at = std::move(trial);
       return outcome;

@@ -224,8 +224,8 @@ Eigen::VectorXd System::compliance(const Balance& balance, const Workspace& work
                                       [&](Eigen::Index i) { return balance.compliance[active[i]]; });
 }
 
-void System::upset(const Iterate& at, const Demand& from, const Demand& to, const std::vector<bool>& active,
-                   Workspace& work, Balance& balance, Team& team) const {
+Points System::upset_by_held(const Iterate& at, const Demand& to, const std::vector<bool>& active, Workspace& work,
+                             Balance& balance, Team& team) const {
   balance.constraint.setZero(actuators());
   Points moves = at.positions, force;
   placement_->hold(to, moves);
@@ -237,6 +237,14 @@ void System::upset(const Iterate& at, const Demand& from, const Demand& to, cons
     work.layout->pattern.multiply(work.blocks, moves, force, team);
     actuator_loads_.add_moves(active, at.positions, moves, work.slopes, balance.constraint);
   }
+  balance.force.resize(freedoms_->size());
+  freedoms_->reduce(force, at.positions, balance.force);
+  return force;
+}
+
+void System::upset(const Iterate& at, const Demand& from, const Demand& to, const std::vector<bool>& active,
+                   Workspace& work, Balance& balance, Team& team) const {
+  Points force = upset_by_held(at, to, active, work, balance, team);
   actuator_loads_.add_change(at, from, to, active, work.slopes, balance.constraint, force);
   if (tendons().any()) {
     balance.slips = tendons().slips(at);
@@ -248,7 +256,6 @@ void System::upset(const Iterate& at, const Demand& from, const Demand& to, cons
   each_term(work, [&](const Term& term, Term::Scratch& scratch) {
     term.add_change(from, to, at.positions, scratch, force, team);
   });
-  balance.force.resize(freedoms_->size());
   freedoms_->reduce(force, at.positions, balance.force);
 }
 

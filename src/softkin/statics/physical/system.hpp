@@ -105,6 +105,9 @@ class System {
   /// stiffness is to be assembled.
   void upset(const Iterate& at, const Demand& from, const Demand& to, const std::vector<bool>& active, Workspace& work,
              Balance& balance, Team& team) const;
+  /// The same of what is held alone, which comes to its place. Returns the forces on the vertices, too.
+  Points upset_by_held(const Iterate& at, const Demand& to, const std::vector<bool>& active, Workspace& work,
+                       Balance& balance, Team& team) const;
 
   /// Stress, reactions and what touches at an equilibrium.
   void measure(const Iterate& at, const Demand& demand, Workspace& work, ElementDeformation& out, Team& team) const;
