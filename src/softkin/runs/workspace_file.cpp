@@ -9,6 +9,7 @@
 #include <softkin/io/mesh/vtk.hpp>
 #include <softkin/io/own_file.hpp>
 #include <softkin/io/plain_text.hpp>
+#include <softkin/io/plot/svg_plot.hpp>
 #include <softkin/io/scanner.hpp>
 #include <softkin/kinematics/nearest.hpp>
 #include <softkin/model/model.hpp>

@@ -3,7 +3,6 @@
 #include <filesystem>
 #include <functional>
 #include <optional>
-#include <softkin/io/plot/svg_plot.hpp>
 #include <softkin/io/table/workspace_table.hpp>
 #include <softkin/kinematics/goal.hpp>
 #include <softkin/kinematics/hull.hpp>
@@ -12,6 +11,10 @@
 #include <softkin/runs/store.hpp>
 #include <string>
 #include <vector>
+
+namespace softkin {
+struct Plot;  // io/plot/svg_plot.hpp
+}
 
 namespace softkin::runs {
 
@@ -38,7 +41,9 @@ class WorkspaceFile {
   WorkspaceFile(std::filesystem::path path, const WorkspaceHead& head, const WorkspaceColumns& columns,
                 const WorkspacePlan& plan, bool resume);
 
+  /// How many samples are in the file.
   [[nodiscard]] Index done() const { return static_cast<Index>(store_->size()); }
+  /// Are all of them?
   [[nodiscard]] bool complete() const { return store_->size() == known_.size(); }
   /// A last row was so; it is solved again.
   [[nodiscard]] bool was_torn() const { return store_->was_torn(); }
@@ -80,7 +85,7 @@ class WorkspaceFile {
 
 /// What a finished workspace shows of one marker.
 struct Reach {
-  std::string marker;
+  std::string marker;                    // its name
   std::vector<WorkspaceSample> samples;  // those with equilibria
   Points positions;                      // of the marker, #samples by 3 [mm]
   std::optional<Hull> hull{};            // where it is asked for and there are samples
