@@ -14,7 +14,7 @@ namespace softkin {
 
 /// One actuation to solve for.
 struct ActuationStep {
-  Actuation actuation;
+  Actuation actuation;           // m: a command for each actuator
   std::optional<double> time{};  // [s], where the path has times
   std::size_t line = 0;          // of the path's file
 };
