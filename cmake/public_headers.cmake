@@ -107,5 +107,4 @@ set(softkin_included_headers
     calibration/robot_dots.hpp
     calibration/robot_outlines.hpp
     calibration/seen_outline.hpp
-    calibration/test_log.hpp
-    runs/store.hpp)
+    calibration/test_log.hpp)

@@ -40,7 +40,7 @@ class DocstringFinder {
   struct Item {
     std::string name;
     std::size_t first = 0, head = 0, last = 0;  // lines: its first one, where its head ends, its last one
-    bool asked = true;
+    bool asked = true, type = false;
   };
 
   [[nodiscard]] const std::string& look(std::size_t at) const {
@@ -67,7 +67,7 @@ class DocstringFinder {
       } else {
         const Item item = read_item(owner, seen);
         run = has_comment_above(item) || (run && item.first == last + 1);
-        last = item.last;
+        last = item.type ? 0 : item.last;  // what a comment says of a class is not of what follows
         if (seen && item.asked) {
           ++names_;
           if (!run && !has_comment_behind(item)) bare_.push_back({owner + item.name, item.first});
@@ -103,6 +103,7 @@ class DocstringFinder {
     while (look(at_) == "[") skip("[", "]");
     const std::string key = look(at_);
     const bool type = key == "class" || key == "struct" || key == "union" || key == "enum";
+    item.type = type;
     read_head(item, type);
     if (look(at_) == "{" && type && key != "enum") {
       item.head = tokens_[at_].line;

@@ -58,7 +58,8 @@ bool is_in(const Headers& headers, const std::string& header) {
 /// "name:line" of each name without a docstring.
 Headers bare_names(const std::string& text) {
   Headers found;
-  for (const DocstringFinder::Name& name : DocstringFinder(text).bare())
+  const DocstringFinder docstrings(text);
+  for (const DocstringFinder::Name& name : docstrings.bare())
     found.push_back(name.name + ":" + std::to_string(name.line));
   return found;
 }
@@ -131,7 +132,7 @@ TEST(Headers, OfTheExamplesArePublic) {
 TEST(Docstrings, StandAboveOrBehind) {
   EXPECT_EQ(bare_names("/// A.\nstruct A {\n  int a = 0;  // [mm]\n  int b = 0, c = 0;\n\n  /// D.\n  int d() const;\n"
                        "  int e() const { return 1; }  // E\n};\n"),
-            (Headers{"A::c:4"}));
+            (Headers{"A::b:4"}));
   EXPECT_EQ(
       bare_names("struct B {  // of wire\n  std::function<bool(int)> c{};\n};\n\nint f(int a,\n      int b);  // F\n"
                  "enum class G { g };\nusing H = int;\n"),
@@ -140,6 +141,7 @@ TEST(Docstrings, StandAboveOrBehind) {
 
 TEST(Docstrings, AreOfAWholeRunWithoutEmptyLines) {
   EXPECT_EQ(bare_names("/// All of them.\nint a();\nint b();\nint c();\n\nint d();\n"), (Headers{"d:6"}));
+  EXPECT_EQ(bare_names("/// A.\nstruct A {};\nint b();\n"), (Headers{"b:3"}));
   EXPECT_EQ(bare_names("int a();  // one\nint b();\n"), (Headers{"b:2"}));
   EXPECT_EQ(bare_names("struct A {  // a\n  int a = 0;  // long,\n              // and so on\n  int b = 0;\n};\n"),
             (Headers{"A::b:4"}));
@@ -158,7 +160,7 @@ TEST(Docstrings, AreLookedForInEveryScope) {
       bare_names("namespace a::b {\n// C.\nstruct C {\n  struct D {\n    int e;\n  };\n  C() : f{1}, g(2) {}\n"
                  "  int f{0}, g = 0;\n};\ntemplate <class T>\nvoid h(T t = {}) {\n  t();\n}\n}  // namespace a::b\n"
                  "int k = 0;\n"),
-      (Headers{"C::D::e:5", "C::D:4", "C::C:7", "C::g:8", "h:10", "k:15"}));
+      (Headers{"C::D::e:5", "C::D:4", "C::C:7", "C::f:8", "h:10", "k:15"}));
 }
 
 }  // namespace softkin

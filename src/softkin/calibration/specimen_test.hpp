@@ -42,10 +42,11 @@ struct SpecimenOptions {
 /// Cells across the height, as they are or as 0 stands for.
 [[nodiscard]] int cells_across(const SpecimenOptions& options, Formulation formulation);
 
-/// The shape ratios of A and B whose ratio has this logarithm; the stiffer one has that of the options.
+/// R_omega of A and B.
 struct ShapeRatios {
   double a = 1, b = 1;  // of either material [-]
 };
+/// Those whose ratio has this logarithm; the stiffer material has the shape ratio `stiffer`.
 [[nodiscard]] ShapeRatios shape_ratios(double log_ratio, double stiffer);
 
 /// What a simulated test measures.

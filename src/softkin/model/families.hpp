@@ -15,7 +15,7 @@ struct FamilySpec {
   double dispersion = 0;      // kappa, 0 (all along the direction) to 1/3 (in all directions)
   DirectionSpec direction{};  // along which the fibres lie at rest
 };
-struct FamiliesSpec {
+struct FamiliesSpec {                // all of a material
   std::vector<FamilySpec> families;  // at least one
 };
 

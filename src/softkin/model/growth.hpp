@@ -81,6 +81,6 @@ struct Growth {
 struct Growers {
   std::vector<Index> tetrahedra, prisms;  // a place in Model::growths for each element
 };
-[[nodiscard]] Growers growers_of(const Model& model);
+[[nodiscard]] Growers growers_of(const Model& model);  // by its growths
 
 }  // namespace softkin

@@ -54,7 +54,7 @@ struct CoilLoop {
   double radius_mm = 1;  // > 0
   double turns = 1;      // not 0; below it turns the other way
 };
-struct CoilField {
+struct CoilField {              // loops of wire through which one current goes
   std::vector<CoilLoop> loops;  // whose fields add up
 };
 

@@ -11,6 +11,7 @@ namespace softkin {
 /// of cables and volumes of chambers whose loads are commanded; what supports exert on the robot; lengths of curves on
 /// the body, angles between its sections and the components of directions of these, as sensors measure them.
 enum class Reading { coordinate, pressure, tension, length, volume, force, angle, direction };
+/// How many kinds there are, and of each, by Reading, its name and its unit; "": none.
 constexpr int readings = 8;
 constexpr std::array<const char*, readings> reading_names{"coordinate", "pressure", "tension", "length",
                                                           "volume",     "force",    "angle",   "direction"};

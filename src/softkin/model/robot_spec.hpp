@@ -24,7 +24,7 @@ struct SensorSpec;     // sensor.hpp
 struct VertexList {
   std::vector<Index> vertices;  // from 0
 };
-struct ElementList {
+struct ElementList {              // of the mesh
   std::vector<Index> tetrahedra;  // from 0
 };
 /// What a selector chose of a robot before joined() placed it among others.
@@ -32,7 +32,7 @@ struct Chosen {
   std::string kind;  // for messages: "box of robot 'left'"
   Region region;     // what was chosen, in the numbers of the robot's own mesh
 };
-using Selector = std::variant<Box, Sphere, Cylinder, Halfspace, VertexList, ElementList, Chosen>;
+using Selector = std::variant<Box, Sphere, Cylinder, Halfspace, VertexList, ElementList, Chosen>;  // how to choose
 
 /// A region by name, or a shape in its place.
 struct RegionRef {

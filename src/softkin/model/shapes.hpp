@@ -8,7 +8,7 @@ namespace softkin {
 struct Box {
   Vec3 low, high;  // corners
 };
-struct Sphere {
+struct Sphere {       // the whole ball
   Vec3 center;        // its middle
   double radius = 0;  // > 0
 };

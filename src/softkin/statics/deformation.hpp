@@ -65,7 +65,7 @@ struct ElementDeformation {
   std::vector<FibreForces> fibres{};                   // of each
   std::vector<LayerForces> layers{};                   // the same
 };
-[[nodiscard]] ElementDeformation deformation_of(const Model& model, const Points& positions);
+[[nodiscard]] ElementDeformation deformation_of(const Model& model, const Points& positions);  // of #V by 3 [mm]
 
 /// What an entry of the scene's `fixed` does to the robot.
 struct Reaction {
@@ -107,6 +107,7 @@ struct StrainHistogram {
   };
   std::vector<Beyond> beyond;  // materials that state a linear range
 };
+/// Of one shape.
 [[nodiscard]] StrainHistogram strain_histogram(const Model& model, const ElementDeformation& deformation);
 
 }  // namespace softkin

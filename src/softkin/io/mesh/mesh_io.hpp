@@ -81,7 +81,7 @@ struct Sidecar {
   std::vector<std::vector<Index>> columns;  // of each the rows that hold 1, from 0
   bool bare = false;                        // one 0/1 a row, without ids
 };
-[[nodiscard]] Sidecar read_sidecar(const std::filesystem::path& path);
+[[nodiscard]] Sidecar read_sidecar(const std::filesystem::path& path);  // throws as read_mesh
 
 /// ASCII (one or several solids) or binary STL; vertices with equal coordinates are welded. Also refused: no facets, a
 /// facet without area, a number that is not finite (normals included), a file that goes on after the last facet.

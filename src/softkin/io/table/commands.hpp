@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <softkin/io/table/csv.hpp>
 #include <softkin/io/table/settings.hpp>
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/model/model.hpp>
@@ -11,6 +10,8 @@
 #include <vector>
 
 namespace softkin {
+
+struct CsvTable;  // io/table/csv.hpp
 
 /// One actuation to solve for.
 struct ActuationStep {
