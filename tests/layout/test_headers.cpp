@@ -13,7 +13,7 @@ namespace {
 namespace fs = std::filesystem;
 using testing::DocstringFinder;
 
-const fs::path root = SOFTKIN_SOURCE_DIR;
+const fs::path project_folder = SOFTKIN_SOURCE_DIR;
 
 using Headers = std::vector<std::string>;
 
@@ -25,7 +25,7 @@ std::string text_of_source(const fs::path& file) {
 
 /// A list of cmake/public_headers.cmake.
 Headers headers_of(const std::string& list) {
-  const std::string text = text_of_source(root / "cmake/public_headers.cmake");
+  const std::string text = text_of_source(project_folder / "cmake/public_headers.cmake");
   const std::size_t begin = text.find("set(" + list);
   if (begin == std::string::npos) return {};
   std::istringstream words(text.substr(begin, text.find(')', begin) - begin));
@@ -70,7 +70,7 @@ TEST(Headers, ThatAreInstalledAreThereAndListedOnce) {
   std::set<std::string> seen;
   for (const Headers& list : {public_headers(), included_headers()})
     for (const std::string& header : list) {
-      EXPECT_TRUE(fs::is_regular_file(root / "src/softkin" / header)) << header;
+      EXPECT_TRUE(fs::is_regular_file(project_folder / "src/softkin" / header)) << header;
       EXPECT_TRUE(seen.insert(header).second) << header << " is listed twice";
     }
   EXPECT_GT(public_headers().size(), 45u);
@@ -81,7 +81,7 @@ TEST(Headers, ThatAreInstalledIncludeEachOtherAlone) {
   const Headers included = included_headers();
   all.insert(all.end(), included.begin(), included.end());
   for (const std::string& header : all)
-    for (const std::string& other : includes_of(root / "src/softkin" / header))
+    for (const std::string& other : includes_of(project_folder / "src/softkin" / header))
       EXPECT_TRUE(is_in(all, other)) << header << " includes " << other << ", which is not installed";
 }
 
@@ -91,7 +91,7 @@ TEST(Headers, ThatAreThereForTheCompilerAreIncludedByPublicOnes) {
   while (!open.empty()) {
     const std::string header = open.back();
     open.pop_back();
-    for (const std::string& other : includes_of(root / "src/softkin" / header))
+    for (const std::string& other : includes_of(project_folder / "src/softkin" / header))
       if (reached.insert(other).second) open.push_back(other);
   }
   for (const std::string& header : included_headers()) EXPECT_TRUE(reached.contains(header)) << header;
@@ -100,7 +100,7 @@ TEST(Headers, ThatAreThereForTheCompilerAreIncludedByPublicOnes) {
 TEST(Headers, ThatArePublicHaveADocstringForEveryName) {
   std::size_t names = 0;
   for (const std::string& header : public_headers()) {
-    const DocstringFinder found(text_of_source(root / "src/softkin" / header));
+    const DocstringFinder found(text_of_source(project_folder / "src/softkin" / header));
     names += found.names();
     for (const DocstringFinder::Name& name : found.bare())
       ADD_FAILURE() << "src/softkin/" << header << ":" << name.line << ": " << name.name << " has no docstring";
@@ -111,7 +111,7 @@ TEST(Headers, ThatArePublicHaveADocstringForEveryName) {
 /// cpp.md has a row for each of them and none for another.
 TEST(Headers, ThatArePublicAreInTheTableOfTheDocument) {
   static const std::regex row(R"(\n\| `([\w/]+\.hpp)` \|)");
-  const std::string text = text_of_source(root / "docs/cpp.md");
+  const std::string text = text_of_source(project_folder / "docs/cpp.md");
   Headers told;
   for (std::sregex_iterator match(text.begin(), text.end(), row), end; match != end; ++match)
     told.push_back((*match)[1].str());
@@ -121,7 +121,7 @@ TEST(Headers, ThatArePublicAreInTheTableOfTheDocument) {
 TEST(Headers, OfTheExamplesArePublic) {
   const Headers listed = public_headers();
   std::size_t count = 0;
-  for (const auto& entry : fs::directory_iterator(root / "examples/cpp"))
+  for (const auto& entry : fs::directory_iterator(project_folder / "examples/cpp"))
     for (const std::string& header : includes_of(entry.path())) {
       EXPECT_TRUE(is_in(listed, header)) << entry.path() << " includes " << header;
       ++count;
