@@ -32,7 +32,8 @@ int main(int count, char** words) try {
   if (count != 2) return 2;
   std::printf("softkin %s, %s, %s\n", version(), name_of(target()), duration(75).c_str());
   solve(words[1]);
-  std::printf("silicone at a strain of 1: %g MPa\n", calibration::uniaxial_stress({Law::neo_hookean, 0.1}, 1));
+  const calibration::IncompressibleLaw silicone{Law::neo_hookean, 0.1};
+  std::printf("silicone at a strain of 1: %g MPa\n", calibration::uniaxial_stress(silicone, 1));
   std::printf("a stream that was %s\n", drive::name_of(drive::StreamEnd::finished));
   Points corners(4, 3);
   corners << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
