@@ -2,12 +2,12 @@
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/softkin)
 
-# Not the library's own headers: those that need a library beyond Eigen, those of kernels, and those with vectors, which
-# a program built for another processor would pass in other registers.
-set(own lanes.hpp statics_parts.hpp contact energy linear physical target_shape supports vision records_json.hpp physical_json.hpp contacts_json.hpp reinforcement_json.hpp map_tables.hpp vtu_document.hpp)
-list(TRANSFORM own REPLACE "(.+)" "PATTERN;\\1;EXCLUDE")
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/src/softkin DESTINATION ${CMAKE_INSTALL_INCLUDEDIR} FILES_MATCHING PATTERN *.hpp
-        ${own})
+# The headers for users; all others stay inside.
+include(${CMAKE_CURRENT_LIST_DIR}/public_headers.cmake)
+foreach(header ${softkin_public_headers} ${softkin_included_headers})
+  get_filename_component(folder softkin/${header} DIRECTORY)
+  install(FILES ${PROJECT_SOURCE_DIR}/src/softkin/${header} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/${folder})
+endforeach()
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 
 install(TARGETS softkin_settings softkin_core softkin_linear softkin_model softkin_io softkin_energy softkin_contact

@@ -19,6 +19,7 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+from cpp_reference import cpp_reference
 from latex2mathml.converter import convert
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -166,16 +167,6 @@ def python_reference(package: ModuleType) -> str:
             for member in sorted(members):
                 if not member.startswith("_"):
                     text += of_member(value, member)
-    return text
-
-
-def cpp_reference() -> str:
-    """The headers that softkin.hpp includes, as they are: docstrings stand above declarations."""
-    text = "# C++ headers\n\nWhat `#include <softkin/softkin.hpp>` declares, with its docstrings.\n"
-    for path in re.findall(r"#include <(softkin/[^>]+)>", (ROOT / "src/softkin/softkin.hpp").read_text()):
-        header = (ROOT / "src" / path).read_text()
-        body = re.sub(r"^(#pragma once|#include .*)\n", "", header, flags=re.M).strip()
-        text += f"\n## {path}\n\n```cpp\n{body}\n```\n"
     return text
 
 

@@ -2,6 +2,7 @@
 #include <limits>
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
+#include <softkin/io/plot/svg_plot.hpp>
 #include <softkin/runs/page.hpp>
 #include <softkin/runs/ranks.hpp>
 #include <softkin/runs/workspace_file.hpp>

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <chrono>
+#include <softkin/io/plot/svg_plot.hpp>
 #include <softkin/kinematics/hull.hpp>
 #include <softkin/runs/ranks.hpp>
 #include <softkin/runs/workspace_file.hpp>

@@ -28,6 +28,9 @@ def test_its_links_hold(command: str, tmp_path: Path) -> None:
     commands = (site / "reference/commands.html").read_text()
     assert "softkin calibrate pressure" in commands and "--html" in commands
     assert "<math" in (site / "theory.html").read_text()
+    headers = (pages / "reference/cpp.md").read_text()
+    assert "### softkin/runs/jobs.hpp" in headers and "\n[[nodiscard]] Model compile(const RobotSpec& spec);\n" in headers
+    assert "private:" not in headers and "return " not in headers
     for file in site.rglob("*.html"):  # it fetches nothing
         assert not re.findall(r'(?:src|<link[^>]*href)="https?:', file.read_text()), file.name
     (pages / "walking.md").write_text("[nowhere](nowhere.md)")

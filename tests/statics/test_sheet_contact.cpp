@@ -1,3 +1,4 @@
+#include <softkin/model/mesh/mesh_order.hpp>
 #include <softkin/statics/deformation.hpp>
 
 #include "statics/physical_equations.hpp"

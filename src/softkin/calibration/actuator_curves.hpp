@@ -10,25 +10,26 @@ namespace softkin::calibration {
 
 /// A measured point of an actuator's curve.
 struct CurveSample {
-  double input = 0;  // gauge pressure [kPa] or voltage [kV]
-  double ratio = 1;  // volume or area over that without input [-]
-  Branch branch = Branch::loading;
-  std::size_t repeat = 0;  // samples of one sweep have one number
+  double input = 0;                 // gauge pressure [kPa] or voltage [kV]
+  double ratio = 1;                 // volume or area over that without input [-]
+  Branch branch = Branch::loading;  // of the sweep that it is of
+  std::size_t repeat = 0;           // samples of one sweep have one number
 };
 
 /// How well a branch describes its samples.
 struct BranchQuality {
-  std::size_t samples = 0, repeats = 0;
-  double rms = 0;                    // of the samples' ratios around the curve [-]
-  double largest = 0;                // distance of a sample's ratio from the curve [-]
-  std::optional<double> mean_error;  // standard error of the mean of the repeats, largest along the curve [-]
-  std::size_t pooled = 0;            // points that were merged because the ratio fell with the input
+  std::size_t samples = 0, repeats = 0;  // of the branch; sweeps that they are of
+  double rms = 0;                        // of the samples' ratios around the curve [-]
+  double largest = 0;                    // distance of a sample's ratio from the curve [-]
+  std::optional<double> mean_error;      // standard error of the mean of the repeats, largest along the curve [-]
+  std::size_t pooled = 0;                // points that were merged because the ratio fell with the input
 };
 
+/// Curves through the samples of each branch, and how well they fit.
 struct CurveFit {
-  CurveBranch loading;
-  std::optional<CurveBranch> unloading;
-  BranchQuality loading_quality, unloading_quality;
+  CurveBranch loading;                               // of a rising input
+  std::optional<CurveBranch> unloading;              // of a falling one; none: no samples
+  BranchQuality loading_quality, unloading_quality;  // the latter meaningless without an unloading branch
 };
 
 /// Monotone curves through the samples of each branch.

@@ -11,8 +11,8 @@ namespace softkin::calibration {
 
 /// Rows from one turning point of what drives a test to the next, both included.
 struct Sweep {
-  std::size_t begin = 0, end = 0;  // [begin, end)
-  Branch branch = Branch::loading;
+  std::size_t begin = 0, end = 0;   // [begin, end)
+  Branch branch = Branch::loading;  // does the drive rise or fall
 };
 
 /// Cuts a test where its drive turns. A turn is a retreat by more than a tenth of the drive's range: smaller ones are
@@ -28,9 +28,9 @@ using softkin::SyringeSetup;
 
 /// A row of a test after Eq. (19).
 struct SyringeSample {
-  CurveSample sample;   // gauge pressure [kPa]
-  std::size_t run = 0;  // of the runs given
-  std::size_t line = 0;
+  CurveSample sample;    // gauge pressure [kPa]
+  std::size_t run = 0;   // of the runs given
+  std::size_t line = 0;  // of the run's file
 };
 
 /// Volume ratios of all runs, cut into loading and unloading where the syringe turns.
@@ -46,8 +46,8 @@ struct SyringeSample {
 
 /// Samples of the runs of a dielectric elastomer, cut where the voltage turns, areas over that without voltage.
 struct VoltageSamples {
-  std::vector<CurveSample> samples;
-  std::vector<double> rest_ratios;  // per run: area ratio of the table without voltage; the others were divided by it
+  std::vector<CurveSample> samples;  // of all runs
+  std::vector<double> rest_ratios;   // per run: area ratio of the table without voltage; the others were divided by it
 };
 
 /// A run's rows within a fiftieth of its highest voltage count as without voltage; those of its first sweep are taken.

@@ -16,8 +16,8 @@ namespace softkin::calibration {
 /// l the stretch, a the branch's viscous stretch; C_v = diag(a^2, 1/a, 1/a), so that this is the energy
 /// G/2 (C_v^-1 : C - 3) with dC_v/dt = (C - (C : C_v^-1) C_v / 3) / tau of the physical formulation's viscosity.
 struct MaxwellElement {
-  IncompressibleLaw law;
-  std::vector<ViscousBranch> branches;
+  IncompressibleLaw law;                // beside which the branches act
+  std::vector<ViscousBranch> branches;  // moduli G [MPa] and relaxation times tau [s]
 };
 
 /// What is imposed over time: a stretch [-] or a nominal stress [MPa], linear between the times. Before the first time
@@ -47,6 +47,7 @@ struct UnitBranch {
 /// Derivatives of the law's nominal stress at a stretch by whatever numbers it is made of.
 using LawSlopes = std::function<Eigen::VectorXd(double stretch)>;
 
+/// What a history of stresses leads to.
 struct LoadedStretch {
   Eigen::VectorXd stretch;  // at each time [-]
   Eigen::MatrixXd slopes;   // its derivatives: by the numbers of the law, then by modulus and ln(time) of each branch

@@ -23,10 +23,10 @@ namespace softkin::calibration {
 
 /// A ratio from several specimens.
 struct RatioEstimate {
-  double ratio = 1;   // [-]
-  double spread = 0;  // relative standard deviation of one specimen [-]; of a single one 0
-  double least = 1, greatest = 1;
-  std::size_t specimens = 0;
+  double ratio = 1;                // [-]
+  double spread = 0;               // relative standard deviation of one specimen [-]; of a single one 0
+  double least = 1, greatest = 1;  // of single specimens
+  std::size_t specimens = 0;       // that it is of
 };
 
 /// The mean of the logarithms, weighted by the squares of the sensitivities: to first order the least squares in
@@ -53,20 +53,21 @@ struct RatioEstimate {
 
 /// Young's moduli from the forces of the testing machine, least squares over the specimens that have one.
 struct Moduli {
-  double a_mpa = 0, b_mpa = 0;
-  double spread = 0;  // relative standard deviation of one specimen [-]; of a single one 0
-  std::size_t specimens = 0;
+  double a_mpa = 0, b_mpa = 0;  // of A and B, Young's [MPa]
+  double spread = 0;            // relative standard deviation of one specimen [-]; of a single one 0
+  std::size_t specimens = 0;    // that have a force
 };
 
 /// A ratio from several specimens: E_A / E_B (physical) or R_omega A / R_omega B (target-shape).
 struct RatioFit {
-  Formulation formulation = Formulation::physical;
-  Status status = Status::not_converged;  // converged where every specimen is
-  RatioEstimate estimate;                 // of the specimens that are converged; 0 of them: meaningless
-  std::vector<SpecimenFit> specimens;     // in the order given
-  std::optional<Moduli> moduli;           // physical, where a force is given
+  Formulation formulation = Formulation::physical;  // of the simulated tests; says which ratio it is
+  Status status = Status::not_converged;            // converged where every specimen is
+  RatioEstimate estimate;                           // of the specimens that are converged; 0 of them: meaningless
+  std::vector<SpecimenFit> specimens;               // in the order given
+  std::optional<Moduli> moduli;                     // physical, where a force is given
 };
 
+/// Told how much of the simulations is done, 0 to 1.
 using ShareDone = std::function<void(double share)>;
 
 /// The ratio at which simulated tensile tests move the interface as the measured ones did: for every specimen by

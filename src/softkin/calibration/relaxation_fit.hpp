@@ -11,12 +11,13 @@ namespace softkin::calibration {
 
 /// A number that was fitted.
 struct Estimate {
-  double value = 0;
+  double value = 0;                 // in the unit of what it is of
   std::optional<double> deviation;  // standard deviation; none: held, at a bound, or not determined by the data
 };
 
+/// What was fitted of a branch.
 struct BranchEstimate {
-  Estimate modulus_MPa, time_s;
+  Estimate modulus_MPa, time_s;  // shear modulus; relaxation time
 };
 
 /// An element fitted with so many branches.
@@ -36,12 +37,14 @@ enum class BranchCount {
   information,  // the fewest whose criterion no other number is below by more than 6
 };
 
+/// An element fitted to tests of relaxation, creep or cycles, and those with fewer branches that were tried.
 struct RelaxationFit {
-  std::vector<ElementFit> tried;  // without branches, with one, ...
-  std::size_t chosen = 0;         // its number of branches
-  BranchCount by = BranchCount::information;
+  std::vector<ElementFit> tried;                     // without branches, with one, ...
+  std::size_t chosen = 0;                            // its number of branches
+  BranchCount by = BranchCount::information;         // what chose the number
   double shortest_s = 0, longest_s = 0;              // between which the tests tell relaxation times
   std::optional<double> repeat_MPa, repeat_stretch;  // deviation between repeated runs; none: there are none
+  /// The one that was chosen.
   [[nodiscard]] const ElementFit& best() const { return tried[chosen]; }
 };
 

@@ -12,19 +12,21 @@ namespace softkin::calibration {
 /// one (cauchy).
 enum class Loss { squares, huber, cauchy };
 
+/// Of Loss, as options have them.
 constexpr const char* loss_names[] = {"squares", "huber", "cauchy"};
 
+/// How a robot is fitted to its poses.
 struct RobotFitOptions {
-  StaticsOptions solver{};
-  Loss loss = Loss::squares;
+  StaticsOptions solver{};                    // of each equilibrium
+  Loss loss = Loss::squares;                  // of a reading that is far off
   std::array<double, readings> deviations{};  // of each kind of reading; 0: told by what is left
-  int max_iterations = 30;
-  int threads = 0;             // poses side by side; 0: as many as the machine has
+  int max_iterations = 30;                    // of the fit
+  int threads = 0;                            // poses side by side; 0: as many as the machine has
   bool ordered = false;        // where something rubs or a motor has play: each pose goes on from the one before, the
                                // first from rest; else each from rest
   std::vector<bool> kept{};    // per pose: not fitted to; empty: none
   double match_within_mm = 0;  // how far a dot without a name may be from its marker; 0: there are no such dots
-  OutlineOptions outlines{};
+  OutlineOptions outlines{};   // of pictures
 };
 
 /// What the robot does where numbers are as they are.
@@ -35,8 +37,8 @@ struct ComputedPoses {
 
 /// The root mean square of readings.
 struct Misfit {
-  double rms = 0, largest = 0;
-  std::size_t readings = 0;
+  double rms = 0, largest = 0;  // [unit of the readings]
+  std::size_t readings = 0;     // that it is of
 };
 
 /// Outlines in pictures beside the robot's.
@@ -48,6 +50,7 @@ struct OutlineFit {
   Misfit fitted_mm, kept_mm;                       // distances of points that count, of poses fitted to, of the others
 };
 
+/// The numbers of a robot that fit its poses best, how well they are known, and what the robot then does.
 struct RobotFit {
   Status status = Status::not_converged;  // interrupted: the best so far
   std::string remark{};                   // why it is not converged
@@ -56,19 +59,20 @@ struct RobotFit {
   std::vector<int> at_bound;              // per number: -1 low, +1 high, else 0
   MeasuredPoses named;                    // the poses, dots as readings of the markers that they are matched to
   DotMatches dots;                        // which these are
-  ComputedPoses computed;
+  ComputedPoses computed;                 // at the values
   std::array<double, readings> scales{};  // deviation of each kind of reading: given, or by what is left; 0: none of it
   Misfit markers_mm;                      // distances of markers, of poses that were fitted to
   Misfit kept_mm;                         // of the others
-  OutlineFit outlines;
-  int iterations = 0;
-  int without_equilibrium = 0;  // poses
-  double seconds = 0;
+  OutlineFit outlines;                    // empty without pictures
+  int iterations = 0;                     // that the fit took
+  int without_equilibrium = 0;            // poses
+  double seconds = 0;                     // that it took [s]
 };
 
+/// What a fit tells while it runs.
 struct FitProgress {
-  int iteration = 0, poses_done = 0, poses = 0;
-  double rms_mm = 0;  // of the last iteration; 0: none yet
+  int iteration = 0, poses_done = 0, poses = 0;  // from 1; poses solved in it, of so many
+  double rms_mm = 0;                             // of the last iteration; 0: none yet
 };
 /// False: stop.
 using FitCallback = std::function<bool(const FitProgress&)>;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <softkin/io/scene/file_contents.hpp>
@@ -14,11 +15,12 @@ namespace softkin::calibration {
 /// measured: base.x, base.y, base.z [mm], base.rx, base.ry, base.rz [degrees], where the robot's frame stands in it;
 /// camera.x and so on, the same where gravity turns along, as when nothing but the camera was moved.
 struct FittedNumber {
-  std::string name;
+  std::string name;               // its path in the scene, or the coordinate's name
   std::optional<double> start{};  // none: the scene's
-  double low = -std::numeric_limits<double>::infinity(), high = std::numeric_limits<double>::infinity();
-  std::optional<double> deviation{};  // of the start as a prior; none: nothing is known before
-  std::string option{};               // that asks for it, for messages
+  double low = -std::numeric_limits<double>::infinity(),
+         high = std::numeric_limits<double>::infinity();  // bounds, in its unit
+  std::optional<double> deviation{};                      // of the start as a prior; none: nothing is known before
+  std::string option{};                                   // that asks for it, for messages
 };
 
 /// "NAME", "NAME=start", "NAME=start,low,high", "NAME=mean+-deviation" or "NAME=mean+-deviation,low,high".
@@ -30,7 +32,7 @@ struct FittedNumber {
 
 /// A coordinate of the measuring frame that is known, named as those that are fitted.
 struct GivenNumber {
-  std::string name;
+  std::string name;      // of a coordinate of the frame
   double value = 0;      // [mm, degrees]
   std::string option{};  // that gives it, for messages
 };
@@ -44,8 +46,8 @@ struct GivenNumber {
 
 /// Where the robot's frame stands in that of the measurements: x = rotation X + place.
 struct MeasuringFrame {
-  Mat3 rotation = Mat3::Identity();
-  Vec3 place{0, 0, 0};
+  Mat3 rotation = Mat3::Identity();  // of the robot's axes, in the frame of the measurements
+  Vec3 place{0, 0, 0};               // of the robot's origin there [mm]
 };
 
 /// A robot as a function of some of its numbers. Files are read once. For one thread at a time.
@@ -58,13 +60,18 @@ class NumberedRobot {
   NumberedRobot(const AskedScene& asked, const std::vector<FittedNumber>& numbers,
                 std::vector<std::filesystem::path>& inputs, const std::vector<GivenNumber>& given = {});
 
+  /// Those that are fitted, in the order of all values below.
   [[nodiscard]] const std::vector<FittedNumber>& numbers() const { return numbers_; }
+  /// Coordinates of the measuring frame that stay.
   [[nodiscard]] const std::vector<GivenNumber>& given() const { return given_; }
+  /// Where a fit begins: what was given, else the scene's value.
   [[nodiscard]] Eigen::VectorXd start() const;
   /// What a number is of the order of: what steps of it are measured by.
   [[nodiscard]] double size(std::size_t number) const { return sizes_[number]; }
 
+  /// The robot with these numbers.
   [[nodiscard]] Model model(const Eigen::VectorXd& values) const;
+  /// The measuring frame with these numbers.
   [[nodiscard]] MeasuringFrame frame(const Eigen::VectorXd& values) const;
   /// Is it one of the measuring frame?
   [[nodiscard]] bool of_frame(std::size_t number) const;

@@ -11,8 +11,9 @@ class TestLog;
 
 /// A bar of two materials along x, from 0 to length; its axis is y = z = 0.
 struct BarShape {
-  double length_mm = 100, interface_mm = 50, width_mm = 20, height_mm = 10;
-  int cells = 3;  // across the height, >= 1; the other edges are as near to this cell's as whole numbers allow
+  double length_mm = 100, interface_mm = 50, width_mm = 20,
+         height_mm = 10;  // length along x; where B begins; sides of the cross-section
+  int cells = 3;          // across the height, >= 1; the other edges are as near to this cell's as whole numbers allow
 };
 
 /// Linear tetrahedra, five to a cell, mirrored from cell to cell. Regions: volumes A (x < interface) and B, surfaces
@@ -33,26 +34,28 @@ struct SpecimenOptions {
   Law law = Law::neo_hookean;            // physical: one that takes E and nu
   double poisson_ratio = 0.45;           // physical, of both materials [-], -1 < nu < 0.5
   double stiffer_shape_ratio = 1;        // target-shape: R_omega of the stiffer material, 0 < R <= 1
-  StaticsOptions statics;
-  std::function<bool()> go_on;  // false: a simulation ends at once, status interrupted
-  TestLog* log = nullptr;       // where tests that are done are kept
+  StaticsOptions statics;                // of each equilibrium
+  std::function<bool()> go_on;           // false: a simulation ends at once, status interrupted
+  TestLog* log = nullptr;                // where tests that are done are kept
 };
 
 /// Cells across the height, as they are or as 0 stands for.
 [[nodiscard]] int cells_across(const SpecimenOptions& options, Formulation formulation);
 
-/// The shape ratios of A and B whose ratio has this logarithm; the stiffer one has that of the options.
+/// R_omega of A and B.
 struct ShapeRatios {
-  double a = 1, b = 1;
+  double a = 1, b = 1;  // of either material [-]
 };
+/// Those whose ratio has this logarithm; the stiffer material has the shape ratio `stiffer`.
 [[nodiscard]] ShapeRatios shape_ratios(double log_ratio, double stiffer);
 
+/// What a simulated test measures.
 struct SpecimenResponse {
-  Status status = Status::not_converged;
-  std::string remark;     // of the solver, where status is not converged
-  double moved_mm = 0;    // mean of the interface, along the bar
-  double turned_deg = 0;  // of the interface about the bar's axis
-  double force_n = 0;     // physical: along the bar at the free end, for E_B = 1 MPa
+  Status status = Status::not_converged;  // of its solve
+  std::string remark;                     // of the solver, where status is not converged
+  double moved_mm = 0;                    // mean of the interface, along the bar
+  double turned_deg = 0;                  // of the interface about the bar's axis
+  double force_n = 0;                     // physical: along the bar at the free end, for E_B = 1 MPa
 };
 
 /// A tensile or a twist test of a two-material bar, simulated. Physical: tetrahedra of order 2; target-shape: of order

@@ -10,9 +10,9 @@ namespace softkin::calibration {
 /// neo-hookean: c10 alone; mooney-rivlin: c10, c01; yeoh: c10, c20, c30; gent: c10 and jm, W = -c10 jm ln(1 - (I1 -
 /// 3) / jm).
 struct IncompressibleLaw {
-  Law law = Law::neo_hookean;
-  double c10 = 0, c01 = 0, c20 = 0, c30 = 0;
-  double jm = 0;  // gent: I1 - 3 < jm [-]; 0: no limit
+  Law law = Law::neo_hookean;                 // which of the constants count
+  double c10 = 0, c01 = 0, c20 = 0, c30 = 0;  // [MPa]
+  double jm = 0;                              // gent: I1 - 3 < jm [-]; 0: no limit
 
   /// At rest [MPa]: 6 (c10 + c01).
   [[nodiscard]] double youngs_modulus() const { return 6 * (c10 + c01); }
@@ -32,9 +32,9 @@ struct IncompressibleLaw {
 
 /// How well a curve follows the data.
 struct FitQuality {
-  double r_squared = 0;  // 1 - squares left over squares about the mean [-]
-  double rms_mpa = 0;
-  double largest_mpa = 0;
+  double r_squared = 0;    // 1 - squares left over squares about the mean [-]
+  double rms_mpa = 0;      // of what is left of stresses
+  double largest_mpa = 0;  // the largest of that
 };
 
 /// The linear range of a tensile test: the longest one from its first point on in which no stress is off the straight
@@ -42,10 +42,10 @@ struct FitQuality {
 struct LinearRange {
   double modulus_mpa = 0;  // slope of that line
   double end_strain = 0;   // [-]
-  std::size_t points = 0;
-  bool whole = false;     // does the range end only with the data
-  double offset_mpa = 0;  // of the free straight line over the range: a test that was not zeroed has one
-  FitQuality quality;     // over the range
+  std::size_t points = 0;  // in the range
+  bool whole = false;      // does the range end only with the data
+  double offset_mpa = 0;   // of the free straight line over the range: a test that was not zeroed has one
+  FitQuality quality;      // over the range
 };
 
 /// tolerance  the share, > 0
@@ -54,11 +54,11 @@ struct LinearRange {
 
 /// An incompressible law fitted to a tensile test.
 struct LawFit {
-  IncompressibleLaw law;
+  IncompressibleLaw law;  // what was fitted
   bool at_bound = false;  // without the bound E >= 1 % of the data's mean secant modulus the initial modulus is less
   std::optional<double> falls_at;  // strain from -0.5 to the data's end beyond which, seen from 0, the stress falls [-]
-  FitQuality quality;
-  std::size_t points = 0;
+  FitQuality quality;              // over the points that were fitted
+  std::size_t points = 0;          // that were fitted
 };
 
 /// Least squares in the stress; linear in the constants.

@@ -15,10 +15,10 @@ enum class Law {
 
 /// A law and its constants [MPa]; those that the law does not use are 0.
 struct ElasticLaw {
-  Law law = Law::neo_hookean;
-  double mu = 0, lambda = 0;
-  double c10 = 0, c01 = 0, c20 = 0, c30 = 0, bulk = 0;
-  double jm = 0;  // [-]: the limit of bar I1 - 3
+  Law law = Law::neo_hookean;                           // which energy
+  double mu = 0, lambda = 0;                            // Lame's constants
+  double c10 = 0, c01 = 0, c20 = 0, c30 = 0, bulk = 0;  // of the energies above; bulk: the bulk modulus
+  double jm = 0;                                        // [-]: the limit of bar I1 - 3
 };
 
 /// Has the law no energy for J <= 0?

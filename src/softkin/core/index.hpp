@@ -4,6 +4,6 @@
 
 namespace softkin {
 
-using Index = std::int32_t;
+using Index = std::int32_t;  // of vertices, elements, actuators and what else is counted; -1 often stands for none
 
 }  // namespace softkin

@@ -12,7 +12,7 @@ namespace softkin {
 
 /// What a long computation tells while it runs.
 struct Progress {
-  int iteration = 0;
+  int iteration = 0;        // how many were done
   double step_mm = 0;       // largest move of a vertex in the last iteration [mm]
   double tolerance_mm = 0;  // the step at which it stops [mm]
   double share = -1;        // of the way to what was asked for, at the last equilibrium on it [-]; < 0: not known
@@ -28,9 +28,9 @@ class Deadline {
   /// So many seconds from now, > 0. Throws InvalidInput on another number; infinity: never
   explicit Deadline(double budget_s);
 
-  [[nodiscard]] bool passed() const { return std::chrono::steady_clock::now() >= end_; }
-  [[nodiscard]] bool any() const { return end_ != std::chrono::steady_clock::time_point::max(); }
-  [[nodiscard]] double budget_s() const { return budget_s_; }
+  [[nodiscard]] bool passed() const { return std::chrono::steady_clock::now() >= end_; }           // is it over
+  [[nodiscard]] bool any() const { return end_ != std::chrono::steady_clock::time_point::max(); }  // will it ever be
+  [[nodiscard]] double budget_s() const { return budget_s_; }  // as it was given [s]; infinity: never
   /// "the budget of 5 s was spent"
   [[nodiscard]] std::string spent() const;
 

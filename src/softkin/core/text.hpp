@@ -38,6 +38,7 @@ namespace softkin {
 /// The text on one line and safe to print: control characters and bytes that are no UTF-8 as '?'.
 [[nodiscard]] std::string on_one_line(std::string_view text);
 
+/// Of the coordinates 0, 1, 2.
 inline constexpr const char* axis_names[] = {"x", "y", "z"};
 
 }  // namespace softkin

@@ -19,6 +19,7 @@ struct LinkOptions {
 /// same, and the stream ends. quick_stop: M410, in the middle of a move.
 enum class Order { go, pause, stop, quick_stop };
 
+/// Why a stream ended.
 enum class StreamEnd {
   finished,        // everything was executed, and the board stands where it should
   stopped,         // by order, and the board stands where the last line that was sent leads
@@ -37,15 +38,16 @@ enum class StreamEnd {
 /// board; those after it up to `sent` perhaps. Accepted moves have been executed where the position is known; else the
 /// last of them, which the board had planned ahead, perhaps not.
 struct StreamReport {
-  StreamEnd end = StreamEnd::no_answer;
-  std::string message;
-  std::size_t lines = 0, acknowledged = 0, sent = 0;
-  bool position_known = false;
-  std::vector<double> position;  // per axis, where it is known
-  std::size_t resends = 0;       // lines that the board asked for again
-  std::size_t timeouts = 0;      // lines sent again because no answer came
+  StreamEnd end = StreamEnd::no_answer;               // why it ended
+  std::string message;                                // the same for people, in a sentence
+  std::size_t lines = 0, acknowledged = 0, sent = 0;  // of the program; accepted; sent
+  bool position_known = false;                        // was the board asked where it stands, and answered
+  std::vector<double> position;                       // per axis, where it is known
+  std::size_t resends = 0;                            // lines that the board asked for again
+  std::size_t timeouts = 0;                           // lines sent again because no answer came
 };
 
+/// What is asked and told while a program is streamed; each may be empty.
 struct LinkHooks {
   std::function<Order()> order;                       // asked at least every 50 ms
   std::function<void(char, const std::string&)> log;  // '>' sent, '<' received, '!' event

@@ -11,8 +11,8 @@ using Steps = std::vector<std::int64_t>;
 
 /// A straight move of all motors together, or a rest where it leads nowhere.
 struct Move {
-  Steps target;
-  double seconds = 0;
+  Steps target;          // of all motors
+  double seconds = 0;    // that it lasts
   std::size_t line = 0;  // of the commands; 0: home
 };
 

@@ -9,7 +9,7 @@ namespace softkin::drive {
 
 /// A line that moves motors or waits.
 struct GcodeLine {
-  std::string text;
+  std::string text;              // without number, checksum and end
   double patience_s = 0;         // how long a sound board may take to answer: moves before it have to end first
   std::vector<double> position;  // per axis of the program, after the line
   std::size_t row = 0;           // line of the commands; 0: home
@@ -20,8 +20,8 @@ struct GcodeProgram {
   std::string axes;                // letters
   std::vector<std::string> setup;  // moves nothing, may be repeated; ends with the G92 of the start
   std::vector<double> start;       // per axis
-  std::vector<GcodeLine> lines;
-  double drain_s = 0;  // how long the moves that a board plans ahead may last
+  std::vector<GcodeLine> lines;    // moves and rests, in their order
+  double drain_s = 0;              // how long the moves that a board plans ahead may last
 };
 
 /// G-code for Marlin. G1 names every axis, absolute (G90), in whole steps; a rest is G4. M400 stands between the
@@ -37,12 +37,13 @@ struct GcodeProgram {
 
 /// Gauge pressures over time; between rows they change linearly.
 struct PressureSchedule {
-  std::vector<std::string> channels;
+  std::vector<std::string> channels;  // names, in the hardware file's order
+  /// Pressures at one time.
   struct Row {
-    double time_s = 0;
+    double time_s = 0;        // from the first row
     std::vector<double> kpa;  // per channel
   };
-  std::vector<Row> rows;
+  std::vector<Row> rows;  // times ascend
 };
 
 /// The pressures that the chambers are commanded to, one row for each of the commands.
@@ -55,12 +56,13 @@ struct PressureSchedule {
 
 /// What is to be driven, within all limits.
 struct Plan {
-  Commands commands;
-  Machine machine;
-  Motion motion;
-  GcodeProgram program;  // no lines where there is no motor
-  PressureSchedule schedule;
+  Commands commands;          // asked for
+  Machine machine;            // that carries them out
+  Motion motion;              // of its motors
+  GcodeProgram program;       // no lines where there is no motor
+  PressureSchedule schedule;  // of its regulators
 
+  /// Is there anything to send to a board?
   [[nodiscard]] bool has_motors() const { return !machine.tendons.empty() || !machine.syringes.empty(); }
 };
 

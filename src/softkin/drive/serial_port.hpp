@@ -21,6 +21,7 @@ class SerialPort {
   /// All of it, or false where the port is gone or takes nothing for timeout_s.
   [[nodiscard]] bool write(std::string_view bytes, double timeout_s);
 
+  /// Of a line: it came, it has not come yet, or the port is gone.
   enum class Read { line, nothing, lost };
   /// The next line without its end, once it is whole; waits at most timeout_s (0: does not wait).
   [[nodiscard]] Read read_line(std::string& line, double timeout_s);

@@ -21,9 +21,9 @@ void write_file(const std::filesystem::path& path, const std::function<void(std:
 
 /// A file that a command is asked to write.
 struct Output {
-  std::string option;  // that names it, for messages
-  std::filesystem::path file;
-  std::size_t shapes = 0;  // a series' .pvd: its shapes are written beside it
+  std::string option;          // that names it, for messages
+  std::filesystem::path file;  // to be written
+  std::size_t shapes = 0;      // a series' .pvd: its shapes are written beside it
   /// Is a file of that name softkin's although it does not say so? Empty: none is.
   std::function<bool(const std::filesystem::path&)> is_own{};
 };

@@ -23,8 +23,9 @@ struct EstimatedUnknown {
 /// throws  InvalidInput naming option and text
 [[nodiscard]] EstimatedUnknown parse_unknown(const std::string& option, const std::string& text);
 
+/// How an Estimator searches.
 struct EstimatorOptions {
-  StaticsOptions statics{};
+  StaticsOptions statics{};     // of each equilibrium
   int max_iterations = 40;      // >= 1
   double accuracy = 0.1;        // what it may leave to the least cost, over the deviation of what is told, > 0
   bool leave_out = true;        // readings that contradict the others
@@ -36,9 +37,9 @@ struct EstimatorOptions {
 
 /// A number that was told.
 struct ToldNumber {
-  std::string name;  // of the command; materials.REGION.stiffness
-  std::string unit;  // "": over what the scene says
-  double value = 0, deviation = 0;
+  std::string name;                            // of the command; materials.REGION.stiffness
+  std::string unit;                            // "": over what the scene says
+  double value = 0, deviation = 0;             // its most probable value, and its standard deviation
   double known_mean = 0, known_deviation = 0;  // before
   int at_bound = 0;                            // -1: low, 1: high end of its range
   Index actuator = -1;                         // of the model; -1: it is no command
@@ -46,7 +47,7 @@ struct ToldNumber {
 
 /// Where a force was told to act.
 struct ToldPlace {
-  std::string force;
+  std::string force;                        // its name
   Vec3 at_rest{0, 0, 0}, present{0, 0, 0};  // [mm]
   Mat3 covariance = Mat3::Zero();           // of at_rest, in the surface [mm^2]
   Mat3 known_covariance = Mat3::Zero();     // before
@@ -54,27 +55,28 @@ struct ToldPlace {
 
 /// Readings that belong together, as a marker's coordinates do.
 struct ReadingGroup {
-  std::string name;
-  std::vector<Index> columns;
+  std::string name;            // of the marker, the support or the sensor
+  std::vector<Index> columns;  // of the readings, by their places
 };
 
+/// What readings tell: the most probable numbers and places, how well they are known, and the robot's shape.
 struct Estimate {
-  Status status = Status::not_converged;
-  std::string remark{};               // why it is not converged
-  std::vector<ToldNumber> numbers{};  // in the order of the unknowns
-  std::vector<ToldPlace> places{};
-  Eigen::MatrixXd covariance{};         // of the numbers, then two tangents of each place
-  Eigen::MatrixXd near_covariance{};    // the same to first order near what is told, of shapes and readings
-  Eigen::VectorXd computed{};           // readings
-  Eigen::VectorXd deviations{};         // of the computed ones, as the estimate leaves them
-  double chi_square = 0;                // of the readings that were used
-  double freedoms = 0;                  // which it is to be compared with: readings less what they had to tell
-  std::vector<std::size_t> left_out{};  // groups
-  State state{};                        // of the model; multipliers included
-  Actuation actuation{};                // with what was told
-  std::vector<Points> moves{};          // of the vertices by each column of the covariance [mm per unit]
-  int iterations = 0, equilibria = 0;
-  double seconds = 0;
+  Status status = Status::not_converged;  // of the search
+  std::string remark{};                   // why it is not converged
+  std::vector<ToldNumber> numbers{};      // in the order of the unknowns
+  std::vector<ToldPlace> places{};        // of the forces whose place was unknown
+  Eigen::MatrixXd covariance{};           // of the numbers, then two tangents of each place
+  Eigen::MatrixXd near_covariance{};      // the same to first order near what is told, of shapes and readings
+  Eigen::VectorXd computed{};             // readings
+  Eigen::VectorXd deviations{};           // of the computed ones, as the estimate leaves them
+  double chi_square = 0;                  // of the readings that were used
+  double freedoms = 0;                    // which it is to be compared with: readings less what they had to tell
+  std::vector<std::size_t> left_out{};    // groups
+  State state{};                          // of the model; multipliers included
+  Actuation actuation{};                  // with what was told
+  std::vector<Points> moves{};            // of the vertices by each column of the covariance [mm per unit]
+  int iterations = 0, equilibria = 0;     // that the search took
+  double seconds = 0;                     // that it took [s]
 
   /// By how many standard deviations the chi-square is too large; negative: it is small.
   ///
@@ -114,6 +116,7 @@ class Estimator {
   /// The last estimate is forgotten.
   void forget();
 
+  /// The readings by what they are of; Estimate::left_out has places among these.
   [[nodiscard]] const std::vector<ReadingGroup>& groups() const;
   /// Actuators of the model that are told, so that a table need not have them.
   [[nodiscard]] std::vector<Index> told_actuators() const;

@@ -11,14 +11,14 @@ namespace softkin {
 
 /// A marker is to be at a point.
 struct PositionGoal {
-  Index marker = 0;
+  Index marker = 0;                            // of the model
   Vec3 target = Vec3::Zero();                  // [mm]
   std::array<bool, 3> axes{true, true, true};  // coordinates that count
 };
 
 /// A marker is to lie in a plane.
 struct PlaneGoal {
-  Index marker = 0;
+  Index marker = 0;             // of the model
   Vec3 point = Vec3::Zero();    // of the plane [mm]
   Vec3 normal = Vec3::UnitZ();  // of any length > 0
 };
@@ -33,8 +33,9 @@ struct DirectionGoal {
 /// The robot is to exert a force on what holds it or on what it touches: on a support minus what that exerts on the
 /// robot; on an obstacle or a body what all that touches it exerts on it. Its error is that of the force, by mm_per_N.
 struct ForceGoal {
+  /// What bears the force: an entry of the description's `fixed`; an obstacle or a body.
   enum class On { support, part };
-  On on = On::support;
+  On on = On::support;                         // which of these index numbers
   Index index = 0;                             // of model.supports; of model.contact.parts, an obstacle or a body
   Vec3 force = Vec3::Zero();                   // [N]
   std::array<bool, 3> axes{true, true, true};  // components that count
@@ -43,8 +44,8 @@ struct ForceGoal {
 
 /// What inverse kinematics is to reach, with its weight (> 0) in the sum of squares.
 struct Goal {
-  std::variant<PositionGoal, PlaneGoal, DirectionGoal, ForceGoal> what;
-  double weight = 1;
+  std::variant<PositionGoal, PlaneGoal, DirectionGoal, ForceGoal> what;  // one goal
+  double weight = 1;                                                     // of its squared error, > 0
 };
 
 /// throws InvalidInput on a marker that the model does not have, a number that is not finite, an empty list, a weight

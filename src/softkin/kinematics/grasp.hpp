@@ -45,8 +45,8 @@ struct Grasp {
 
 /// A direction to pull in, and what it is called.
 struct PullDirection {
-  std::string name;  // "x"
-  Vec3 along{0, 0, 0};
+  std::string name;     // "x"
+  Vec3 along{0, 0, 0};  // its direction; of length 1 where it is pulled along
 };
 
 /// x, -x, y, -y, z, -z.

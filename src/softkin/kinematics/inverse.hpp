@@ -10,14 +10,15 @@ enum class InverseMethod { newton, gradient };
 /// "newton" or "gradient".
 [[nodiscard]] const char* name_of(InverseMethod method);
 
+/// How inverse kinematics searches. Ranges stand behind the values.
 struct InverseOptions {
-  InverseMethod method = InverseMethod::newton;
-  double tolerance_mm = 1e-3;  // every goal's error at which it is reached, > 0
-  int max_equilibria = 200;    // >= 1; newton
-  int max_iterations = 30;     // >= 1; gradient: i_max
-  int other_starts = 3;        // >= 0; newton: from where it is tried again before a goal is called unreachable
-  Actuation preferred{};       // m, in the ranges: with more actuators than needed, the actuation to stay near; empty:
-                               // the start's
+  InverseMethod method = InverseMethod::newton;  // how it searches
+  double tolerance_mm = 1e-3;                    // every goal's error at which it is reached, > 0
+  int max_equilibria = 200;                      // >= 1; newton
+  int max_iterations = 30;                       // >= 1; gradient: i_max
+  int other_starts = 3;   // >= 0; newton: from where it is tried again before a goal is called unreachable
+  Actuation preferred{};  // m, in the ranges: with more actuators than needed, the actuation to stay near; empty:
+                          // the start's
   double preferred_tolerance = 1e-3;  // > 0; distance from the nearest such actuation, share of each range [-]; newton
   std::vector<bool> free{};           // m: actuators that may change; empty: all
   const Sensitivity* start_sensitivity = nullptr;  // of the start, an equilibrium, such as the last
@@ -35,25 +36,26 @@ enum class InverseStatus { reached, unreachable, not_converged, interrupted };
 
 /// An equilibrium that was asked for on the way.
 struct InverseTrial {
-  Actuation actuation;  // asked for
-  Status status = Status::not_converged;
-  double error_mm = 0;  // largest of the goals; infinite where status is not converged
-  int iterations = 0;   // of Newton's method or Algorithm 1
+  Actuation actuation;                    // asked for
+  Status status = Status::not_converged;  // of its solve
+  double error_mm = 0;                    // largest of the goals; infinite where status is not converged
+  int iterations = 0;                     // of Newton's method or Algorithm 1
 };
 
+/// The best actuation that a search found, and how it ended.
 struct InverseResult {
-  InverseStatus status = InverseStatus::not_converged;
-  bool stopped = false;       // by progress or the deadline: the best so far
-  Equilibrium equilibrium;    // at the best actuation found, inside every range
-  Eigen::VectorXd errors_mm;  // per goal; of a force times its mm_per_N
-  std::vector<int> active;    // m: -1 at the low end of its range and pushed there, +1 at the high end, else 0
-  double slope = 0;           // norm of the projected gradient of the error (root of the weighted sum of squares)
-                              // by the share of each range [mm]: 0 where no allowed change helps; newton
-  Sensitivity sensitivity;    // at the equilibrium, to 1e-6; newton
-  int iterations = 0, equilibria = 0;
-  std::vector<InverseTrial> history;  // every equilibrium
-  std::string remark;                 // why it stopped, where status is not reached
-  double seconds = 0;
+  InverseStatus status = InverseStatus::not_converged;  // of the search
+  bool stopped = false;                                 // by progress or the deadline: the best so far
+  Equilibrium equilibrium;                              // at the best actuation found, inside every range
+  Eigen::VectorXd errors_mm;                            // per goal; of a force times its mm_per_N
+  std::vector<int> active;  // m: -1 at the low end of its range and pushed there, +1 at the high end, else 0
+  double slope = 0;         // norm of the projected gradient of the error (root of the weighted sum of squares)
+                            // by the share of each range [mm]: 0 where no allowed change helps; newton
+  Sensitivity sensitivity;  // at the equilibrium, to 1e-6; newton
+  int iterations = 0, equilibria = 0;  // steps of the search, and equilibria solved for
+  std::vector<InverseTrial> history;   // every equilibrium
+  std::string remark;                  // why it stopped, where status is not reached
+  double seconds = 0;                  // that it took [s]
 };
 
 /// Actuation at which the goals are met, or met as nearly as the ranges allow.

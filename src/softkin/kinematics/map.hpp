@@ -9,10 +9,10 @@ namespace softkin {
 
 /// A command that a map takes.
 struct MapInput {
-  std::string name;    // of its actuator
-  std::string unit;    // "" (a ratio), "kPa" or "N"
-  Index actuator = 0;  // in the robot's order
-  double low = 0, high = 0;
+  std::string name;          // of its actuator
+  std::string unit;          // "" (a ratio), "kPa" or "N"
+  Index actuator = 0;        // in the robot's order
+  double low = 0, high = 0;  // ends of its range, in its unit
 };
 
 /// A number that a map gives.
@@ -47,10 +47,10 @@ struct MapNode {
 
 /// All shapes in which the same cables pull, as functions of what does not hang slack.
 struct MapPiece {
-  std::vector<bool> taut;     // per cable
-  std::vector<Index> inputs;  // that it depends on
-  std::vector<MapNode> tree;  // the first is its root
-  std::vector<MapCell> cells;
+  std::vector<bool> taut;      // per cable
+  std::vector<Index> inputs;   // that it depends on
+  std::vector<MapNode> tree;   // the first is its root
+  std::vector<MapCell> cells;  // boxes with their polynomials, by MapNode::cell
 };
 
 /// The whole shape: mean + modes times amplitudes. 16 bits of each mode tell less than 0.01 % of it wrong.
@@ -63,9 +63,9 @@ struct MapShape {
 
 /// How far a map was from the solver at actuations that it was not made of. Not a bound.
 struct MapCheck {
-  Index points = 0;   // inside the map; so many were solved
-  Index outside = 0;  // of them that the map refuses, or the solver has no equilibrium for
-  std::uint64_t seed = 0;
+  Index points = 0;                                // inside the map; so many were solved
+  Index outside = 0;                               // of them that the map refuses, or the solver has no equilibrium for
+  std::uint64_t seed = 0;                          // of the random actuations
   Eigen::VectorXd largest, mean;                   // per output, in its unit
   double shape_largest_mm = 0, shape_mean_mm = 0;  // over vertices: the largest; its mean over the points
   double strain_largest = 0;  // of the body's least and greatest principal strain, taken from the shape [-]
@@ -73,16 +73,16 @@ struct MapCheck {
 
 /// A robot's equilibria as functions of its commands, in closed form.
 struct MapData {
-  std::string robot;    // fingerprint_of its model
-  std::string name;     // of the robot
-  Actuation actuation;  // m: commands that are always the same, at rest
-  std::vector<MapInput> inputs;
-  std::vector<MapOutput> outputs;
-  std::vector<MapCable> cables;
-  std::vector<MapPiece> pieces;
-  std::optional<MapShape> shape;
-  MapCheck check;
-  Index equilibria = 0;  // that it was made of
+  std::string robot;               // fingerprint_of its model
+  std::string name;                // of the robot
+  Actuation actuation;             // m: commands that are always the same, at rest
+  std::vector<MapInput> inputs;    // in the robot's order
+  std::vector<MapOutput> outputs;  // coordinates of markers, then loads and ratios
+  std::vector<MapCable> cables;    // whose lengths are commanded
+  std::vector<MapPiece> pieces;    // by what is taut
+  std::optional<MapShape> shape;   // none: markers, loads and ratios alone
+  MapCheck check;                  // how far it is from the solver
+  Index equilibria = 0;            // that it was made of
 };
 
 /// Answers of a map: microseconds, no memory.
@@ -91,13 +91,16 @@ class KinematicMap {
   /// throws  InvalidInput where parts of the data do not fit together
   explicit KinematicMap(MapData data);
 
+  /// What it was made of.
   [[nodiscard]] const MapData& data() const { return data_; }
+  /// How many commands it takes.
   [[nodiscard]] Index inputs() const { return static_cast<Index>(data_.inputs.size()); }
+  /// How many numbers it gives.
   [[nodiscard]] Index outputs() const { return static_cast<Index>(data_.outputs.size()); }
 
   /// Where commands lead: a cell of a piece.
   struct Place {
-    Index piece = -1, cell = -1;
+    Index piece = -1, cell = -1;  // -1: there is none
   };
 
   /// commands  one per input

@@ -6,6 +6,7 @@
 
 namespace softkin {
 
+/// How exact a map is to be, and how much work may be spent. Ranges stand behind the values.
 struct MapOptions {
   double accuracy_mm = 0.01;        // of markers, > 0
   double load_accuracy = 0;         // of pressures [kPa] and tensions [N], >= 0; 0: a thousandth of the largest
@@ -14,8 +15,8 @@ struct MapOptions {
   Index most_equilibria = 2000;     // that it is made of, >= 1
   Index checks = 200;               // random actuations, >= 1
   std::uint64_t seed = 1;           // of these
-  StaticsOptions statics{};
-  int threads = 1;  // >= 1; the map is the same
+  StaticsOptions statics{};         // of each equilibrium; threads and reuse_factor are set
+  int threads = 1;                  // >= 1; the map is the same
 };
 
 /// What was found in a map's making, kept as it is found. An equilibrium has a number in its piece; checks have -1.
@@ -29,15 +30,18 @@ class MapDesk {
   virtual void keep(Index piece, Index number, const maps::Sample& sample) = 0;
 };
 
+/// What the making of a map tells while it runs.
 struct MapProgress {
   Index equilibria = 0, checks = 0;  // solved so far
   double error = 0;                  // of the last predictions, over the accuracy that is wanted; infinite at first
   std::string doing;                 // "all cables taut", "tendon2 slack"; "checking"
 };
+/// Returning false stops the making.
 using MapCallback = std::function<bool(const MapProgress&)>;
 
+/// A map that was made.
 struct MapResult {
-  MapData data;
+  MapData data;           // for KinematicMap, write_map
   bool accurate = false;  // as was asked for, at the checks
   std::string remark;     // why not
 };

@@ -12,14 +12,15 @@ struct MapUnknown {
   double mean = 0, deviation = 1;  // in its unit; deviation > 0
 };
 
+/// What outputs of a map tell of commands that were not measured.
 struct MapEstimate {
-  bool converged = false;
+  bool converged = false;      // did the search end by itself
   Eigen::VectorXd commands;    // inputs: those that were given, and what was told
   Eigen::MatrixXd covariance;  // of the unknowns, in their order
   Eigen::VectorXd computed;    // outputs
   double chi_square = 0;       // of what was read
   double freedoms = 0;         // which it is to be compared with: readings less what they had to tell
-  int iterations = 0;
+  int iterations = 0;          // that it took
 
   /// By how many standard deviations the chi-square is too large.
   [[nodiscard]] double misfit() const;

@@ -17,7 +17,9 @@ class MapRobot {
   MapRobot(const MapRobot&) = delete;
   MapRobot& operator=(const MapRobot&) = delete;
 
+  /// Belongs to statics() alone: its vertices are those of no mesh. Lives as long as the object.
   [[nodiscard]] const Model& model() const { return model_; }
+  /// Its equilibria, which the map gives. Lives as long as the object.
   [[nodiscard]] const Statics& statics() const { return statics_; }
 
  private:

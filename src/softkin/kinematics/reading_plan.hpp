@@ -6,11 +6,11 @@ namespace softkin {
 
 /// What a plan needs of an estimate: how shapes move with what was told, and how well that is known.
 struct PlanBasis {
-  Points positions;            // #V by 3 [mm]
-  std::vector<Points> moves;   // by each column of the covariance [mm per unit]
-  Eigen::MatrixXd covariance;  // to first order: of the numbers, then two tangents of each place
-  std::size_t numbers = 0;     // that were told
-  explicit PlanBasis(const Estimate& estimate);
+  Points positions;                              // #V by 3 [mm]
+  std::vector<Points> moves;                     // by each column of the covariance [mm per unit]
+  Eigen::MatrixXd covariance;                    // to first order: of the numbers, then two tangents of each place
+  std::size_t numbers = 0;                       // that were told
+  explicit PlanBasis(const Estimate& estimate);  // of what it told
 };
 
 /// A reading that is not there yet.
@@ -23,6 +23,7 @@ struct PlannedReading {
   Eigen::VectorXd places{};   // root of the trace of each place's covariance afterwards [mm], the same
 };
 
+/// What may be read further, and how well.
 struct PlanOptions {
   std::vector<Index> vertices{};              // where further markers may be
   std::array<double, readings> deviations{};  // of each kind of reading, in its unit; 0: none of the kind is looked at

@@ -11,10 +11,11 @@ namespace softkin {
 /// sequence. random: independent and uniform. The latter two are in [low, high).
 enum class Sampling { grid, sobol, random };
 
+/// Which samples of a workspace are taken.
 struct SamplingOptions {
-  Sampling kind = Sampling::grid;
-  Index samples = 0;       // >= 1; grid: a full grid's number, see nearest_grid
-  std::uint64_t seed = 0;  // random
+  Sampling kind = Sampling::grid;  // how they lie in the ranges
+  Index samples = 0;               // >= 1; grid: a full grid's number, see nearest_grid
+  std::uint64_t seed = 0;          // random
 };
 
 /// A row per sample, a column per actuator: its command, a ratio [-], tension [N], pressure [kPa] or voltage [kV].

@@ -21,6 +21,7 @@ namespace softkin {
 /// that are known, or of a grid over the ranges with so many samples, which is solved for before the first waypoint.
 using NearestOf = std::variant<std::vector<WorkspaceSample>, Index>;
 
+/// How a path is followed.
 struct TrajectoryOptions {
   InverseOptions inverse{};  // start_sensitivity is set here; other_starts is for the first waypoint alone, as a jump
                              // to another shape would tear the path
@@ -43,6 +44,7 @@ class PathFollower {
   PathFollower(const Model& model, const Statics& statics, const MarkerPath& path, const TrajectoryOptions& options);
 
   [[nodiscard]] std::size_t next() const { return next_; }  // waypoint
+  /// Were all waypoints solved?
   [[nodiscard]] bool done() const { return next_ == path_.waypoints.size(); }
 
   /// Goes on with a waypoint as if the ones before it had just been done. at: the equilibrium of the one before.

@@ -10,8 +10,8 @@ enum class Sliding { none, rear, front, both };
 
 /// Where a walk has come to.
 struct WalkStep {
-  Equilibrium equilibrium;  // of the body, where it has walked to: positions #V by 3 [mm]
-  Sliding sliding = Sliding::none;
+  Equilibrium equilibrium;           // of the body, where it has walked to: positions #V by 3 [mm]
+  Sliding sliding = Sliding::none;   // since the step before
   double friction_N = 0;             // with which the feet stretch the body, < 0: press it together; target-shape: 0
   double rear_mm = 0, front_mm = 0;  // feet along the direction of travel, from where the rear one stood at rest
   double travel_mm = 0;              // of the middle between the feet, from where it stood first

@@ -12,9 +12,10 @@ namespace softkin {
 /// from there, with one factorisation for all. Groups know nothing of each other, so that any number of threads and
 /// processes can share them.
 struct WorkspacePlan {
-  Actuations actuations;
+  Actuations actuations;                   // of all samples, in the order of their numbers
   std::vector<std::vector<Index>> groups;  // sample numbers in the order in which they are solved, each in one group
 
+  /// How many there are.
   [[nodiscard]] Index samples() const { return static_cast<Index>(actuations.rows()); }
 };
 
@@ -27,7 +28,7 @@ struct WorkspacePlan {
 
 /// A group to be solved, or to be gone on with.
 struct GroupTask {
-  Index group = 0;
+  Index group = 0;                           // of WorkspacePlan::groups
   std::vector<std::optional<Status>> known;  // per sample of the group: how it ended, where that has been done before
 };
 

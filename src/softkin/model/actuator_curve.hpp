@@ -18,6 +18,7 @@ class MonotoneCurve {
   /// throws  InvalidInput: fewer than two points, not as many x as y, numbers that are not finite or do not ascend
   MonotoneCurve(std::vector<double> x, std::vector<double> y);
 
+  /// The points that it was made of.
   [[nodiscard]] const std::vector<double>& x() const { return x_; }
   [[nodiscard]] const std::vector<double>& y() const { return y_; }
 
@@ -41,6 +42,7 @@ enum class CurveInput { pressure, voltage };
 /// Of a hysteresis: the input rises, or it falls.
 enum class Branch { loading, unloading };
 
+/// One branch of a curve: the ratio that an input gives.
 struct CurveBranch {
   MonotoneCurve ratio;         // of the input [kPa gauge or kV]: volume or area over that without input [-]
   std::vector<double> spread;  // standard deviation of the ratio between repeated runs, per point; empty: not known
@@ -48,12 +50,12 @@ struct CurveBranch {
 
 /// Measured or computed relation between an actuator's input and its volume or area.
 struct ActuatorCurve {
-  std::string file;  // for messages
-  CurveInput input = CurveInput::pressure;
-  double atmosphere_kPa = 100;  // absolute; that of the gauge pressures
-  std::string end;              // what ends it at its highest input ("pull-in"); empty: the measurements
-  CurveBranch loading;
-  std::optional<CurveBranch> unloading;
+  std::string file;                         // for messages
+  CurveInput input = CurveInput::pressure;  // what it is a function of
+  double atmosphere_kPa = 100;              // absolute; that of the gauge pressures
+  std::string end;                          // what ends it at its highest input ("pull-in"); empty: the measurements
+  CurveBranch loading;                      // of a rising input
+  std::optional<CurveBranch> unloading;     // of a falling one; none: not measured
 
   /// throws  InvalidInput where the curve has no unloading branch
   [[nodiscard]] const CurveBranch& branch(Branch which) const;
@@ -61,6 +63,7 @@ struct ActuatorCurve {
   [[nodiscard]] double ratio(double input, Branch which) const;
 };
 
+/// "loading" or "unloading".
 [[nodiscard]] const char* branch_name(Branch branch);
 /// " kPa" or " kV".
 [[nodiscard]] const char* unit_of_input(CurveInput input);

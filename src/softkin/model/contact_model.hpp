@@ -4,7 +4,7 @@
 #include <array>
 #include <softkin/core/error.hpp>
 #include <softkin/core/types.hpp>
-#include <softkin/model/mesh/mesh_order.hpp>
+#include <softkin/model/mesh/mesh.hpp>
 #include <string>
 #include <vector>
 
@@ -20,10 +20,10 @@ enum class ContactRank { robot, body, obstacle };
 /// A surface that may touch others, and itself.
 struct ContactPart {
   std::string name;  // of the robot: "robot", of several its own, or a region; of an obstacle or body its own
-  ContactRank rank = ContactRank::robot;
-  Index robot = -1;        // which of the robots it is of, 0 where there is one; -1: an obstacle or body
-  bool halfspace = false;  // all behind the plane of its only triangle is solid
-  Origin origin;
+  ContactRank rank = ContactRank::robot;  // what it is of
+  Index robot = -1;                       // which of the robots it is of, 0 where there is one; -1: an obstacle or body
+  bool halfspace = false;                 // all behind the plane of its only triangle is solid
+  Origin origin;                          // of the entry that describes it, for messages
 };
 
 /// What two parts do to each other.
@@ -45,8 +45,10 @@ struct ContactModel {
   std::vector<double> area;                     // per vertex of the model: for which it carries pressure [mm^2]
   Index other_vertices = 0;                     // the last vertices of the model: of bodies and obstacles
 
-  [[nodiscard]] bool any() const { return distance_mm > 0; }
+  [[nodiscard]] bool any() const { return distance_mm > 0; }  // may anything touch
+  /// Is a triangle of a sheet, solid on neither side?
   [[nodiscard]] bool sheet(Index triangle) const { return triangle >= sheets[0] && triangle < sheets[1]; }
+  /// What two parts do to each other, in either order.
   [[nodiscard]] const ContactPair& pair(Index a, Index b) const {
     return pairs[static_cast<std::size_t>(a) * parts.size() + static_cast<std::size_t>(b)];
   }

@@ -7,13 +7,14 @@ namespace softkin {
 
 /// A direction at every place of the robot at rest, of fibres or of a growth. Which of its two ways does not matter.
 struct DirectionSpec {
+  /// How it changes from place to place.
   enum class Kind {
     uniform,          // the same everywhere
     radial,           // away from a line
     circumferential,  // around it, or turned from there towards the line
     samples           // of every element the one nearest to its centroid
   };
-  Kind kind = Kind::uniform;
+  Kind kind = Kind::uniform;   // by which of what follows it is given
   Vec3 uniform{1, 0, 0};       // not 0
   Vec3 center{0, 0, 0};        // a point of the line [mm]
   Vec3 axis{0, 0, 1};          // its direction, not 0

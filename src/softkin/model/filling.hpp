@@ -9,7 +9,7 @@ namespace softkin {
 /// Here commands are in mL under atmospheric pressure or pushed, volumes in mm^3 and of the chamber alone, pressures in
 /// MPa above that of the atmosphere.
 struct Filling {
-  bool liquid = false;
+  bool liquid = false;         // else a gas
   bool pushed = false;         // by a syringe; else the amount is commanded
   double exponent = 1;         // gas: n of p V^n = const; > 0
   double compressibility = 0;  // liquid [1/MPa]; >= 0

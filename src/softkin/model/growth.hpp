@@ -16,7 +16,7 @@ struct TemperatureSpec {
 
 /// Elements that grow by one law.
 struct GrowthPart {
-  std::string region;
+  std::string region;                            // of volume: its elements
   std::optional<DirectionSpec> direction{};      // along which it stretches; none: the same in all directions
   bool keeps_volume = false;                     // with a direction: as much narrower as it is longer
   std::optional<TemperatureSpec> temperature{};  // commanded; none: the stretch is
@@ -53,7 +53,9 @@ class GrowthCurve {
 /// How much longer what has grown would be without stress: lengths along its direction, and across it, over those at
 /// rest.
 struct GrowthStretch {
+  /// Stretches [-].
   double along = 1, across = 1;
+  /// Over that at rest [-].
   [[nodiscard]] double volume() const { return along * across * across; }
 };
 
@@ -62,12 +64,13 @@ struct GrowthStretch {
 ///
 /// source  Rodriguez, Hoger, McCulloch, J. Biomech. 27(4), 1994
 struct Growth {
-  Index actuator = -1;                    // that commands it; several may have the same
-  std::vector<Index> tetrahedra, prisms;  // of the model
-  std::vector<Vec3> directions;           // of these, one after another, of unit length; none: isotropic
-  bool keeps_volume = false;
+  Index actuator = -1;                     // that commands it; several may have the same
+  std::vector<Index> tetrahedra, prisms;   // of the model
+  std::vector<Vec3> directions;            // of these, one after another, of unit length; none: isotropic
+  bool keeps_volume = false;               // with a direction: as much narrower as it is longer
   std::optional<GrowthCurve> temperature;  // the command is one [degC]; none: it is the stretch
 
+  /// Of a command: itself, or by the temperature that it is [-].
   [[nodiscard]] double stretch(double command) const { return temperature ? temperature->stretch(command) : command; }
   /// Of the stretch by the command.
   [[nodiscard]] double slope(double command) const { return temperature ? temperature->slope(command) : 1; }
@@ -76,8 +79,8 @@ struct Growth {
 
 /// By which of Model::growths each tetrahedron and prism grows; -1: by none. Empty: nothing grows.
 struct Growers {
-  std::vector<Index> tetrahedra, prisms;
+  std::vector<Index> tetrahedra, prisms;  // a place in Model::growths for each element
 };
-[[nodiscard]] Growers growers_of(const Model& model);
+[[nodiscard]] Growers growers_of(const Model& model);  // by its growths
 
 }  // namespace softkin

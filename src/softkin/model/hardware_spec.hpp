@@ -10,8 +10,8 @@ namespace softkin {
 
 /// A stepper as the user describes it; what is empty takes the default of drive/machine.hpp.
 struct MotorSpec {
-  Origin origin;
-  std::string actuator;
+  Origin origin;                               // of its entry, for messages
+  std::string actuator;                        // name of the robot's actuator that it moves
   char axis = 'X';                             // letter in G-code
   std::optional<double> steps_per_revolution;  // motor, microsteps and gear; > 0
   std::optional<double> steps_per_mm;          // of the axis, as the board has it (M92); > 0
@@ -26,7 +26,8 @@ struct TendonSpec : MotorSpec {
   std::optional<double> rest_length_mm;   // measured; > 0
   std::optional<double> drum_radius_mm;   // to the cable's centre line; > 0
   std::optional<double> slack_offset_mm;  // cable to wind up before it is taut at rest; >= 0
-  std::optional<std::array<double, 2>> length_limits_mm;
+  std::optional<std::array<double, 2>>
+      length_limits_mm;  // of the free cable, shortest and longest [mm]; none: the range of the commands
 };
 
 /// The syringe that a chamber stands on, with the motor of its plunger.
@@ -42,21 +43,21 @@ struct SyringeSpec : MotorSpec {
 
 /// The regulator of a chamber as the user describes it.
 struct ChamberSpec {
-  Origin origin;
-  std::string actuator;
+  Origin origin;                                    // of its entry, for messages
+  std::string actuator;                             // name of the robot's chamber
   std::optional<std::string> channel;               // its name in the schedule
   std::optional<std::array<double, 2>> limits_kpa;  // gauge
 };
 
 /// What drives a robot, as the user wrote it.
 struct HardwareSpec {
-  std::string file;
+  std::string file;                               // for messages
   std::optional<bool> configure;                  // send the board its steps, limits and switches
   std::optional<double> approach_speed_mm_per_s;  // of cable or plunger, where the commands have no times; > 0
   std::optional<double> atmosphere_kPa;           // absolute; > 0
-  std::vector<TendonSpec> tendons;
-  std::vector<SyringeSpec> syringes;
-  std::vector<ChamberSpec> chambers;
+  std::vector<TendonSpec> tendons;                // of cables, in the file's order
+  std::vector<SyringeSpec> syringes;              // of chambers on syringes
+  std::vector<ChamberSpec> chambers;              // of chambers on regulators
 };
 
 }  // namespace softkin

@@ -10,6 +10,7 @@
 #include <softkin/model/layer.hpp>
 #include <softkin/model/magnetic_field.hpp>
 #include <softkin/model/mesh/mesh_joining.hpp>
+#include <softkin/model/mesh/mesh_order.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/model/sensor.hpp>
 

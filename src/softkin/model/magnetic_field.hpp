@@ -17,10 +17,10 @@ enum class Magnetisation {
 /// What a material's remanent flux density is, in the frame of the robot at rest [mT]: one for all of it, or samples in
 /// space, of which every element takes the one nearest to its centroid.
 struct RemanenceSpec {
-  Vec3 uniform{0, 0, 0};
-  Points places{}, samples{};  // #samples by 3 [mm], [mT]; no rows: uniform
-  std::string file{};          // of the samples, for messages
-  Magnetisation magnetisation = Magnetisation::turns;
+  Vec3 uniform{0, 0, 0};                               // where there are no samples [mT]
+  Points places{}, samples{};                          // #samples by 3 [mm], [mT]; no rows: uniform
+  std::string file{};                                  // of the samples, for messages
+  Magnetisation magnetisation = Magnetisation::turns;  // how it follows the deformation
 };
 
 /// What one command of a source sets: flux density along a direction or an axis [mT], current [A], and of a dipole
@@ -54,8 +54,8 @@ struct CoilLoop {
   double radius_mm = 1;  // > 0
   double turns = 1;      // not 0; below it turns the other way
 };
-struct CoilField {
-  std::vector<CoilLoop> loops;
+struct CoilField {              // loops of wire through which one current goes
+  std::vector<CoilLoop> loops;  // whose fields add up
 };
 
 /// Flux density per ampere at the points of a regular grid, x fastest, then y.
@@ -75,14 +75,14 @@ struct DipoleField {
 
 /// An applied magnetic field. The robot does not act back on it.
 struct FieldSource {
-  std::string name;
-  std::variant<UniformField, CoilField, GridField, DipoleField> field;
+  std::string name;                                                     // for messages and names of commands
+  std::variant<UniformField, CoilField, GridField, DipoleField> field;  // what it is in space
 };
 
 /// What an actuator of kind magnetic commands. Actuators that share a source command the same one.
 struct FieldSpec {
-  std::shared_ptr<const FieldSource> source;
-  FieldCommand command = FieldCommand::flux_density;
+  std::shared_ptr<const FieldSource> source;          // which may be that of several actuators
+  FieldCommand command = FieldCommand::flux_density;  // what of it is commanded
 };
 
 /// What is magnetic in a compiled robot, and the fields that act on it. The `other` of an Actuator of kind magnetic is
@@ -90,7 +90,7 @@ struct FieldSpec {
 struct Magnetism {
   std::vector<Vec3> remanence;               // of every tetrahedron, then prism, of the model [mT]
   std::vector<Magnetisation> magnetisation;  // the same
-  std::vector<FieldSource> sources;
+  std::vector<FieldSource> sources;          // by Actuator::other
 };
 
 }  // namespace softkin

@@ -11,6 +11,7 @@ namespace softkin {
 /// of cables and volumes of chambers whose loads are commanded; what supports exert on the robot; lengths of curves on
 /// the body, angles between its sections and the components of directions of these, as sensors measure them.
 enum class Reading { coordinate, pressure, tension, length, volume, force, angle, direction };
+/// How many kinds there are, and of each, by Reading, its name and its unit; "": none.
 constexpr int readings = 8;
 constexpr std::array<const char*, readings> reading_names{"coordinate", "pressure", "tension", "length",
                                                           "volume",     "force",    "angle",   "direction"};
@@ -23,13 +24,13 @@ constexpr std::array<const char*, readings> reading_units{"mm", "kPa", "N", "mm"
 
 /// What a column of measured poses holds.
 struct PoseColumn {
-  std::string name;     // as in the file
-  Index marker = -1;    // of the model; -1: none
-  int axis = -1;        // of it, of the support's force or of a direction
-  Index actuator = -1;  // of the model; -1: none
-  Reading kind = Reading::coordinate;
-  Index support = -1;  // of the model; -1: none
-  Index sensor = -1;   // the same
+  std::string name;                    // as in the file
+  Index marker = -1;                   // of the model; -1: none
+  int axis = -1;                       // of it, of the support's force or of a direction
+  Index actuator = -1;                 // of the model; -1: none
+  Reading kind = Reading::coordinate;  // and with it the unit
+  Index support = -1;                  // of the model; -1: none
+  Index sensor = -1;                   // the same
 };
 
 /// Points that a camera saw without knowing which markers they are.
@@ -47,16 +48,16 @@ struct PictureOutlines {
 
 /// Poses of a real robot: what it was told, and what was read.
 struct MeasuredPoses {
-  std::string file;
-  std::vector<PoseColumn> columns;
+  std::string file;                 // for messages
+  std::vector<PoseColumn> columns;  // readings, as they stand in the file
   std::vector<Actuation> commands;  // per pose, all in the model's order
   std::vector<Index> commanded{};   // actuators that the file has commands of
   std::vector<double> times{};      // per pose [s], ascending; empty: the file has none
   std::vector<std::size_t> lines;   // of the file, per pose
   Eigen::MatrixXd values;           // poses by columns; NaN: not read
-  UnnamedDots dots{};
-  std::vector<Index> pictures{};  // per pose: the number of the one that shows it, 0: none; empty: no such column
-  PictureOutlines outlines{};
+  UnnamedDots dots{};               // that have no name; none: no columns
+  std::vector<Index> pictures{};    // per pose: the number of the one that shows it, 0: none; empty: no such column
+  PictureOutlines outlines{};       // none: not given
 };
 
 }  // namespace softkin

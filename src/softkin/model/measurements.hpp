@@ -26,18 +26,19 @@ struct TwistedSpecimen {
   double length_mm = 0, interface_mm = 0;  // as above
   double twist_deg = 0;                    // of the free end, 0 < twist
   std::optional<double> interface_deg;     // turn of the interface; none: not measured
-  std::size_t line = 0;
+  std::size_t line = 0;                    // of the file; 0: not from a file
 };
 
 /// A tensile test of one material: nominal strain [-], strictly ascending from 0 or more, and nominal stress [MPa].
 struct TensileCurve {
-  std::vector<double> strain, stress;
-  std::vector<std::size_t> lines;  // of the file; empty: not from a file
+  std::vector<double> strain, stress;  // as many, row by row
+  std::vector<std::size_t> lines;      // of the file; empty: not from a file
 };
 
 /// What the pressures of a syringe test are above: vacuum, or the air around.
 enum class PressureScale { absolute, gauge };
 
+/// One row of a syringe test.
 struct SyringeRow {
   double pressure_kPa = 0;  // as its run's scale has it
   double syringe_mm3 = 0;   // Delta V_sy: air pushed out of the syringe since the start
@@ -46,21 +47,22 @@ struct SyringeRow {
 
 /// One syringe test, rows in the order of time.
 struct SyringeRun {
-  std::string file, name;  // name: "run 2"; for messages
-  PressureScale scale = PressureScale::absolute;
-  std::vector<SyringeRow> rows;
+  std::string file, name;                         // name: "run 2"; for messages
+  PressureScale scale = PressureScale::absolute;  // of the pressures of its rows
+  std::vector<SyringeRow> rows;                   // in the order of time
 };
 
+/// One row of a test of a dielectric elastomer.
 struct VoltageRow {
-  double voltage_kV = 0;
+  double voltage_kV = 0;  // between the electrodes [kV]
   double area_ratio = 1;  // over any fixed area [-]
   std::size_t line = 0;   // of the file
 };
 
 /// One test of a dielectric elastomer, rows in the order of time.
 struct VoltageRun {
-  std::string file, name;  // name: "run 2"; for messages
-  std::vector<VoltageRow> rows;
+  std::string file, name;        // name: "run 2"; for messages
+  std::vector<VoltageRow> rows;  // in the order of time
 };
 
 /// One test of a strip under tension or compression along one axis over time, its sides free. Before its first row it

@@ -14,23 +14,24 @@ struct Families;   // families.hpp
 struct Layer;      // layer.hpp
 struct Sensor;     // sensor.hpp
 
+/// What elements are made of, compiled.
 struct Material {
-  std::string region;
-  double shape_ratio = 1;  // target-shape
-  double weight = 1;       // target-shape
-  ElasticLaw elastic;      // physical
-  std::vector<ViscousBranch> viscosity;
-  double permittivity = 1;  // over that of the vacuum [-]
-  double density = 0;       // [kg/m^3]
-  std::optional<double> linear_range;
+  std::string region;                        // as the description names it
+  double shape_ratio = 1;                    // target-shape
+  double weight = 1;                         // target-shape
+  ElasticLaw elastic;                        // physical
+  std::vector<ViscousBranch> viscosity;      // Maxwell branches beside the elastic law; none: elastic; physical
+  double permittivity = 1;                   // over that of the vacuum [-]
+  double density = 0;                        // [kg/m^3]
+  std::optional<double> linear_range;        // largest |principal strain| of the linear range [-]; none: not stated
   bool mixed = false;                        // elements with pressures as unknowns; physical
   std::shared_ptr<const Families> families;  // physical; none: isotropic
 };
 
 /// A triangle of a cavity's boundary. Order 2: the nodes on its edges 01, 12, 20 too.
 struct CavityFace {
-  Triangle corners;
-  std::array<Index, 3> edges{-1, -1, -1};
+  Triangle corners;                        // vertices: counterclockwise seen from where the normal points
+  std::array<Index, 3> edges{-1, -1, -1};  // nodes on the edges 01, 12, 20; -1: order 1
 };
 
 /// The nodes of a face: its corners, then those on its edges.
@@ -47,24 +48,26 @@ struct CavityFace {
 /// A piece of cable that runs free between two points of the body, and the body's point across it: the triangle
 /// (points[segment], points[segment + 1], apex) is the actuation element of Eq. (6).
 struct CableGap {
-  Index segment = 0;
-  EmbeddedPoint apex;
+  Index segment = 0;   // of the cable, from 0
+  EmbeddedPoint apex;  // the body's point across it
 };
 
 /// One of several chambers that share what fills them: faces of the actuator's cavity, to before `end`, from where the
 /// one before it ends.
 struct ConnectedChamber {
-  std::string region;
-  Index end = 0;
+  std::string region;  // as the description names it
+  Index end = 0;       // in Actuator::cavity
 };
 
+/// A compiled actuator, or what is done to a robot and is commanded as one. What does not apply is empty.
 struct Actuator {
-  std::string name;
-  ActuatorKind kind = ActuatorKind::pneumatic;
-  Control control = Control::ratio;
-  double low = 0, high = 0, rest = 1, weight = 5;
-  Distribution distribution = Distribution::least_norm;
-  std::vector<Index> tetrahedra;      // pneumatic, target-shape: elements of Model
+  std::string name;                             // for commands, messages and columns of tables
+  ActuatorKind kind = ActuatorKind::pneumatic;  // what it is
+  Control control = Control::ratio;             // what of it is commanded
+  double low = 0, high = 0, rest = 1,
+         weight = 5;  // ends of the commands' range and command at rest, in its unit; w of Eq. (9)
+  Distribution distribution = Distribution::least_norm;  // of what is commanded over its elements; target-shape
+  std::vector<Index> tetrahedra;                         // pneumatic, target-shape: elements of Model
   std::vector<CavityFace> cavity;     // pneumatic with a region, physical: its boundary, normals out of the chamber
   std::vector<Index> prisms;          // dea: elements of Model
   std::vector<double> shares;         // dea under voltage: of it that each of them has [-]
@@ -91,27 +94,28 @@ struct Actuator {
 
 /// Stands on the floor and slides where friction lets it.
 struct Foot {
-  Index marker = -1;
+  Index marker = -1;                 // of Model::markers
   double forward = 0, backward = 0;  // friction that slides it in the direction of travel and against it [N]
 };
 
+/// Vertices that move as one rigid body.
 struct RigidRegion {
-  std::string name;
-  std::vector<Index> vertices;
+  std::string name;             // for messages; may be empty
+  std::vector<Index> vertices;  // ascending
 };
 
 /// A rigid body without elements, which moves freely but for what holds it.
 struct FreeBody {
-  std::string name;
-  std::vector<Index> vertices;
-  EmbeddedPoint center;  // of mass
-  double mass_kg = 0;
+  std::string name;             // for messages, reports and commands
+  std::vector<Index> vertices;  // of its surface, in Model::rest
+  EmbeddedPoint center;         // of mass
+  double mass_kg = 0;           // of its density and volume
 };
 
 /// Holds vertices where they are told to be: an entry of the description's `fixed`.
 struct Support {
-  std::string name;  // of its region, or fixed_N
-  std::vector<Index> vertices;
+  std::string name;             // of its region, or fixed_N
+  std::vector<Index> vertices;  // that it holds along one axis at least
 };
 
 /// Turns what a support holds, as its command says: a vertex that stands at x at rest is held at
@@ -123,7 +127,7 @@ struct SupportTurn {
   Vec3 displacement{0, 0, 0};   // [mm]
   std::vector<Index> vertices;  // ascending; all of a rigid region that it holds
   double degrees = 0;           // where no command says another angle
-  Origin origin;
+  Origin origin;                // of its entry, for messages
 };
 
 /// A moment on a rigid region, which keeps its direction: couples of forces on some of its vertices.
@@ -134,17 +138,17 @@ struct RegionMoment {
 
 /// A face of the body's surface with its normal outwards, under a load; a share of it.
 struct LoadedFace {
-  CavityFace face;
-  double share = 1;
+  CavityFace face;   // vertices, normal outwards
+  double share = 1;  // of the load, from 0 to 1 [-]
 };
 
 /// A load that turns with the surface and acts on its present area.
 struct FollowingTraction {
-  Vec3 traction_MPa{0, 0, 0};  // as the surface stands at rest
-  double pressure_MPa = 0;     // onto it, along its normal, beside what is commanded of it
-  std::vector<LoadedFace> faces;
-  Vec3 deeper_MPa_mm{0, 0, 0};  // by how much the pressure grows with the present place, from a level on; nothing
-  Vec3 level_mm{0, 0, 0};       // above it: a liquid around the robot; a place of the level
+  Vec3 traction_MPa{0, 0, 0};     // as the surface stands at rest
+  double pressure_MPa = 0;        // onto it, along its normal, beside what is commanded of it
+  std::vector<LoadedFace> faces;  // that it acts on
+  Vec3 deeper_MPa_mm{0, 0, 0};    // by how much the pressure grows with the present place, from a level on; nothing
+  Vec3 level_mm{0, 0, 0};         // above it: a liquid around the robot; a place of the level
 };
 
 /// A place of a thread, of whose length it stands for some.
@@ -158,9 +162,9 @@ struct FibrePlace {
 /// A thread in the body or on it: per length its energy is E A / 2 (stretch - 1)^2, and nothing below a stretch of 1
 /// where it takes tension only.
 struct Fibre {
-  std::string name;
-  double stiffness_N = 0;  // E A
-  bool tension_only = false;
+  std::string name;                  // for messages and reports
+  double stiffness_N = 0;            // E A
+  bool tension_only = false;         // does it carry nothing where it would be pressed
   std::vector<FibrePlace> places;    // along it
   std::vector<EmbeddedPoint> knots;  // along it, for pictures
 };
@@ -175,42 +179,42 @@ struct ElementRole {
 
 /// A compiled robot: everything that depends on topology and rest shape alone. Not modified after compile().
 struct Model {
-  std::string name;
-  Formulation formulation = Formulation::target_shape;
-  ElementWeights weights = ElementWeights::printed;  // target-shape
+  std::string name;                                     // the scene's file name, for messages
+  Formulation formulation = Formulation::target_shape;  // by which equations it is solved
+  ElementWeights weights = ElementWeights::printed;     // target-shape
   Points rest;                          // #V by 3 [mm], every vertex of the mesh, then those of bodies and obstacles
   std::vector<Tetrahedron> tetrahedra;  // without void elements (physical: nor those of chambers); positive volume
   std::vector<EdgeNodes> edge_nodes;    // order 2: of every tetrahedron; order 1: empty
   std::vector<Prism> prisms;            // without void elements; positive volume
-  std::vector<ElementRole> tetrahedron_roles, prism_roles;
-  std::vector<double> tetrahedron_volumes, prism_volumes;  // at rest [mm^3]
-  std::vector<std::string> region_names;
-  std::vector<Material> materials;
-  std::vector<Actuator> actuators;
-  std::vector<Marker> markers;
-  std::vector<std::shared_ptr<const Sensor>> sensors;
-  std::vector<Foot> feet;          // none, or the rear one and the front one
-  std::vector<RigidRegion> rigid;  // disjoint; bodies, too
-  std::vector<FreeBody> bodies;
-  std::vector<std::array<bool, 3>> fixed;  // per vertex and axis; vertices of no element are fixed
-  Points held;                             // #V by 3 [mm]: where fixed axes are held; else rest
-  std::vector<Support> supports;           // in the order of the description's `fixed`
-  std::vector<SupportTurn> turns;          // of supports; their vertices are fixed, `held` is without the turn
+  std::vector<ElementRole> tetrahedron_roles, prism_roles;  // what each is made of, in the order of the elements
+  std::vector<double> tetrahedron_volumes, prism_volumes;   // at rest [mm^3]
+  std::vector<std::string> region_names;                    // of volume, that output tells apart
+  std::vector<Material> materials;                          // by ElementRole::material
+  std::vector<Actuator> actuators;                          // in the order of commands and loads
+  std::vector<Marker> markers;                              // in the order of the description
+  std::vector<std::shared_ptr<const Sensor>> sensors;       // the same
+  std::vector<Foot> feet;                                   // none, or the rear one and the front one
+  std::vector<RigidRegion> rigid;                           // disjoint; bodies, too
+  std::vector<FreeBody> bodies;                             // the same
+  std::vector<std::array<bool, 3>> fixed;                   // per vertex and axis; vertices of no element are fixed
+  Points held;                                              // #V by 3 [mm]: where fixed axes are held; else rest
+  std::vector<Support> supports;                            // in the order of the description's `fixed`
+  std::vector<SupportTurn> turns;  // of supports; their vertices are fixed, `held` is without the turn
   std::vector<std::array<Index, 3>>
       support_of;    // per vertex and axis: the support that bears it, the first of several,
                      // or -1; a rigid region that is held is borne as a whole
   Points dead_load;  // #V by 3 [N]: weight, forces, tractions that follow nothing; physical, else empty
-  std::vector<FollowingTraction> tractions;
-  std::vector<RegionMoment> moments;
-  std::vector<Fibre> fibres;
-  std::vector<std::shared_ptr<const Layer>> layers;
+  std::vector<FollowingTraction> tractions;            // that turn with the surface, and liquids around
+  std::vector<RegionMoment> moments;                   // on rigid regions
+  std::vector<Fibre> fibres;                           // threads, in the order of the description
+  std::vector<std::shared_ptr<const Layer>> layers;    // sheets, the same
   std::vector<std::shared_ptr<const Growth>> growths;  // by Actuator::other
-  ContactModel contact;
-  std::shared_ptr<const Magnetism> magnetism;  // physical; none: nothing is magnetic
-  std::vector<bool> used;                      // per vertex: is it a vertex of an element
-  double diagonal_mm = 0;                      // of the bounding box of the used vertices
-  std::vector<std::string> notes;              // what compile() changed or the user should know, a sentence each
-  std::vector<std::string> warnings;           // what is probably not meant, a sentence each: units, elements that lock
+  ContactModel contact;                                // what may touch what
+  std::shared_ptr<const Magnetism> magnetism;          // physical; none: nothing is magnetic
+  std::vector<bool> used;                              // per vertex: is it a vertex of an element
+  double diagonal_mm = 0;                              // of the bounding box of the used vertices
+  std::vector<std::string> notes;     // what compile() changed or the user should know, a sentence each
+  std::vector<std::string> warnings;  // what is probably not meant, a sentence each: units, elements that lock
 
   /// How many vertices are the mesh's: the first ones.
   [[nodiscard]] Index robot_vertices() const { return static_cast<Index>(rest.rows()) - contact.other_vertices; }

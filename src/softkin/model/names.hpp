@@ -47,7 +47,9 @@ namespace softkin {
 /// "its range, 1 to 2 [-]" or "its range, 0 to 80 kPa".
 [[nodiscard]] std::string range_text(const Actuator& actuator);
 
+/// "neo-hookean", "st-venant-kirchhoff", as scenes have it.
 [[nodiscard]] const char* law_name(Law law);
+/// "physical" or "target-shape".
 [[nodiscard]] const char* formulation_name(Formulation formulation);
 /// "printed" or "mesh-independent".
 [[nodiscard]] const char* weights_name(ElementWeights weights);
@@ -57,6 +59,7 @@ namespace softkin {
 /// The marker that shows where a foot is. foot: 0 the rear one, 1 the front one.
 [[nodiscard]] const std::string& foot_name(const Model& model, std::size_t foot);
 
+/// The place of an actuator of that name in model.actuators; none: there is none.
 [[nodiscard]] std::optional<Index> find_actuator(const Model& model, const std::string& name);
 
 }  // namespace softkin

@@ -12,16 +12,16 @@ namespace softkin {
 struct CommandRow {
   Eigen::VectorXd actuation;  // per actuator of the model, as it is commanded: ratio [-], tension [N], pressure [kPa]
   Eigen::VectorXd pressures_kpa;  // per actuator; of chambers that are commanded by volume, where known
-  std::optional<double> time_s;
-  std::size_t line = 0;
+  std::optional<double> time_s;   // [s]; none: the file has no times
+  std::size_t line = 0;           // of the file, from 1
 };
 
 /// What a robot is to do: at least one row, times all or none, increasing.
 struct Commands {
-  std::string file;
+  std::string file;                  // for messages
   std::vector<bool> commanded;       // per actuator: has it a column
   std::vector<bool> pressure_known;  // per actuator: do pressures_kpa hold it
-  std::vector<CommandRow> rows;
+  std::vector<CommandRow> rows;      // in the order of the file
 };
 
 /// Where the markers of a path are to be at one moment.
@@ -36,7 +36,7 @@ struct Waypoint {
 struct MarkerPath {
   std::vector<Index> markers;             // of the model
   std::vector<std::array<bool, 3>> axes;  // of each marker: coordinates that count
-  std::vector<Waypoint> waypoints;
+  std::vector<Waypoint> waypoints;        // in the order in which they are visited
 };
 
 }  // namespace softkin

@@ -24,35 +24,38 @@ struct SensorSpec;     // sensor.hpp
 struct VertexList {
   std::vector<Index> vertices;  // from 0
 };
-struct ElementList {
+struct ElementList {              // of the mesh
   std::vector<Index> tetrahedra;  // from 0
 };
 /// What a selector chose of a robot before joined() placed it among others.
 struct Chosen {
   std::string kind;  // for messages: "box of robot 'left'"
-  Region region;
+  Region region;     // what was chosen, in the numbers of the robot's own mesh
 };
-using Selector = std::variant<Box, Sphere, Cylinder, Halfspace, VertexList, ElementList, Chosen>;
+using Selector = std::variant<Box, Sphere, Cylinder, Halfspace, VertexList, ElementList, Chosen>;  // how to choose
 
 /// A region by name, or a shape in its place.
 struct RegionRef {
-  std::variant<std::string, Selector> region;
-  Origin origin;
+  std::variant<std::string, Selector> region;  // its name, or how to choose it
+  Origin origin;                               // of the entry, for messages
 };
 
 /// A point by coordinates [mm], or the mean of a region (volume- or area-weighted) by its name.
 struct PointRef {
-  std::variant<Vec3, std::string> point;
-  Origin origin;
-  std::string robot{};  // of several: whose elements carry the coordinates along; empty: the nearest
+  std::variant<Vec3, std::string> point;  // where it is, or the region's name
+  Origin origin;                          // of the entry, for messages
+  std::string robot{};                    // of several: whose elements carry the coordinates along; empty: the nearest
 };
 
+/// A region that the description adds to those of the mesh.
 struct RegionSpec {
-  std::string name;
-  Selector selector;
-  Origin origin;
+  std::string name;   // must not be one of the mesh's
+  Selector selector;  // what belongs to it
+  Origin origin;      // of its entry, for messages
 };
 
+/// By which equations: shapes of least change to given lengths, areas and volumes, Fang et al. 2020, without forces; or
+/// balance of forces of elastic bodies.
 enum class Formulation { target_shape, physical };
 
 /// What an element's energy, Eq. (2), is multiplied by beside w. printed: its volume, so that it grows with the square
@@ -62,7 +65,7 @@ enum class ElementWeights { printed, mesh_independent };
 /// Elastic constants as the user gives them: E and nu for the first three laws; the law's own c10, ... for the others,
 /// with the bulk modulus, or nu in its place (bulk from the small-strain shear modulus, such as 2 (c10 + c01)).
 struct ElasticSpec {
-  Law law = Law::neo_hookean;
+  Law law = Law::neo_hookean;                // which of what follows is read depends on it
   std::optional<double> youngs_modulus;      // [MPa], > 0
   std::optional<double> poisson_ratio;       // [-], -1 < nu <= 0.5; 0.5: of laws with a bulk part
   std::optional<double> c10, c01, c20, c30;  // [MPa]
@@ -79,7 +82,7 @@ struct ViscousBranch {
 
 /// Later entries override earlier ones where their regions overlap. The region "all" is every element.
 struct MaterialSpec {
-  std::string region;
+  std::string region;                     // of volume; "all": every element
   std::optional<double> shape_ratio = 1;  // target-shape: R_omega, 0 <= shape_ratio <= 1; none: the scene has none
   double weight = 1;                      // target-shape: w of Eq. (9), > 0
   std::optional<ElasticSpec> elastic;     // physical
@@ -90,7 +93,7 @@ struct MaterialSpec {
   std::optional<double> linear_range;              // largest |principal strain| of the linear range [-], > 0
   std::optional<bool> mixed;  // elements with pressures as unknowns; physical; none: where the volume is kept
   std::shared_ptr<const FamiliesSpec> families;  // of fibres in the material; physical; none: isotropic
-  Origin origin;
+  Origin origin;                                 // of its entry, for messages
 };
 
 /// How what is held is turned: counterclockwise seen against the axis, before it is displaced.
@@ -100,12 +103,13 @@ struct RotationSpec {
   std::optional<Vec3> about{};  // a point of the axis at rest [mm]; none: the mean of the vertices that are held
 };
 
+/// Holds vertices where they are at rest, or where they are moved to.
 struct FixedSpec {
-  RegionRef where;
-  std::array<bool, 3> axes{true, true, true};
+  RegionRef where;                             // the vertices
+  std::array<bool, 3> axes{true, true, true};  // along which it holds them: x, y, z
   Vec3 displacement{0, 0, 0};  // where it is held, from its place at rest [mm]; 0 along axes that are not held
   std::string name{};          // of the support; empty: its region's, or fixed_N
-  std::optional<RotationSpec> rotation{};
+  std::optional<RotationSpec> rotation{};  // turned about an axis besides; none: not
 };
 
 /// The last four are no drives of the robot but what is done to it and its surroundings: the motion of an obstacle, a
@@ -119,7 +123,7 @@ enum class Control { ratio, load, filling };
 
 /// What is sealed in a chamber as the user describes it.
 struct FillingSpec {
-  bool liquid = false;
+  bool liquid = false;               // else a gas
   double exponent = 1;               // gas: n of p V^n = const, > 0
   double compressibility = 0;        // liquid [1/MPa], >= 0
   double dead_mL = 0;                // tubes and fittings, >= 0
@@ -134,25 +138,26 @@ enum class Distribution { least_norm, uniform, proportional };
 
 /// A number for some prisms of the mesh.
 struct PrismValues {
-  std::vector<Index> prisms;  // from 0
-  std::vector<double> values;
+  std::vector<Index> prisms;    // from 0
+  std::vector<double> values;   // of each of them
   std::vector<Origin> origins;  // of each
 };
 
+/// An actuator as the user describes it, or what is done to a robot by command. What does not apply is empty.
 struct ActuatorSpec {
-  std::string name;
-  ActuatorKind kind = ActuatorKind::pneumatic;
-  std::optional<std::string> region;       // dea, pneumatic: the volume region of its elements
-  std::optional<TriangleSurface> surface;  // pneumatic: cavity surface instead of a region [mm]
-  std::optional<std::string> wall;         // pneumatic: region of faces around the cavity, instead of either
-  std::vector<std::string> connected;      // pneumatic, physical: instead of these, two regions or more, of elements or
-                                           // of faces: chambers that share what fills them
-  std::optional<FillingSpec> filling;      // of control filling
-  std::string robot;                       // of several: whose elements, gaps and empty spaces count; empty: all
-  std::vector<PointRef> points;            // cable: at least two, in order
-  std::vector<PointRef> apexes;            // cable: third corner of each gap's triangle; none: found by compile()
-  double spacing = 0;                      // cable: how often it is guided inside the body [mm]; 0: at its points
-  double friction = 0;  // cable: Coulomb's, where it turns, >= 0; pulled at its first point; physical
+  std::string name;                             // for commands, messages and columns of tables
+  ActuatorKind kind = ActuatorKind::pneumatic;  // what it is
+  std::optional<std::string> region;            // dea, pneumatic: the volume region of its elements
+  std::optional<TriangleSurface> surface;       // pneumatic: cavity surface instead of a region [mm]
+  std::optional<std::string> wall;              // pneumatic: region of faces around the cavity, instead of either
+  std::vector<std::string> connected;  // pneumatic, physical: instead of these, two regions or more, of elements or
+                                       // of faces: chambers that share what fills them
+  std::optional<FillingSpec> filling;  // of control filling
+  std::string robot;                   // of several: whose elements, gaps and empty spaces count; empty: all
+  std::vector<PointRef> points;        // cable: at least two, in order
+  std::vector<PointRef> apexes;        // cable: third corner of each gap's triangle; none: found by compile()
+  double spacing = 0;                  // cable: how often it is guided inside the body [mm]; 0: at its points
+  double friction = 0;                 // cable: Coulomb's, where it turns, >= 0; pulled at its first point; physical
   double sheath_friction = 0, sheath_turns_degrees = 0;  // the same of a sheath before that
   Control control = Control::ratio;                      // others: physical formulation
   double low = 0, high = 0;       // range [-]: 0 < low <= high; tension [N], voltage [kV]: 0 <= low;
@@ -165,19 +170,19 @@ struct ActuatorSpec {
   double prestretch = 1;          // dea under voltage: area that its layer has without force, over that in the
                                   // mesh [-], > 0
   double weight = 5;              // w of Eq. (9), > 0
-  Distribution distribution = Distribution::least_norm;
-  std::optional<ActuatorCurve> curve;      // pneumatic and dea under ratio control: ratio by pressure or voltage
-  Branch branch = Branch::loading;         // of the curve, where a command names none
-  std::shared_ptr<const FieldSpec> field;  // magnetic
-  std::shared_ptr<const GrowthSpec> growth;
+  Distribution distribution = Distribution::least_norm;  // of what is commanded over its elements; target-shape
+  std::optional<ActuatorCurve> curve;        // pneumatic and dea under ratio control: ratio by pressure or voltage
+  Branch branch = Branch::loading;           // of the curve, where a command names none
+  std::shared_ptr<const FieldSpec> field;    // magnetic
+  std::shared_ptr<const GrowthSpec> growth;  // of kind growth
   std::optional<PrismValues> shares;  // dea under voltage: the share of it that each prism has [-]; none: all of it
-  Origin origin;
+  Origin origin;                      // of its entry, for messages
 };
 
 /// With neither of the last two it moves with the element around it, or is the mean of its region.
 struct MarkerSpec {
-  std::string name;
-  PointRef at;
+  std::string name;                      // for messages and columns of tables
+  PointRef at;                           // where it is
   std::optional<Vec3> offset{};          // from the mean of its region, on a stem that turns with it [mm]
   std::optional<std::string> carrier{};  // of a point: the region on which its stem stands
 };
@@ -185,29 +190,30 @@ struct MarkerSpec {
 /// A foot that stands on the floor: a marker, and the friction that it takes to slide it towards the front foot's side
 /// (forward) and the other way.
 struct FootSpec {
-  std::string marker;
+  std::string marker;                // its name
   double forward = 0, backward = 0;  // [N], >= 0
-  Origin origin;
+  Origin origin;                     // of its entry, for messages
 };
 
+/// Vertices that move as one rigid body.
 struct RigidSpec {
-  RegionRef where;
-  std::string name;
+  RegionRef where;   // the vertices
+  std::string name;  // for messages
 };
 
 /// A dead load, spread over a region or at a point; on a rigid region with a moment, which keeps its direction, too.
 struct ForceSpec {
-  std::string name;
-  PointRef at;
-  Vec3 force{0, 0, 0};                         // [N]; where it is commanded: where no command says another
-  std::optional<std::array<Vec3, 2>> range{};  // commanded, within these along each axis [N]; none: it is not
-  Vec3 moment{0, 0, 0};                        // [N mm]; the same
-  std::optional<std::array<Vec3, 2>> moment_range{};
+  std::string name;                                   // of the command too, where it has a range
+  PointRef at;                                        // where it acts
+  Vec3 force{0, 0, 0};                                // [N]; where it is commanded: where no command says another
+  std::optional<std::array<Vec3, 2>> range{};         // commanded, within these along each axis [N]; none: it is not
+  Vec3 moment{0, 0, 0};                               // [N mm]; the same
+  std::optional<std::array<Vec3, 2>> moment_range{};  // as range, of the moment [N mm]
 };
 
 /// A load on each piece of the body's surface in a region, over its area.
 struct TractionSpec {
-  std::string name;
+  std::string name;           // of the command too, where it has a range
   RegionRef where;            // of dimension 2: its faces; else all faces of the surface between its vertices
   bool follows = false;       // turns with the surface and acts on its present area; else neither, on its area at rest
   Vec3 kilopascals{0, 0, 0};  // as the surface stands at rest [kPa]
@@ -219,7 +225,7 @@ struct TractionSpec {
 struct LiquidAroundSpec {
   double density = 1000;  // [kg/m^3], > 0
   Vec3 surface{0, 0, 0};  // a point of its level, which stands across gravity [mm]
-  Origin origin;
+  Origin origin;          // of its entry, for messages
 };
 
 /// A thread wound about an axis at a constant pitch.
@@ -234,33 +240,33 @@ struct Helix {
 
 /// A thread in the body or on it, which elements carry along wherever it runs.
 struct FibreSpec {
-  std::string name;
+  std::string name;                            // for messages and reports
   std::variant<std::vector<Vec3>, Helix> way;  // corners [mm], at least two
   std::optional<double> stiffness_N;           // E A, > 0; none: it does not stretch
   bool tension_only = false;                   // slack where it would be pressed
   std::optional<std::string> region;           // whose elements alone carry it; none: all
   std::string robot{};                         // of several: whose elements; empty: all
-  Origin origin{};
+  Origin origin{};                             // of its entry, for messages
 };
 
 /// One of several robots that are described as one.
 struct RobotPart {
-  std::string name;
-  std::string scene;                               // file
+  std::string name;   // for messages; names of its regions, markers and so on begin with it
+  std::string scene;  // file
   Index vertices = 0, tetrahedra = 0, prisms = 0;  // where its own begin in the mesh
-  Origin mesh_origin;
-  bool accept_mesh_errors = false;
+  Origin mesh_origin;                              // of the entry that names its mesh
+  bool accept_mesh_errors = false;                 // as of RobotSpec
 };
 
 /// A robot as the user describes it: plain data, lengths in mm. compile() turns it into a Model.
 struct RobotSpec {
-  std::string name;  // the scene's file name, for messages
-  Formulation formulation = Formulation::target_shape;
-  ElementWeights weights = ElementWeights::printed;
-  Mesh mesh;                            // in mm
-  Origin mesh_origin;                   // of the entry that names it
-  bool accept_mesh_errors = false;      // take doubled or overlapping elements, with a note
-  bool quadratic = false;               // physical: elevate a mesh of order 1 to order 2
+  std::string name;                                     // the scene's file name, for messages
+  Formulation formulation = Formulation::target_shape;  // by which equations it is solved
+  ElementWeights weights = ElementWeights::printed;     // target-shape
+  Mesh mesh;                                            // in mm
+  Origin mesh_origin;                                   // of the entry that names it
+  bool accept_mesh_errors = false;                      // take doubled or overlapping elements, with a note
+  bool quadratic = false;                               // physical: elevate a mesh of order 1 to order 2
   std::optional<CurveSpec> curve;       // physical, order 2: how the edges are curved; none: as the mesh has them
   bool curved = false;                  // of several robots: one was, by a `curve` of its own
   std::vector<std::string> notes;       // of what was done before compile()
@@ -270,19 +276,19 @@ struct RobotSpec {
   std::vector<ForceSpec> forces;        // physical
   std::vector<TractionSpec> tractions;  // physical
   std::vector<FibreSpec> fibres;        // physical
-  std::vector<std::shared_ptr<const LayerSpec>> layers;  // physical
-  std::optional<LiquidAroundSpec> liquid_around;         // physical; none: nothing but the atmosphere
-  std::vector<RegionSpec> regions;
-  std::vector<MaterialSpec> materials;
-  std::vector<RegionRef> voids;
-  std::vector<FixedSpec> fixed;
-  std::vector<RigidSpec> rigid;
-  std::vector<ActuatorSpec> actuators;
-  std::vector<MarkerSpec> markers;
-  std::vector<std::shared_ptr<const SensorSpec>> sensors;
-  std::vector<FootSpec> feet;          // none, or the rear one and the front one
-  std::optional<ContactSpec> contact;  // physical; none: everything passes through everything
-  std::vector<RobotPart> robots;       // none, or those that joined() made this of, in the mesh's order
+  std::vector<std::shared_ptr<const LayerSpec>> layers;    // physical
+  std::optional<LiquidAroundSpec> liquid_around;           // physical; none: nothing but the atmosphere
+  std::vector<RegionSpec> regions;                         // beside those of the mesh
+  std::vector<MaterialSpec> materials;                     // later ones count where they overlap
+  std::vector<RegionRef> voids;                            // volumes without material
+  std::vector<FixedSpec> fixed;                            // what is held, in the order of Model::supports
+  std::vector<RigidSpec> rigid;                            // what moves as one body
+  std::vector<ActuatorSpec> actuators;                     // in the order of commands
+  std::vector<MarkerSpec> markers;                         // points that are watched
+  std::vector<std::shared_ptr<const SensorSpec>> sensors;  // what measures lengths, angles and directions
+  std::vector<FootSpec> feet;                              // none, or the rear one and the front one
+  std::optional<ContactSpec> contact;                      // physical; none: everything passes through everything
+  std::vector<RobotPart> robots;  // none, or those that joined() made this of, in the mesh's order
 };
 
 }  // namespace softkin

@@ -11,18 +11,18 @@ enum class SensorKind { length, angle, direction };
 
 /// A sensor as the user describes it.
 struct SensorSpec {
-  std::string name;
-  SensorKind kind = SensorKind::length;
+  std::string name;                       // for columns of tables
+  SensorKind kind = SensorKind::length;   // what it measures
   std::vector<Vec3> points;               // length: corners of the curve at rest [mm], at least two
   std::array<std::string, 2> sections{};  // angle: regions, from the first to the second; direction: the first alone
   Vec3 axis{0, 0, 1};                     // both: at rest, not 0; it turns with the first section
   std::string robot{};                    // of several: whose elements carry it; empty: the nearest
-  Origin origin{};
+  Origin origin{};                        // of its entry, for messages
 };
 
 /// A region that turns as its vertices do: markers on stems along x, y and z.
 struct TurningSection {
-  std::array<Marker, 3> along;
+  std::array<Marker, 3> along;  // they turn as the section does
 
   /// R, the rotation from rest that fits the vertices best.
   [[nodiscard]] Mat3 rotation(const Points& positions) const;
@@ -32,8 +32,8 @@ struct TurningSection {
 
 /// A compiled sensor: a number as a function of the shape, or three.
 struct Sensor {
-  std::string name;
-  SensorKind kind = SensorKind::length;
+  std::string name;                          // for columns of tables
+  SensorKind kind = SensorKind::length;      // what it measures
   std::vector<FibrePlace> places;            // length: along the curve
   std::array<TurningSection, 2> sections{};  // angle; direction: the first
   Vec3 axis{0, 0, 1};                        // both: of length 1

@@ -17,14 +17,17 @@ namespace softkin::runs {
 template <class Record>
 class Job {
  public:
+  /// A record with its shape.
   struct Made {
-    Record record;  // stopped: not what was asked for, but the last good shape on the way there
-    State state;
-    ElementDeformation deformation;
+    Record record;                   // stopped: not what was asked for, but the last good shape on the way there
+    State state;                     // the shape, its commands and loads
+    ElementDeformation deformation;  // what the shape measures
   };
 
   virtual ~Job() = default;
+  /// How many records there are to make.
   [[nodiscard]] virtual std::size_t size() const = 0;
+  /// How they are written and read.
   [[nodiscard]] virtual Codec<Record> codec() const = 0;
 
   /// Why a record is not what is asked for as that number; empty: it is.
@@ -45,6 +48,7 @@ class Job {
   virtual void go_on(std::size_t number, const Record& before, Points positions) = 0;
 };
 
+/// What came of a step of a run: a record; it was stopped; or what is none to go on from (Job::keeps).
 enum class Advance { made, interrupted, lost };
 
 /// A job and its log. Now and then the job forgets all but the last record, so that a run that is resumed makes again
@@ -52,14 +56,19 @@ enum class Advance { made, interrupted, lost };
 template <class Record>
 class Run {
  public:
+  /// A record with its shape.
   using Made = typename Job<Record>::Made;
   static constexpr std::size_t fresh_every = 32;  // records; a fresh start costs about one factorisation
 
+  /// model and job must outlive the object; head and same: as RecordLog has them.
   Run(const Model& model, Job<Record>& job, RunFiles files, std::string head, std::vector<std::string> same)
       : model_(model), job_(job), files_(files), log_(model, files, std::move(head), std::move(same), job.codec()) {}
 
+  /// How many records there are to make.
   [[nodiscard]] std::size_t size() const { return job_.size(); }
+  /// How many of them are on disk.
   [[nodiscard]] std::size_t done() const { return log_.size(); }
+  /// Are all of them?
   [[nodiscard]] bool is_complete() const { return done() >= size(); }
   /// What was made last, kept or not.
   [[nodiscard]] const Record& last() const { return last_; }

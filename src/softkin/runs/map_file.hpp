@@ -3,6 +3,8 @@
 #include <filesystem>
 #include <softkin/kinematics/map.hpp>
 #include <softkin/model/model.hpp>
+#include <string>
+#include <string_view>
 
 namespace softkin::runs {
 

@@ -21,13 +21,13 @@ struct RunFiles {
 
 /// A record that names other actuators than the model has.
 struct OtherActuators : InvalidInput {
-  OtherActuators() : InvalidInput("the record has other actuators") {}
+  OtherActuators() : InvalidInput("the record has other actuators") {}  // with this message
 };
 
 /// How a record is written and read: a line of JSON.
 template <class Record>
 struct Codec {
-  std::function<std::string(const Record&)> write;
+  std::function<std::string(const Record&)> write;    // one line, without its end
   std::function<Record(std::string_view line)> read;  // throws  InvalidInput where the line is none of write
 };
 
@@ -50,6 +50,7 @@ class RecordLog {
               std::string& remark);
   [[noreturn]] void refuse(const std::string& why) const;
 
+  /// How many records there are.
   [[nodiscard]] std::size_t size() const;
 
   /// Takes the journal before the first record is made, so that no second softkin writes beside this one; nothing where
@@ -83,6 +84,7 @@ class RecordLog {
 template <class Record>
 class TypedLog : public RecordLog {
  public:
+  /// As RecordLog; codec: how its records are written.
   TypedLog(const Model& model, RunFiles files, std::string head, std::vector<std::string> same, Codec<Record> codec)
       : RecordLog(model, std::move(files), std::move(head), std::move(same)), codec_(std::move(codec)) {}
 

@@ -37,16 +37,16 @@ struct StepRecord : SolveReport {
   Actuation actuation;                         // m, asked for
   std::optional<double> reached_share{};       // of the way from the step before [-]; none: not known
   std::optional<Actuation> shape_actuation{};  // m, of the shape; none: not known
-  double shape_load_share = 1;
-  std::vector<Anchor> anchors{};  // of friction
-  std::vector<double> eyelets{};  // of cables that rub; see State
-  std::size_t inverted_elements = 0;
+  double shape_load_share = 1;         // of dead loads, prestretch and displacements of supports, as State::share
+  std::vector<Anchor> anchors{};       // of friction
+  std::vector<double> eyelets{};       // of cables that rub; see State
+  std::size_t inverted_elements = 0;   // of the shape
   double largest_displacement_mm = 0;  // of a vertex from its place at rest
   SelfOverlap self_overlap;            // of the shape, set by who makes the record
   std::vector<Vec3> markers;           // [mm]
   std::vector<double> marker_turns{};  // from rest [degrees]; not finite where a marker has no orientation (turns.hpp)
-  std::vector<ActuatorRecord> actuators;
-  StrainHistogram strain;
+  std::vector<ActuatorRecord> actuators;              // in the order of the model
+  StrainHistogram strain;                             // how much of the body is strained how far
   std::optional<StressExtremes> stress{};             // physical; of a walk none
   std::vector<Reaction> reactions{};                  // the same, per support
   std::optional<MagneticLoad> magnetic{};             // where there is a magnetic field; of a walk none
@@ -56,28 +56,29 @@ struct StepRecord : SolveReport {
   std::optional<WorstPlace> worst{};                  // physical, where status is limit
   std::vector<int> history_iterations;                // from 1, per entry of history; empty: all
 
-  std::optional<double> time_s{};
+  std::optional<double> time_s{};           // of the path [s]; none: it has no times
   std::optional<double> viscous_loss_mJ{};  // since the step before; of a viscous robot on a path with times
   std::string shape, shape_fingerprint;     // file of a series that holds the shape; empty: none
 };
 
 /// A waypoint of a path of markers.
 struct WaypointRecord : StepRecord {
-  Waypoint asked;
-  InverseStatus end = InverseStatus::not_converged;
-  double error_mm = 0;  // of the marker that is farthest from its target
-  int equilibria = 0;
+  Waypoint asked;                                    // where its markers were to be
+  InverseStatus end = InverseStatus::not_converged;  // of the search
+  double error_mm = 0;                               // of the marker that is farthest from its target
+  int equilibria = 0;                                // that the search solved for
   double command_change = 0;  // from the waypoint before, the largest of the actuators', over its range [-]
   double step_mm = 0;         // the same, of the path's markers
-  std::string search_remark;
+  std::string search_remark;  // why it ended, where it is not reached
 
+  /// Are all of its markers within the tolerance?
   [[nodiscard]] bool is_reached() const { return end == InverseStatus::reached; }
 };
 
 /// A step of a walk; walk.equilibrium is empty.
 struct WalkRecord : StepRecord {
   std::size_t cycle = 0;  // from 1; 0: where the robot is put down
-  WalkStep walk;
+  WalkStep walk;          // where the robot has come to
 };
 
 /// In the order of the model's actuators.
@@ -101,6 +102,7 @@ void note_jump(const Model& model, const MarkerPath& path, const WaypointRecord&
 
 /// What a user should know of an equilibrium beside its numbers.
 struct Finding {
+  /// What is found; `name` and `values` as they stand beside each.
   enum class Kind {
     strain,               // values: least, greatest, 95th percentile of the magnitude [-]
     beyond_linear_range,  // name: region; values: share of its volume [-], its linear range [-]
@@ -135,18 +137,19 @@ struct Finding {
     branch         // name: chamber or cable whose load has a maximum; values: ratio [-] and load [kPa, N] of each shape
                    // along its volume or length
   };
-  Kind kind;
-  std::string name{};
-  std::vector<double> values{};
-  std::string other{};
+  Kind kind;                     // what it is
+  std::string name{};            // of the region, actuator or part; empty: of none
+  std::vector<double> values{};  // numbers, in the order told above
+  std::string other{};           // the second name, of a contact
 };
 
+/// All that is worth knowing of a record's equilibrium.
 [[nodiscard]] std::vector<Finding> findings(const Model& model, const StepRecord& record);
 
 /// An actuator that did not come as far as was asked, in its own unit.
 struct Shortfall {
-  Index actuator = -1;
-  double reached = 0, asked = 0;
+  Index actuator = -1;            // of the model
+  double reached = 0, asked = 0;  // in the unit of its command
 };
 
 /// Where the shape of a step that did not converge falls short of what was asked; none where only loads or displaced

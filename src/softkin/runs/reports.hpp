@@ -15,14 +15,15 @@ namespace softkin::runs {
 
 /// A map that answers in place of the solver, or at whose answers the solver begins.
 struct UsedMap {
-  std::string file;  // as the user named it
-  const MapData& data;
-  bool polished = false;
+  std::string file;       // as the user named it
+  const MapData& data;    // must outlive its use
+  bool polished = false;  // does the solver begin at its answers
 };
 
 // What a report says before its steps, a JSON object on one line: version, scene, robot, formulation, materials,
 // actuators, solver, units, mesh, notes. scene: its file, as the user named it; map: null: none
 
+/// Of steps; map: null: none
 [[nodiscard]] std::string report_head(const Model& model, const std::string& scene, const StaticsOptions& options,
                                       const UsedMap* map = nullptr);
 /// With what changes the waypoints' results beside robot and solver, "follow".
@@ -38,8 +39,8 @@ struct UsedMap {
 
 /// A goal and what the user calls it: "tip", "base:tip".
 struct NamedGoal {
-  std::string name;
-  Goal goal;
+  std::string name;  // as the user has it
+  Goal goal;         // what is to be reached
 };
 
 /// The equilibrium that inverse kinematics came to.
@@ -47,6 +48,7 @@ struct InverseRecord : StepRecord {
   Misses misses;  // of its goals
 };
 
+/// What is kept of a search: the record of its equilibrium, and how far that is from its goals.
 [[nodiscard]] InverseRecord inverse_record(const Model& model, const std::vector<Goal>& goals,
                                            const InverseResult& found, const ElementDeformation& deformation);
 

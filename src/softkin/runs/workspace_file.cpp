@@ -9,11 +9,13 @@
 #include <softkin/io/mesh/vtk.hpp>
 #include <softkin/io/own_file.hpp>
 #include <softkin/io/plain_text.hpp>
+#include <softkin/io/plot/svg_plot.hpp>
 #include <softkin/io/scanner.hpp>
 #include <softkin/kinematics/nearest.hpp>
 #include <softkin/model/model.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/records_json.hpp>
+#include <softkin/runs/store.hpp>
 #include <softkin/runs/workspace_file.hpp>
 #include <string_view>
 #include <utility>
@@ -126,8 +128,20 @@ WorkspaceFile::WorkspaceFile(fs::path path, const WorkspaceHead& head, const Wor
     : path_(std::move(path)), columns_(columns), known_(static_cast<std::size_t>(plan.samples())) {
   const std::string header = workspace_header(head, columns);
   if (!resume) check_replaceable(path_);
-  store_.emplace(path_, header, resume);
+  store_ = std::make_unique<Store>(path_, header, resume);
   take(read_workspace(path_, columns_), head, plan);
+}
+
+WorkspaceFile::~WorkspaceFile() = default;
+
+Index WorkspaceFile::done() const {
+  return static_cast<Index>(store_->size());
+}
+bool WorkspaceFile::complete() const {
+  return store_->size() == known_.size();
+}
+bool WorkspaceFile::was_torn() const {
+  return store_->was_torn();
 }
 
 void WorkspaceFile::take(const WorkspaceTable& table, const WorkspaceHead& head, const WorkspacePlan& plan) {

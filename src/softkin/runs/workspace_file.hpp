@@ -2,18 +2,23 @@
 
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <optional>
-#include <softkin/io/plot/svg_plot.hpp>
 #include <softkin/io/table/workspace_table.hpp>
 #include <softkin/kinematics/goal.hpp>
 #include <softkin/kinematics/hull.hpp>
 #include <softkin/kinematics/workspace.hpp>
 #include <softkin/model/model.hpp>
-#include <softkin/runs/store.hpp>
 #include <string>
 #include <vector>
 
+namespace softkin {
+struct Plot;  // io/plot/svg_plot.hpp
+}
+
 namespace softkin::runs {
+
+class Store;  // store.hpp
 
 /// The columns of a workspace of the robot: tendon1 or air_kPa; tip_x_mm, tip_y_mm, tip_z_mm; tendon1_tension_N or
 /// air_pressure_kPa (physical formulation).
@@ -37,11 +42,16 @@ class WorkspaceFile {
   ///         solver or sampling that is; where another softkin is at work on it; where it cannot be written
   WorkspaceFile(std::filesystem::path path, const WorkspaceHead& head, const WorkspaceColumns& columns,
                 const WorkspacePlan& plan, bool resume);
+  ~WorkspaceFile();
+  WorkspaceFile(const WorkspaceFile&) = delete;
+  WorkspaceFile& operator=(const WorkspaceFile&) = delete;
 
-  [[nodiscard]] Index done() const { return static_cast<Index>(store_->size()); }
-  [[nodiscard]] bool complete() const { return store_->size() == known_.size(); }
+  /// How many samples are in the file.
+  [[nodiscard]] Index done() const;
+  /// Are all of them?
+  [[nodiscard]] bool complete() const;
   /// A last row was so; it is solved again.
-  [[nodiscard]] bool was_torn() const { return store_->was_torn(); }
+  [[nodiscard]] bool was_torn() const;
   /// Samples that ended so.
   [[nodiscard]] Index count(Status status) const;
   /// Samples of which there is no shape, not even a last good one.
@@ -64,7 +74,7 @@ class WorkspaceFile {
   const WorkspaceColumns& columns_;
   std::vector<std::optional<Status>> known_;  // per sample
   Index without_shape_ = 0;
-  std::optional<Store> store_;
+  std::unique_ptr<Store> store_;
 };
 
 /// The samples of a workspace of the robot.
@@ -80,7 +90,7 @@ class WorkspaceFile {
 
 /// What a finished workspace shows of one marker.
 struct Reach {
-  std::string marker;
+  std::string marker;                    // its name
   std::vector<WorkspaceSample> samples;  // those with equilibria
   Points positions;                      // of the marker, #samples by 3 [mm]
   std::optional<Hull> hull{};            // where it is asked for and there are samples

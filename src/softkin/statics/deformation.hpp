@@ -13,7 +13,7 @@ namespace softkin {
 
 /// Cauchy stress of every element, in their order [MPa]: at that of its integration points where von Mises' is largest.
 struct ElementStress {
-  std::vector<double> von_mises;
+  std::vector<double> von_mises;                 // of each element
   std::vector<std::array<double, 3>> principal;  // descending; tension is positive
 };
 
@@ -65,7 +65,7 @@ struct ElementDeformation {
   std::vector<FibreForces> fibres{};                   // of each
   std::vector<LayerForces> layers{};                   // the same
 };
-[[nodiscard]] ElementDeformation deformation_of(const Model& model, const Points& positions);
+[[nodiscard]] ElementDeformation deformation_of(const Model& model, const Points& positions);  // of #V by 3 [mm]
 
 /// What an entry of the scene's `fixed` does to the robot.
 struct Reaction {
@@ -79,6 +79,7 @@ struct Reaction {
 
 /// The largest stresses of the body (not of the membrane of a dea) and where they are.
 struct StressExtremes {
+  /// One value and its place.
   struct Extreme {
     double value = 0;        // [MPa]
     Vec3 at = Vec3::Zero();  // the element's centroid [mm]
@@ -98,13 +99,15 @@ struct StrainHistogram {
   std::vector<double> shares;      // sum to 1
   double least = 0, greatest = 0;  // of the principal strains, whatever their magnitude
   double percentile_95 = 0;        // of the magnitude
+  /// What of a material is strained beyond its linear range.
   struct Beyond {
-    std::string region;
-    double linear_range = 0;
-    double share = 0;  // of the material's volume whose magnitude is beyond
+    std::string region;       // of the material
+    double linear_range = 0;  // largest |principal strain| of it [-]
+    double share = 0;         // of the material's volume whose magnitude is beyond
   };
   std::vector<Beyond> beyond;  // materials that state a linear range
 };
+/// Of one shape.
 [[nodiscard]] StrainHistogram strain_histogram(const Model& model, const ElementDeformation& deformation);
 
 }  // namespace softkin

@@ -10,11 +10,11 @@ namespace softkin {
 
 /// The electric state of the layer of a dea under voltage.
 struct ElectricLayer {
-  double capacitance_pF = 0;
-  double charge_nC = 0;     // on its electrodes
-  double field_kV_mm = 0;   // true field, the largest at a quadrature point,
-  Vec3 at = Vec3::Zero();   // the centroid of that prism [mm]
-  double thickness_mm = 0;  // and its thickness: volume over mean area
+  double capacitance_pF = 0;  // C = Q / V
+  double charge_nC = 0;       // on its electrodes
+  double field_kV_mm = 0;     // true field, the largest at a quadrature point,
+  Vec3 at = Vec3::Zero();     // the centroid of that prism [mm]
+  double thickness_mm = 0;    // and its thickness: volume over mean area
 };
 
 /// Physical formulation.

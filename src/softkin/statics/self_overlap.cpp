@@ -4,6 +4,7 @@
 #include <limits>
 #include <queue>
 #include <softkin/model/mesh/boundary.hpp>
+#include <softkin/model/mesh/box_tree.hpp>
 #include <softkin/model/mesh/surface_tree.hpp>
 #include <softkin/model/mesh/tetrahedra.hpp>
 #include <softkin/statics/self_overlap.hpp>
@@ -67,7 +68,7 @@ class OverlapSearch::Shape {
       : cells_(search.cells_),
         positions_(positions),
         bounds_(bounds_of(positions, cells_)),
-        tree_(search.tree_),
+        tree_(*search.tree_),
         inverted_(static_cast<std::size_t>(positions.rows())) {
     tree_.refit(bounds_);
     for (const Tetrahedron& cell : cells_)
@@ -141,7 +142,9 @@ class OverlapSearch::Shape {
 };
 
 OverlapSearch::OverlapSearch(const Model& model)
-    : cells_(body_cells(model)), tree_(bounds_of(model.rest, cells_)), least_mm_(touching * model.diagonal_mm) {
+    : cells_(body_cells(model)),
+      tree_(std::make_shared<BoxTree>(bounds_of(model.rest, cells_))),
+      least_mm_(touching * model.diagonal_mm) {
   for (const Triangle& face : boundary_of(cells_, {}).triangles)
     surface_.insert(surface_.end(), face.begin(), face.end());
   sort_unique(surface_);

@@ -1,9 +1,11 @@
 #pragma once
 
-#include <softkin/model/mesh/box_tree.hpp>
+#include <memory>
 #include <softkin/model/model.hpp>
 
 namespace softkin {
+
+class BoxTree;  // model/mesh/box_tree.hpp
 
 /// How far a shape passes through itself.
 struct SelfOverlap {
@@ -24,6 +26,7 @@ struct SelfOverlap {
 ///             is that of the part which the point has entered, not that of its own wall
 class OverlapSearch {
  public:
+  /// Of shapes of this model, which need not outlive the object.
   explicit OverlapSearch(const Model& model);
 
   /// positions  #V by 3 [mm]; where one is not finite nothing is found
@@ -33,9 +36,9 @@ class OverlapSearch {
   class Shape;
 
   std::vector<Tetrahedron> cells_;
-  std::vector<Index> surface_;  // vertices of the boundary
-  BoxTree tree_;                // of the cells at rest
-  double least_mm_ = 0;         // less deep counts as touching
+  std::vector<Index> surface_;           // vertices of the boundary
+  std::shared_ptr<const BoxTree> tree_;  // of the cells at rest
+  double least_mm_ = 0;                  // less deep counts as touching
 };
 
 }  // namespace softkin

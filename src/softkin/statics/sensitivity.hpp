@@ -16,8 +16,8 @@ struct Sensitivity {
 /// A robot with one of its numbers a little larger and a little smaller: models that were compiled from descriptions
 /// which differ in nothing else.
 struct Perturbed {
-  const Model& more;
-  const Model& less;
+  const Model& more;      // compiled with the number larger; must outlive its use
+  const Model& less;      // and smaller
   double difference = 0;  // of the number between them, in its unit; not 0
 };
 

@@ -20,12 +20,13 @@ enum class Solver { newton, local_global };
 /// Where the program that the paper's authors publish ends Algorithm 1: from this iteration on, once no marker has
 /// moved farther in an iteration. No equilibrium is reached then.
 struct PublishedStop {
-  static constexpr int first_iteration = 10;
-  static constexpr double move_mm = 0.032;
+  static constexpr int first_iteration = 10;  // from 1
+  static constexpr double move_mm = 0.032;    // the largest move of a marker [mm]
 };
 
+/// How equilibria are solved for.
 struct StaticsOptions {
-  Solver solver = Solver::newton;
+  Solver solver = Solver::newton;  // physical: newton alone
   /// Largest move of a vertex in one iteration at which a solver stops [mm], > 0. 0: the paper's 1e-5 mm on a robot
   /// of its size, 8e-8 of the bounding box's diagonal.
   double step_tolerance_mm = 0;
@@ -85,6 +86,7 @@ class Statics {
   Statics(Statics&&) noexcept;
   Statics& operator=(Statics&&) noexcept;
 
+  /// The robot at rest, without an actuation: where a first solve begins.
   [[nodiscard]] State rest() const;
 
   /// Equilibrium shape under one actuation.

@@ -8,7 +8,7 @@ namespace softkin {
 
 /// The element of the body that is deformed most, and what stands next to it.
 struct WorstPlace {
-  bool prism = false;
+  bool prism = false;       // else a tetrahedron
   Index element = 0;        // among the tetrahedra or the prisms of the model
   std::string region;       // of the element; may be empty
   Vec3 at;                  // its centroid in the shape [mm]

@@ -77,11 +77,11 @@ void write_gmsh(const std::filesystem::path& path, const Mesh& mesh, bool binary
 /// A sidecar's column as indices of the rows that hold 1. Rows "id:c1:c2:...:" (matched by position; ids are checked to
 /// count up from 1 or 0) or one bare 0/1 each. column counts from 1.
 struct Sidecar {
-  Index rows = 0;
-  std::vector<std::vector<Index>> columns;
-  bool bare = false;  // one 0/1 a row, without ids
+  Index rows = 0;                           // how many
+  std::vector<std::vector<Index>> columns;  // of each the rows that hold 1, from 0
+  bool bare = false;                        // one 0/1 a row, without ids
 };
-[[nodiscard]] Sidecar read_sidecar(const std::filesystem::path& path);
+[[nodiscard]] Sidecar read_sidecar(const std::filesystem::path& path);  // throws as read_mesh
 
 /// ASCII (one or several solids) or binary STL; vertices with equal coordinates are welded. Also refused: no facets, a
 /// facet without area, a number that is not finite (normals included), a file that goes on after the last facet.

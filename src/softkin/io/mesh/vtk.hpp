@@ -36,22 +36,22 @@ struct CellVectors {
 
 /// A named array over points or cells: count * components values.
 struct Field {
-  std::string name;
-  int components = 1;
-  std::vector<double> values;
+  std::string name;            // printable, once in its place
+  int components = 1;          // values of each point or cell
+  std::vector<double> values;  // those of the first point or cell, of the second, ...
 };
 
 /// What ParaView shows: cells are the tetrahedra, then the prisms, the triangles and the single points.
 struct VtuContent {
-  Points points;  // [mm]
-  std::vector<Tetrahedron> tetrahedra;
-  std::vector<EdgeNodes> edge_nodes;  // order 2: of every tetrahedron, and no prisms; order 1: empty
-  std::vector<Prism> prisms;
-  std::vector<Triangle> triangles{};  // of a surface
-  bool cloud = false;                 // every point is a cell of its own too
-  std::vector<Field> point_fields, cell_fields;
-  std::vector<Index> cell_regions;  // per cell, index into region_names or -1; empty: none
-  std::vector<std::string> region_names;
+  Points points;                                 // [mm]
+  std::vector<Tetrahedron> tetrahedra;           // corners
+  std::vector<EdgeNodes> edge_nodes;             // order 2: of every tetrahedron, and no prisms; order 1: empty
+  std::vector<Prism> prisms;                     // corners
+  std::vector<Triangle> triangles{};             // of a surface
+  bool cloud = false;                            // every point is a cell of its own too
+  std::vector<Field> point_fields, cell_fields;  // over points, over cells
+  std::vector<Index> cell_regions;               // per cell, index into region_names or -1; empty: none
+  std::vector<std::string> region_names;         // by their numbers
   std::vector<std::pair<std::string, double>> constants{};  // numbers of the whole, by name
   std::vector<Field> arrays{};                              // of the whole: any number of values
 };
@@ -71,8 +71,8 @@ void write_vtu(const std::filesystem::path& path, const VtuContent& content);
 
 /// Collection of .vtu files over a parameter; `file` is relative to the .pvd's folder.
 struct PvdEntry {
-  double time = 0;
-  std::string file;
+  double time = 0;   // or another parameter
+  std::string file;  // of the .vtu, relative to the collection's folder
 };
 
 /// Throws InvalidInput where a time is not finite or a file name is empty or not printable.

@@ -23,14 +23,14 @@ struct Node;
 
 /// How the files that a scene names are read; lengths in the file's unit.
 struct SceneFiles {
-  std::function<Mesh(const std::filesystem::path&)> mesh;
-  std::function<TriangleSurface(const std::filesystem::path&)> surface;
-  std::function<Sidecar(const std::filesystem::path&)> sidecar;
-  std::function<ActuatorCurve(const std::filesystem::path&)> curve = read_actuator_curve;
+  std::function<Mesh(const std::filesystem::path&)> mesh;                // of `mesh`
+  std::function<TriangleSurface(const std::filesystem::path&)> surface;  // of chambers, obstacles and other surfaces
+  std::function<Sidecar(const std::filesystem::path&)> sidecar;          // of regions beside a mesh
+  std::function<ActuatorCurve(const std::filesystem::path&)> curve = read_actuator_curve;  // of actuators
   std::function<std::string(const std::filesystem::path&)> scene = read_file;  // the text of one of `robots`
-  std::function<FieldSamples(const std::filesystem::path&)> samples = read_field_samples;
-  std::function<Points(const std::filesystem::path&)> way = read_way;  // corners [mm]
-  std::function<FieldSamples(const std::filesystem::path&)> directions = read_directions;
+  std::function<FieldSamples(const std::filesystem::path&)> samples = read_field_samples;  // of fields
+  std::function<Points(const std::filesystem::path&)> way = read_way;                      // corners [mm]
+  std::function<FieldSamples(const std::filesystem::path&)> directions = read_directions;  // of fibres and growths
 };
 
 /// As read_scene, from a text in memory. file_name is for messages; the paths given to `files` are relative to its

@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <optional>
-#include <softkin/io/table/csv.hpp>
 #include <softkin/io/table/settings.hpp>
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/model/model.hpp>
@@ -12,9 +11,11 @@
 
 namespace softkin {
 
+struct CsvTable;  // io/table/csv.hpp
+
 /// One actuation to solve for.
 struct ActuationStep {
-  Actuation actuation;
+  Actuation actuation;           // m: a command for each actuator
   std::optional<double> time{};  // [s], where the path has times
   std::size_t line = 0;          // of the path's file
 };

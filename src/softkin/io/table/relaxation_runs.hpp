@@ -9,7 +9,7 @@ namespace softkin {
 
 /// Of the specimen at rest; none: not given.
 struct StripSize {
-  std::optional<double> length_mm, area_mm2;
+  std::optional<double> length_mm, area_mm2;  // length between the grips, area of the cross-section
 };
 
 /// Reads relaxation, creep and cyclic tests of a strip, CSV: t_s; strain, strain_percent, stretch or length_mm;

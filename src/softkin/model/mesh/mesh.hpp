@@ -9,6 +9,7 @@
 
 namespace softkin {
 
+/// Row i as a column.
 [[nodiscard]] inline Vec3 vertex_at(const Points& points, Index i) {
   return points.row(i).transpose();
 }
@@ -20,32 +21,37 @@ void sort_unique(std::vector<Value>& values) {
   values.erase(std::unique(values.begin(), values.end()), values.end());
 }
 
+/// Corners; of positive volume where 0, 1, 2 turn counterclockwise seen from 3.
 using Tetrahedron = std::array<Index, 4>;
 using Prism = std::array<Index, 6>;  // bottom triangle 0 1 2, top 3 4 5, edges 0-3, 1-4, 2-5
 /// Nodes on the edges 01, 12, 02, 03, 13, 23 of a quadratic tetrahedron.
 using EdgeNodes = std::array<Index, 6>;
 using Triangle = std::array<Index, 3>;
 using Quad = std::array<Index, 4>;
+/// An edge of tetrahedra or of sheets of order 2: its ends, ascending, and the node on it.
+using EdgeWithNode = std::array<Index, 3>;
 
 /// A named part of a mesh (a physical group): indices into the mesh's arrays, ascending, without repetition.
 struct Region {
-  std::string name;
-  int dimension = 3;  // 3: tetrahedra and prisms; 2: triangles and quads; 1 and 0: vertices
-  std::vector<Index> tetrahedra, prisms;
-  std::vector<Index> triangles, quads;
-  std::vector<Index> vertices;
+  std::string name;                       // unique in a mesh
+  int dimension = 3;                      // 3: tetrahedra and prisms; 2: triangles and quads; 1 and 0: vertices
+  std::vector<Index> tetrahedra, prisms;  // of dimension 3
+  std::vector<Index> triangles, quads;    // of dimension 2
+  std::vector<Index> vertices;            // of dimension 1 and 0
 };
 
+/// Corners of the edges, in the order of EdgeNodes.
 inline constexpr int tetrahedron_edges[6][2] = {{0, 1}, {1, 2}, {0, 2}, {0, 3}, {1, 3}, {2, 3}};
+/// Corners of the edges: of both triangles, then between them.
 inline constexpr int prism_edges[9][2] = {{0, 1}, {1, 2}, {2, 0}, {3, 4}, {4, 5}, {5, 3}, {0, 3}, {1, 4}, {2, 5}};
 
 /// A volume mesh as it stands in its file: lengths in the file's unit, elements in the file's orientation.
 struct Mesh {
-  Points vertices;  // #V by 3
-  std::vector<Tetrahedron> tetrahedra;
-  std::vector<EdgeNodes> edge_nodes;  // of order 2: of every tetrahedron, and there are no prisms; of order 1: empty
-  std::vector<Prism> prisms;
-  std::vector<Triangle> triangles;  // surface cells that some region names; of order 2 their corners
+  Points vertices;                      // #V by 3
+  std::vector<Tetrahedron> tetrahedra;  // corners
+  std::vector<EdgeNodes> edge_nodes;    // of order 2: of every tetrahedron, and there are no prisms; of order 1: empty
+  std::vector<Prism> prisms;            // corners
+  std::vector<Triangle> triangles;      // surface cells that some region names; of order 2 their corners
   // of order 2: of edges of triangles that no tetrahedron has their ends, ascending, and the node on them
   std::vector<std::array<Index, 3>> sheet_edges;
   std::vector<Quad> quads;
@@ -56,8 +62,8 @@ struct Mesh {
 
 /// A closed triangle surface (from STL), vertices welded.
 struct TriangleSurface {
-  Points vertices;
-  std::vector<Triangle> triangles;
+  Points vertices;                  // #vertices by 3, in the file's unit or [mm]
+  std::vector<Triangle> triangles;  // normals outwards
 };
 
 /// The longest distance between two corners of an element [mm].

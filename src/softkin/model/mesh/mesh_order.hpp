@@ -18,9 +18,6 @@ template <class Elements>
   return refusal_of_orders(mesh.tetrahedra.size(), mesh.edge_nodes.size(), mesh.prisms.size());
 }
 
-/// An edge of tetrahedra or of sheets of order 2: its ends, ascending, and the node on it.
-using EdgeWithNode = std::array<Index, 3>;
-
 /// Every edge with its node, once, by ascending ends; one that has several nodes is there as often. Order 1: none.
 [[nodiscard]] std::vector<EdgeWithNode> edges_with_nodes(const Mesh& mesh);
 
