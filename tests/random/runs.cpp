@@ -111,8 +111,10 @@ void take(const Confirmation& from, const Equilibrium& found, RunResult& run) {
   run.unstable = run.unstable || found.report.remark.find("unstable") != std::string::npos;
 }
 
-Effort effort_of(const SolveReport& report) {
-  Effort effort{{report.iterations, report.factorisations, report.projections, report.continuation_steps, 0}, {}};
+Effort effort_of(const SolveReport& report, bool physical) {
+  Effort effort{{report.iterations, report.factorisations, report.projections, report.continuation_steps, 0}};
+  effort.end = physical ? "physical, " : "target shapes, ";
+  effort.end += std::string(name_of(outcome_of(report.status))) + ": " + report.remark;
   for (const TracedStep& step : report.trace)
     if (!step.taken) {
       ++effort.of.back();
@@ -136,7 +138,7 @@ void solve_all(const RandomCase& robot, bool verbose, bool trace, RunResult& run
   State start = statics.rest();
   for (const Actuation& command : robot.commands) {
     const Equilibrium found = solve(statics, robot, command, start, 1, trace || verbose);
-    if (found.report.solver == "newton") run.efforts.push_back(effort_of(found.report));
+    if (found.report.solver == "newton") run.efforts.push_back(effort_of(found.report, run.physical));
     const Confirmation confirmed = confirm(model, command, found, begun);
     if (verbose) {
       tell(found.report);

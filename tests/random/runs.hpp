@@ -19,7 +19,8 @@ struct Effort {
   static constexpr std::array<const char*, counts> names{"iterations", "factorisations", "projections", "equilibria",
                                                          "rejected steps"};
   std::array<int, counts> of{};
-  std::map<std::string, int> rejections;
+  std::map<std::string, int> rejections{};
+  std::string end{};  // how it ended
 };
 
 struct RunResult {
@@ -74,6 +75,8 @@ class Summary {
   Extreme residual_, constraint_, step_, seconds_;
   double total_seconds_ = 0;
   std::vector<RunResult> failures_;
+  static constexpr int long_way = 150;                                              // iterations
+  std::map<std::string, std::vector<std::uint64_t>> long_ways_;                     // by how they ended: the seeds
   std::array<std::vector<std::pair<int, std::uint64_t>>, Effort::counts> efforts_;  // with their seeds
   std::map<std::string, std::pair<std::size_t, std::uint64_t>> rejections_;         // reason: how many, a seed
 };

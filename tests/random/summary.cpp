@@ -59,6 +59,7 @@ void Summary::add(const RunResult& run) {
   inverted_ += run.inverted;
   for (const Effort& effort : run.efforts) {
     for (std::size_t i = 0; i < effort.of.size(); ++i) efforts_[i].emplace_back(effort.of[i], run.seed);
+    if (effort.of[0] > long_way) long_ways_[kind_of(effort.end)].push_back(run.seed);
     for (const auto& [why, times] : effort.rejections)
       rejections_.try_emplace(why, 0, run.seed).first->second.first += static_cast<std::size_t>(times);
   }
@@ -133,6 +134,11 @@ std::string Summary::effort_text() const {
     for (std::size_t k = 0; k < std::min(shown, sorted.size()); ++k)
       text += " " + std::to_string(sorted[sorted.size() - 1 - k].second);
     text += "\n";
+  }
+  for (const auto& [end, seeds] : long_ways_) {
+    text += line("%6zu solves of more than %d iterations: %s (seeds", seeds.size(), long_way, end.c_str());
+    for (std::size_t i = 0; i < std::min(shown, seeds.size()); ++i) text += " " + std::to_string(seeds[i]);
+    text += ")\n";
   }
   for (const auto& [why, found] : rejections_)
     text += line("%6zu steps not taken: %s (seed %llu)\n", found.first, why.c_str(),

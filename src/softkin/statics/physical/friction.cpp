@@ -96,8 +96,8 @@ double first_zero(double a, double b, double c) {
 
 }  // namespace
 
-/// Of what came into reach on the way the anchor lies where it did so, on the way on which it would go if nothing pushed:
-/// the gap hardly changes any more once something does.
+/// Of what came into reach on the way the anchor lies where it did so if nothing had pushed: the gap hardly changes any
+/// more once something does.
 Anchor Friction::fresh_anchor(const Points& from, const Points& to, const FreeWay& free, const Touch& touch) const {
   const contact::Nodes nodes = nodes_of_vertex_triangle(surfaces_.surface, touch.term->pair);
   const auto apart = [&](const Points& shape) -> Vec3 {

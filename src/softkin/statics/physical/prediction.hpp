@@ -21,8 +21,8 @@ struct ClearPrediction {
 ClearPrediction predict_clear(const System& system, const Demand& here, const Demand& there,
                               const std::vector<bool>& active, Workspace& work, Team& team, Iterate& at);
 
-/// Brings what is held to its place, and lets the body follow it as if nothing else changed. False where something is in
-/// the way, or the stiffness has no step.
+/// Brings what is held to its place, and lets the body follow it as if nothing else changed. False where something is
+/// in the way, or the stiffness has no step.
 bool carry_held(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
                 Workspace& work, Team& team, Iterate& at);
 
