@@ -43,13 +43,13 @@ constexpr double unlimited = std::numeric_limits<double>::infinity();
 /// least energy no smaller. Where that is the pace, no number of iterations that anybody waits for is enough.
 class Stall {
  public:
-  explicit Stall(int window) : window_(window) {}
+  static constexpr int window = 2000;
 
   [[nodiscard]] bool add(const IterationRecord& record) {
     constexpr double hardly = 0.9, no_smaller = 1 - 1e-6;
     step_mm_ = std::min(step_mm_, record.step_mm);
     energy_ = std::min(energy_, record.energy);
-    if (++count_ % window_ != 0) return false;
+    if (++count_ % window != 0) return false;
     const bool stalled = step_mm_ > hardly * best_step_mm_ && energy_ > no_smaller * best_energy_;
     best_step_mm_ = std::min(best_step_mm_, std::exchange(step_mm_, unlimited));
     best_energy_ = std::min(best_energy_, std::exchange(energy_, unlimited));
@@ -59,7 +59,7 @@ class Stall {
  private:
   double step_mm_ = unlimited, energy_ = unlimited;  // least in this window
   double best_step_mm_ = unlimited, best_energy_ = unlimited;
-  int window_, count_ = 0;
+  int count_ = 0;
 };
 
 double largest_marker_move(const Model& model, const Points& before, const Points& after) {
@@ -127,7 +127,7 @@ void LocalGlobal::extrapolate() {
 
 void solve_local_global(const Model& model, const System& system, const supports::GlobalStep& global,
                         const StaticsOptions& options, const ProgressCallback& progress, Team& team,
-                        Equilibrium& result, int nowhere) {
+                        Equilibrium& result) {
   SolveReport& report = result.report;
   report.solver = "local-global";
   if (options.as_published) report.tolerance_mm = PublishedStop::move_mm;
@@ -135,7 +135,7 @@ void solve_local_global(const Model& model, const System& system, const supports
   LocalGlobal iteration(system, global, anderson, result.actuation, result.state.positions);
   System::Scratch scratch = system.make_scratch();
   ErrorEstimate estimate;
-  Stall stall(nowhere);
+  Stall stall;
   while (report.iterations < options.max_iterations) {
     IterationRecord record;
     if (!iteration.iterate(scratch, team, record)) break;
@@ -150,7 +150,7 @@ void solve_local_global(const Model& model, const System& system, const supports
       break;
     }
     if (stall.add(record)) {
-      report.remark = "the last " + std::to_string(nowhere) + " iterations led nowhere";
+      report.remark = "the last " + std::to_string(Stall::window) + " iterations led nowhere";
       break;
     }
     if (report.iterations < options.max_iterations) iteration.extrapolate();

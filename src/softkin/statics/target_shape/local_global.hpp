@@ -44,12 +44,11 @@ class LocalGlobal {
 void accept(const IterationRecord& record, bool keep_history, SolveReport& report);
 
 /// Algorithm 1 from result.state.positions until no vertex moves farther than report.tolerance_mm in an iteration, or
-/// to PublishedStop. Fills state.positions and the report, its seconds aside. Given up where so many iterations lead
-/// nowhere.
+/// to PublishedStop. Fills state.positions and the report, its seconds aside.
 ///
 /// source  Fang et al. 2020, Alg. 1, Eqs. (9)-(10)
 void solve_local_global(const Model& model, const System& system, const supports::GlobalStep& global,
                         const StaticsOptions& options, const ProgressCallback& progress, Team& team,
-                        Equilibrium& result, int nowhere = 2000);
+                        Equilibrium& result);
 
 }  // namespace softkin::target_shape

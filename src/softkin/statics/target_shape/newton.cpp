@@ -342,8 +342,7 @@ void Newton::solve(const Actuation& start, const StaticsOptions& options, const 
   if (end == End::stuck) {
     positions = begin;
     report.continuation_steps = 1;
-    constexpr int nowhere = 200;  // iterations: what Newton's method did not find Algorithm 1 mostly does not either
-    solve_local_global(unknowns_.model, unknowns_.system, global_, options, progress, team, result, nowhere);
+    solve_local_global(unknowns_.model, unknowns_.system, global_, options, progress, team, result);
     report.solver = "newton";
     if (report.status != Status::converged)
       report.remark = "neither Newton's method nor Algorithm 1 converged" +
