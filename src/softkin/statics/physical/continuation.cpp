@@ -15,8 +15,8 @@ bool same_shape(const Points& a, const Points& b) {
   return a.rows() == b.rows() && a == b;
 }
 
-/// Where a prediction moves farther than this share of the diagonal and something is in its way, what touches is looked
-/// for first.
+/// Where weights are foretold to move something farther than this share of the diagonal, and something is in the way,
+/// what touches is looked for first.
 constexpr double far = 0.2;
 /// Shortest step of the continuation, over the way asked for.
 constexpr double least_advance = 1e-4;
@@ -103,11 +103,11 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
   if (whole && !led && leads_too_far(here, there, at)) return Newton::Outcome::too_far;
   const bool follows = last_.modes > 0 && !stable_ && length <= 1.001 * follow_below;
   const auto policy = follows ? Newton::Policy::follow : led ? Newton::Policy::near : Newton::Policy::descend;
-  const bool again = system_.contact() && !follows, first = again && whole && cut;
+  const bool again = system_.contact() && !follows, first = again && whole && cut && weighs(here, there);
   const Iterate begun = again ? trial : Iterate{};
   const auto settle_foreseen = [&] {
     trial = begun;
-    const auto foreseen = foresee_contact(there, at, trial);
+    const auto foreseen = foresee_contact(there, at, false, trial);
     if (foreseen == Newton::Outcome::converged) return settle(there, policy, trial);
     return foreseen == Newton::Outcome::interrupted ? foreseen : Newton::Outcome::stuck;
   };

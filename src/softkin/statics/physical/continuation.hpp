@@ -178,10 +178,11 @@ class Continuation {
   std::optional<Pushed> pushed(const Demand& demand, const Iterate& from, const LowestMode& mode, double share);
   int prepare(const Demand& here, const Iterate& at);
   double renew_anchors(Iterate& at);
+  [[nodiscard]] bool weighs(const Demand& here, const Demand& there) const;
   [[nodiscard]] bool touches(const Iterate& at) const;
   Newton::Outcome fall_onto(const Demand& here, const Demand& there, const Iterate& at, Iterate& trial);
-  Newton::Outcome settle_softly(const Demand& demand, OtherContact& contact, Iterate& at);
-  Newton::Outcome foresee_contact(const Demand& demand, const Iterate& from, Iterate& at);
+  Newton::Outcome settle_softly(const Demand& demand, bool falls, OtherContact& contact, Iterate& at);
+  Newton::Outcome foresee_contact(const Demand& demand, const Iterate& from, bool falls, Iterate& at);
   Newton::Outcome settle_here(const Demand& demand, Iterate& at);
   Newton::Outcome settle(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised = false);
   Newton::Outcome settle_following(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised);

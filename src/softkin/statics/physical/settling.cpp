@@ -30,6 +30,12 @@ void Continuation::give_loads(const Demand& demand, Iterate& at) const {
       at.multipliers[a] = system_.measures().given(a, demand.actuation[a]);
 }
 
+/// Do weights come, or dead forces, of which something may bear some?
+bool Continuation::weighs(const Demand& here, const Demand& there) const {
+  return system_.contact() && here.share != there.share && system_.model().dead_load.size() > 0 &&
+         !system_.model().dead_load.isZero(0);
+}
+
 /// Does anything push in a shape?
 bool Continuation::touches(const Iterate& at) const {
   OtherContact contact(system_, work_, team_);
@@ -37,13 +43,14 @@ bool Continuation::touches(const Iterate& at) const {
   return contact.any_push();
 }
 
-/// To where softer contact holds, felt from farther away; from as far as is wanted for steps that what is in the way
-/// does not cut to nothing, then nearer and nearer.
-Newton::Outcome Continuation::settle_softly(const Demand& demand, OtherContact& contact, Iterate& at) {
+/// To where softer contact holds, felt from farther away; of what falls from as far as is wanted for steps that what is
+/// in the way does not cut to nothing, then nearer and nearer.
+Newton::Outcome Continuation::settle_softly(const Demand& demand, bool falls, OtherContact& contact, Iterate& at) {
   constexpr double modulus = 1e-4;
   constexpr double nearest = 6, finer = 8;  // reaches, over the contact distance
   constexpr double farthest = 0.1;          // of the diagonal
-  const double most = std::max(nearest, farthest * system_.model().diagonal_mm / system_.model().contact.distance_mm);
+  const double most =
+      falls ? std::max(nearest, farthest * system_.model().diagonal_mm / system_.model().contact.distance_mm) : nearest;
   constexpr int most_iterations = 20;  // of what was stuck for want of a way
   const std::vector<bool> before = active_;
   const Iterate begun = at;
@@ -66,7 +73,7 @@ Newton::Outcome Continuation::settle_softly(const Demand& demand, OtherContact& 
 /// From a prediction to where what touches pushes as it will, from an equilibrium: Newton's method on the shape alone
 /// loses a face that rests on another, as it presses so little that it lies within a hundredth of the contact distance
 /// of where forces end. Where nothing touched yet, through softer contact. What rubs does not yet.
-Newton::Outcome Continuation::foresee_contact(const Demand& demand, const Iterate& from, Iterate& at) {
+Newton::Outcome Continuation::foresee_contact(const Demand& demand, const Iterate& from, bool falls, Iterate& at) {
   constexpr double foresight = 2;
   const std::vector<bool> before = active_;
   Iterate trial = at;
@@ -76,7 +83,7 @@ Newton::Outcome Continuation::foresee_contact(const Demand& demand, const Iterat
   auto outcome = Newton::Outcome::converged;
   if (!contact.any_push()) {
     contact.forget();
-    outcome = settle_softly(demand, contact, trial);
+    outcome = settle_softly(demand, falls, contact, trial);
   } else {
     system_.contacts()->follow_pushes(trial.positions - from.positions, 1, *work_.contacts);
   }
@@ -90,13 +97,13 @@ Newton::Outcome Continuation::foresee_contact(const Demand& demand, const Iterat
 
 /// Where weights would lead far through something: what is held comes to its place, and the body onto what is near.
 Newton::Outcome Continuation::fall_onto(const Demand& here, const Demand& there, const Iterate& at, Iterate& trial) {
-  if (!system_.contact() || here.share == there.share || touches(at)) return Newton::Outcome::blocked;
+  if (!weighs(here, there) || touches(at)) return Newton::Outcome::blocked;
   trial = at;
   if (!carry_held(system_, here, there, active_, work_, team_, trial)) return Newton::Outcome::blocked;
   give_loads(there, trial);
   predicted_ = begun_ = trial.positions;
   unforetold_ = true;
-  const auto outcome = foresee_contact(there, at, trial);
+  const auto outcome = foresee_contact(there, at, true, trial);
   if (outcome == Newton::Outcome::interrupted) return outcome;
   begun_ = trial.positions;
   return outcome == Newton::Outcome::converged ? settle(there, Newton::Policy::descend, trial)
