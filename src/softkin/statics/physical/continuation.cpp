@@ -95,7 +95,8 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
     predicted_ = clear.predicted;
     if (system_.friction()) free_way_ = {clear.straight, clear.predicted};
     move_mm_ = clear.move_mm.value_or(system_.largest_move(at.positions, predicted_));
-    cut = clear.cut && system_.largest_move(at.positions, predicted_) > far * system_.model().diagonal_mm;
+    cut = clear.cut && weighs(here, there) &&
+          system_.largest_move(at.positions, predicted_) > far * system_.model().diagonal_mm;
     begun_ = trial.positions;
     return clear.move_mm.has_value();
   };
@@ -103,7 +104,7 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
   if (whole && !led && leads_too_far(here, there, at)) return Newton::Outcome::too_far;
   const bool follows = last_.modes > 0 && !stable_ && length <= 1.001 * follow_below;
   const auto policy = follows ? Newton::Policy::follow : led ? Newton::Policy::near : Newton::Policy::descend;
-  const bool again = system_.contact() && !follows, first = again && whole && cut && weighs(here, there);
+  const bool again = system_.contact() && !follows, first = again && whole && cut;
   const Iterate begun = again ? trial : Iterate{};
   const auto settle_foreseen = [&] {
     trial = begun;

@@ -109,8 +109,8 @@ ClearPrediction predict_clear(const System& system, const Demand& here, const De
     held = end;
     const double share = clear_share(system, from, way, end, work, at.positions, team);
     if (first) {
-      clear.predicted = clear.straight = at.positions;
-      if (system.contact()) {
+      clear.predicted = at.positions;
+      if (system.friction()) {
         clear.straight = from;
         system.freedoms().move(tangent.step, 1, clear.straight);
         system.placement().hold(there, clear.straight);
@@ -145,7 +145,9 @@ bool carry_held(const System& system, const Demand& here, const Demand& there, c
   system.evaluate(at, here, active, work, balance, team);
   system.assemble(at, here, balance, System::Stiffness::exact, work, team);
   Balance upset;
-  (void)system.upset_by_held(at, there, active, work, upset, team);
+  const Points force = system.upset_by_held(at, there, active, work, upset, team);
+  upset.force.resize(system.freedoms().size());
+  system.freedoms().reduce(force, at.positions, upset.force);
   Eigen::VectorXd step, change;
   work.saddle.step(upset, step, change, team);
   if (!step.allFinite()) return false;

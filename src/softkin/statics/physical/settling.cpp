@@ -107,7 +107,7 @@ Newton::Outcome Continuation::fall_onto(const Demand& here, const Demand& there,
   if (outcome == Newton::Outcome::interrupted) return outcome;
   begun_ = trial.positions;
   return outcome == Newton::Outcome::converged ? settle(there, Newton::Policy::descend, trial)
-                                               : Newton::Outcome::blocked;
+                                               : Newton::Outcome::stuck;  // blocked is what was not tried
 }
 
 double Continuation::renew_anchors(Iterate& at) {

@@ -237,8 +237,6 @@ Points System::upset_by_held(const Iterate& at, const Demand& to, const std::vec
     work.layout->pattern.multiply(work.blocks, moves, force, team);
     actuator_loads_.add_moves(active, at.positions, moves, work.slopes, balance.constraint);
   }
-  balance.force.resize(freedoms_->size());
-  freedoms_->reduce(force, at.positions, balance.force);
   return force;
 }
 
@@ -256,6 +254,7 @@ void System::upset(const Iterate& at, const Demand& from, const Demand& to, cons
   each_term(work, [&](const Term& term, Term::Scratch& scratch) {
     term.add_change(from, to, at.positions, scratch, force, team);
   });
+  balance.force.resize(freedoms_->size());
   freedoms_->reduce(force, at.positions, balance.force);
 }
 

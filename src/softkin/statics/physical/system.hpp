@@ -105,7 +105,8 @@ class System {
   /// stiffness is to be assembled.
   void upset(const Iterate& at, const Demand& from, const Demand& to, const std::vector<bool>& active, Workspace& work,
              Balance& balance, Team& team) const;
-  /// The same of what is held alone, which comes to its place. Returns the forces on the vertices, too.
+  /// The same of what is held alone, which comes to its place: the forces, on the vertices; of the balance its
+  /// constraints alone.
   Points upset_by_held(const Iterate& at, const Demand& to, const std::vector<bool>& active, Workspace& work,
                        Balance& balance, Team& team) const;
 
