@@ -42,7 +42,11 @@ class Link {
     options_.boot_s = boot_wait_s;
   }
 
-  void order(Order order) { order_ = order; }
+  /// A stop lasts until its program has ended: neither go_on() nor pause() of another thread takes it back.
+  void order(Order asked) {
+    Order now = order_;
+    while ((now < Order::stop || asked == Order::quick_stop) && !order_.compare_exchange_weak(now, asked)) continue;
+  }
   void close() { port_.reset(); }
 
   /// Ctrl-C stops after the moves that the board has, a second one at once; then KeyboardInterrupt is raised.
@@ -88,7 +92,7 @@ class Link {
 
  private:
   void keep(std::optional<nb::python_error>& raised, nb::python_error& error) {
-    order_ = raised ? Order::quick_stop : Order::stop;
+    order(raised ? Order::quick_stop : Order::stop);
     if (!raised) raised.emplace(std::move(error));
   }
   void stop(std::optional<nb::python_error>& raised) {

@@ -179,6 +179,15 @@ def test_orders_from_another_thread(finger: softkin.Robot) -> None:
         assert sent.end == "stopped" and 0 < sent.acknowledged < sent.lines
         at(15, link.quick_stop)
         assert link.send(plan).end == "quick stopped"
+
+        def give(*orders: Callable[[], None]) -> None:
+            for order in orders:
+                order()
+
+        at(15, lambda: give(link.pause, link.stop, link.go_on, link.pause))
+        assert link.send(plan).end == "stopped", "what pauses or goes on takes no stop back"
+        at(15, lambda: give(link.stop, link.quick_stop, link.stop, link.go_on))
+        assert link.send(plan).end == "quick stopped"
         link.close()
     board.close()
 
