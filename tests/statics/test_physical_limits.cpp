@@ -110,11 +110,14 @@ TEST(PhysicalLimits, SeveralLoadsEndAtTheMaximum) {
   EXPECT_EQ(beyond.report.remark,
             "beyond this point no equilibrium follows; where a pressure has its maximum, command volumes (control: "
             "volume) and lengths (control: length) to go on beyond it");
+  // 230 and 556 where the limit was bisected by steps beyond it
+  EXPECT_LT(beyond.report.iterations, 120);
+  EXPECT_LT(beyond.report.factorisations, 200);
   spec.actuators.pop_back();
   const Model alone = compile(spec);
   const Statics one(alone);
   const double most = one.solve(values({100}), one.rest()).state.actuation[0];
-  EXPECT_NEAR(beyond.state.actuation[0], most, 0.02 * most);
+  EXPECT_NEAR(beyond.state.actuation[0], most, 0.01 * most);
 }
 
 /// A shallow arch under a weight at its top snaps through: just short of it the weight is carried, just beyond the last

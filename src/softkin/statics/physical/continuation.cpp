@@ -29,6 +29,8 @@ constexpr int patience = 500;
 constexpr double least_progress = 0.01;
 /// What is held turns by no more in one step [degrees].
 constexpr double most_turn = 30;
+/// A step towards a fold, over what is left to it.
+constexpr double before_fold = 0.8;
 /// Share of a step that is not worth another one at the end of a way.
 constexpr double least_left = 0.1;
 /// Steps are tried with the stiffness of a shape that is nearer than this share of the diagonal.
@@ -101,6 +103,8 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
     return clear.move_mm.has_value();
   };
   if (!prediction()) return whole ? fall_onto(here, there, at, trial) : Newton::Outcome::blocked;
+  slope_ = led ? 0 : move_mm_ / length;
+  if (leads_over_fold(length)) return Newton::Outcome::over_fold;
   if (whole && !led && leads_too_far(here, there, at)) return Newton::Outcome::too_far;
   const bool follows = last_.modes > 0 && !stable_ && length <= 1.001 * follow_below;
   const auto policy = follows ? Newton::Policy::follow : led ? Newton::Policy::near : Newton::Policy::descend;
@@ -125,6 +129,13 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
     if (prediction()) outcome = settle(there, Newton::Policy::follow, trial);
   }
   return outcome;
+}
+
+/// Would a step lead over a fold beyond which one led nowhere?
+bool Continuation::leads_over_fold(double length) const {
+  const double left = left_to_fold();
+  return way_.loads_change && way_.failed - way_.done >= before_fold * left && length > left &&
+         before_fold * left > least_advance;
 }
 
 /// Does a step leave the way? Where a way bends, the tangent at its end, followed back, misses its begin on the side on
@@ -219,13 +230,16 @@ std::optional<Status> Continuation::start_step(const Demand& there, Iterate& at)
 /// What a step of this length that ended so is worth.
 Continuation::StepEnd Continuation::judge(Newton::Outcome outcome, const Demand& there, double length,
                                           const Iterate& at, const Iterate& trial) {
-  StepEnd end{.why = outcome == Newton::Outcome::stuck     ? newton_.why_stuck()
-                     : outcome == Newton::Outcome::blocked ? "something is in the way"
-                     : outcome == Newton::Outcome::too_far ? "it is far more than the load can be foretold for"
-                     : outcome == Newton::Outcome::unmet   ? "what actuators command contradicts each other"
-                                                           : ""};
-  end.blocked = outcome == Newton::Outcome::blocked || outcome == Newton::Outcome::too_far;
+  StepEnd end{.why = outcome == Newton::Outcome::stuck       ? newton_.why_stuck()
+                     : outcome == Newton::Outcome::blocked   ? "something is in the way"
+                     : outcome == Newton::Outcome::too_far   ? "it is far more than the load can be foretold for"
+                     : outcome == Newton::Outcome::over_fold ? "the way is foretold to turn back before its end"
+                     : outcome == Newton::Outcome::unmet     ? "what actuators command contradicts each other"
+                                                             : ""};
+  end.blocked = outcome == Newton::Outcome::blocked || outcome == Newton::Outcome::too_far ||
+                outcome == Newton::Outcome::over_fold;
   end.found = outcome != Newton::Outcome::stuck && !end.blocked;
+  end.hurried = outcome == Newton::Outcome::stuck && newton_.hurried();
   const auto reject = [&](const char* because) {
     end.found = false;
     end.why = because;
@@ -251,10 +265,14 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   const std::vector<bool> active = active_;
   work_.left_field = false;
   tracer_.begin(whole(way_.done), whole(next), length);
+  // where things touch a step of many iterations may be what leads on; where ratios alone change, a shorter one jumps
+  newton_.be_brief(!way_.thorough && way_.loads_change && !system_.contact() && !system_.limp());
+  slope_ = 0;
   const auto outcome = step(way_.here, there, length, at, trial);
   free_way_ = {};
   if (outcome == Newton::Outcome::interrupted) return Status::interrupted;
   const StepEnd came = judge(outcome, there, length, at, trial);
+  newton_.be_brief(false);
   const double longest = longest_step(came.snap, came.unstable);
   const double corrected_mm = came.found ? system_.largest_move(begun_, trial.positions) : 0;
   const auto trace = [&](bool taken, const std::string& told) { tracer_.end(taken, told, move_mm_, corrected_mm); };
@@ -263,7 +281,8 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
     trace(false, came.why);
     way_.factorised = came.blocked;
     active_ = active;
-    end = shorten(length, at);
+    if (!came.blocked) way_.failed = way_.failed > way_.done ? std::min(way_.failed, next) : next;
+    end = shorten(length, came.hurried, at);
   } else if (length > 1.001 * longest) {
     trace(false,
           came.snap ? "it jumps: shorter ones may not" : "it is unstable: a shorter one shows where it becomes so");
@@ -275,6 +294,8 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
     trace(true, came.snap ? "it jumps" : came.unstable ? "unstable" : came.why);
     if (came.snap) tell_snap(jump_mm_, whole(way_.done));
     take(at, std::move(trial));
+    way_.slope = slope_;
+    way_.slope_at = way_.done;
     if (!come_to(there, next, came.unstable, at)) return Status::interrupted;
     lengthen(report_.iterations - before, came.unstable, at);
   }
@@ -299,31 +320,8 @@ double Continuation::lengthened(int iterations) const {
   return iterations <= 5 ? 2 : iterations <= 9 ? 1.4 : 0.8;
 }
 
-/// Does the way lead from here to where a longer step came out, without a jump? Where something begins to touch in
-/// several places a step turns as often, which looks like a jump to it.
-bool Continuation::leads_beyond(const Iterate& at) {
-  if (!way_.beyond || !system_.contact() || system_.friction() || active_ != way_.beyond->active) return false;
-  const Demand& there = way_.beyond->demand;
-  Iterate predicted = at;
-  if (!way_.factorised && prepare(way_.here, at) < 0) return false;
-  const ClearPrediction clear = predict_clear(system_, way_.here, there, active_, work_, team_, predicted);
-  predicted_ = clear.predicted;
-  way_.factorised = false;
-  return clear.move_mm && !jumped(way_.here, there, at, way_.beyond->at);
-}
-
-void Continuation::take_beyond(Iterate& at) {
-  Beyond beyond = std::move(*way_.beyond);
-  way_.beyond.reset();
-  take(at, std::move(beyond.at));
-  active_ = std::move(beyond.active);
-  last_ = beyond.last;
-  pass(beyond.demand, beyond.done);
-  way_.factorised = prepare(way_.here, at) >= 0;
-}
-
-/// After a step of this length that led to no equilibrium.
-std::optional<Status> Continuation::shorten(double length, Iterate& at) {
+/// After a step that led to no equilibrium. Before a limit is told, one that hurried has every iteration.
+std::optional<Status> Continuation::shorten(double length, bool hurried, Iterate& at) {
   const std::vector<bool> active = active_;
   if (way_.load >= 0) {  // along what the load does
     const Climb end = climb(std::exchange(way_.load, -1), way_.from, way_.here, way_.to, at);
@@ -335,7 +333,7 @@ std::optional<Status> Continuation::shorten(double length, Iterate& at) {
     report_.reached = whole(way_.done);
   }
   if (loads_at_last(at)) return std::nullopt;
-  way_.advance = 0.4 * length;
+  way_.advance = leads_over_fold(length) ? std::max(0.1 * length, before_fold * left_to_fold()) : 0.4 * length;
   if (way_.beyond && way_.advance < finest) {
     tell_snap(way_.beyond->jump_mm, whole(way_.done));
     take_beyond(at);
@@ -345,7 +343,14 @@ std::optional<Status> Continuation::shorten(double length, Iterate& at) {
   double least = least_move * tolerance_mm_;
   if (system_.contact()) least = std::min(least, least_contact_move * system_.model().contact.distance_mm);
   const bool leads_nowhere = !way_.releases && move_mm_ < least;
-  if (way_.advance < least_advance || leads_nowhere)
+  const bool ends = way_.advance < least_advance || leads_nowhere;
+  if (ends && hurried) {
+    way_.advance = length;
+    way_.thorough = true;
+    return std::nullopt;
+  }
+  way_.thorough = false;
+  if (ends)
     return limit(way_.done,
                  work_.left_field ? "beyond this point what is magnetic comes to where the field is not known: outside "
                                     "its grid, on a wire or on the dipole"

@@ -42,6 +42,7 @@ class Continuation {
     std::string why{};                    // it ended
     bool found = false, blocked = false;  // an equilibrium; the way there
     bool snap = false, unstable = false;  // of what was found
+    bool hurried = false;                 // had it led on with every iteration, perhaps
   };
   /// A shape that a push leads to.
   struct Pushed {
@@ -93,9 +94,12 @@ class Continuation {
     bool releases = false;    // a body, which hardly moves until it is nearly free
     bool factorised = false;  // the stiffness here
     std::optional<Beyond> beyond{};
-    std::optional<Demand> then{};  // where the next way leads
-    double before = 0;             // share of all that was asked, gone on ways before
-    double marked = 0;             // the last share at which it was getting on
+    std::optional<Demand> then{};                             // where the next way leads
+    double failed = std::numeric_limits<double>::infinity();  // the nearest share at which a step led nowhere
+    bool thorough = true;                                     // is the next step given every iteration
+    double slope = 0, slope_at = 0;                           // of the last tangent but one [mm], and where
+    double before = 0;                                        // share of all that was asked, gone on ways before
+    double marked = 0;                                        // the last share at which it was getting on
     int marked_iterations = 0;
   };
 
@@ -150,12 +154,14 @@ class Continuation {
   void tell_balance();
   Status limit(double done, const std::string& why, const Iterate& at);
   [[nodiscard]] double next_share();
+  [[nodiscard]] double left_to_fold() const;
+  [[nodiscard]] bool leads_over_fold(double length) const;
   std::optional<Status> start_step(const Demand& there, Iterate& at);
   [[nodiscard]] StepEnd judge(Newton::Outcome outcome, const Demand& there, double length, const Iterate& at,
                               const Iterate& trial);
   std::optional<Status> go_on(Iterate& at);
   void lengthen(int iterations, bool unstable, Iterate& at);
-  std::optional<Status> shorten(double length, Iterate& at);
+  std::optional<Status> shorten(double length, bool hurried, Iterate& at);
   bool come_to(const Demand& there, double next, bool unstable, Iterate& at);
   void pass(const Demand& demand, double done);
   std::optional<Status> out_of_patience(const Iterate& at);
@@ -206,6 +212,7 @@ class Continuation {
   Points from_;                       // the last good shape
   Points predicted_, begun_;          // by the last step, and what of it is in nobody's way
   FreeWay free_way_;                  // of the step at hand; empty: not known
+  double slope_ = 0;                  // of the way at the begin of the step at hand, over all of it [mm]
   double move_mm_ = 0, jump_mm_ = 0;  // of it: to what it predicted, and beside the way
   bool unforetold_ = false;           // does no tangent say where it should have led
   Judgement last_;                    // of the last good shape

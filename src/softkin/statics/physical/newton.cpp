@@ -16,6 +16,8 @@ constexpr double slight_shift = 1e-7, clear_shift = 1;
 constexpr double worthwhile_balance = 0.7;
 /// Of the diagonal, that the last steps may lead away from the factor whose negative pivots are told.
 constexpr double near_factor = 2e-4;
+/// Factors of a solve that is brief.
+constexpr int most_briefly = 10;
 
 }  // namespace
 
@@ -205,10 +207,13 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
   demand_ = &demand;
   active_ = &active;
   const auto in_single = [&] { return report_.factorisations - report_.factorisations_in_double; };
-  const int before = in_single();
+  const int before = in_single(), iterations = report_.iterations;
   start_ = at;
   const Outcome outcome = descend(policy, factorised, at);
-  if (outcome != Outcome::stuck || in_single() == before || system_.contact()) return outcome;
+  if (outcome != Outcome::stuck) return outcome;
+  const bool rounded = in_single() != before && !system_.contact();
+  hurried_ = hurried_ || (brief_ && (rounded || report_.iterations - iterations >= most_briefly));
+  if (!rounded || brief_) return outcome;
   at = start_;  // rounding may be why
   const InPrecision twice(work_.saddle, linear::MixedLdlt::Precision::twice);
   return descend(policy, false, at);
@@ -237,7 +242,8 @@ Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
   slow_ = system_.limp();
   if (system_.limp() && system_.layers()->flat(at.positions) && rests()) return Outcome::converged;
   imbalance_.residual = missed_ = std::numeric_limits<double>::infinity();
-  for (int iteration = 0; advance == Advance::made && iteration < settings_.max_iterations; ++iteration) {
+  const int most = brief_ ? std::min(settings_.max_iterations, most_briefly) : settings_.max_iterations;
+  for (int iteration = 0; advance == Advance::made && iteration < most; ++iteration) {
     if (factorised && iteration == 0) {
       negative_ = 0;
       factored_ = at.positions;

@@ -20,8 +20,8 @@ class Newton {
     bool keep_history = true;
   };
   /// unmet: arrived where the active constraints contradict each other or cannot be moved; they are missed.
-  /// blocked, too_far: not tried, as the way there is.
-  enum class Outcome { converged, unstable, stuck, unmet, interrupted, blocked, too_far };
+  /// blocked, too_far, over_fold: not tried, as the way there is.
+  enum class Outcome { converged, unstable, stuck, unmet, interrupted, blocked, too_far, over_fold };
 
   Newton(const System& system, Workspace& work, Team& team, const Settings& settings, const ProgressCallback& progress,
          SolveReport& report);
@@ -30,6 +30,15 @@ class Newton {
   /// towards the nearest equilibrium, stable or not. near: descend, but for the first step, which is of the exact one:
   /// begun so near a stable equilibrium, what is unstable are mostly elements that a foretold shape presses.
   enum class Policy { descend, follow, near };
+
+  /// Of a step over which a shorter one is worth more than patience: few iterations, and none again in double
+  /// precision.
+  void be_brief(bool brief) {
+    brief_ = brief;
+    hurried_ = false;
+  }
+  /// Was a solve that got stuck since then too brief to tell?
+  [[nodiscard]] bool hurried() const { return hurried_; }
 
   /// Moves `at` to equilibrium. Multipliers that are not active are given. The workspace is left with the last
   /// factorisation. What gets stuck with factors in single precision is tried again with others.
@@ -112,6 +121,7 @@ class Newton {
   Eigen::VectorXd constraint_weights_, pressure_weights_;  // in the merit function: N, MPa; mm
   Iterate start_, trial_;
   const char* why_ = "";
+  bool brief_ = false, hurried_ = false;
   int poor_ = 0;         // steps in a row that were much shorter than Newton's
   int same_ = 0;         // steps in a row that left as much to go
   double steepest_ = 0;  // slope of the merit function so far

@@ -60,6 +60,37 @@ Status Continuation::limit(double done, const std::string& why, const Iterate& a
   return Status::limit;
 }
 
+/// Share of the way that is left to where it turns back: towards a fold the inverse square of the tangent falls
+/// linearly.
+double Continuation::left_to_fold() const {
+  if (!(way_.slope > 0 && slope_ > way_.slope)) return std::numeric_limits<double>::infinity();
+  const double ratio = (way_.slope / slope_) * (way_.slope / slope_);
+  return (way_.done - way_.slope_at) * ratio / (1 - ratio);
+}
+
+/// Does the way lead from here to where a longer step came out, without a jump? Where something begins to touch in
+/// several places a step turns as often, which looks like a jump to it.
+bool Continuation::leads_beyond(const Iterate& at) {
+  if (!way_.beyond || !system_.contact() || system_.friction() || active_ != way_.beyond->active) return false;
+  const Demand& there = way_.beyond->demand;
+  Iterate predicted = at;
+  if (!way_.factorised && prepare(way_.here, at) < 0) return false;
+  const ClearPrediction clear = predict_clear(system_, way_.here, there, active_, work_, team_, predicted);
+  predicted_ = clear.predicted;
+  way_.factorised = false;
+  return clear.move_mm && !jumped(way_.here, there, at, way_.beyond->at);
+}
+
+void Continuation::take_beyond(Iterate& at) {
+  Beyond beyond = std::move(*way_.beyond);
+  way_.beyond.reset();
+  take(at, std::move(beyond.at));
+  active_ = std::move(beyond.active);
+  last_ = beyond.last;
+  pass(beyond.demand, beyond.done);
+  way_.factorised = prepare(way_.here, at) >= 0;
+}
+
 void Continuation::tell_snap(double move_mm, double from) {
   if (move_mm <= report_.snapped_mm) return;
   report_.snapped_mm = move_mm;
