@@ -134,7 +134,7 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
 /// Would a step lead over a fold beyond which one led nowhere?
 bool Continuation::leads_over_fold(double length) const {
   const double left = left_to_fold();
-  return way_.loads_change && way_.failed - way_.done >= before_fold * left && length > left &&
+  return may_turn_back() && way_.failed - way_.done >= before_fold * left && length > left &&
          before_fold * left > least_advance;
 }
 
@@ -265,8 +265,7 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   const std::vector<bool> active = active_;
   work_.left_field = false;
   tracer_.begin(whole(way_.done), whole(next), length);
-  // where things touch a step of many iterations may be what leads on; where ratios alone change, a shorter one jumps
-  newton_.be_brief(!way_.thorough && way_.loads_change && !system_.contact() && !system_.limp());
+  newton_.be_brief(!way_.thorough && may_turn_back());
   slope_ = 0;
   const auto outcome = step(way_.here, there, length, at, trial);
   free_way_ = {};

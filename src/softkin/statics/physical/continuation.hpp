@@ -154,6 +154,7 @@ class Continuation {
   void tell_balance();
   Status limit(double done, const std::string& why, const Iterate& at);
   [[nodiscard]] double next_share();
+  [[nodiscard]] bool may_turn_back() const;
   [[nodiscard]] double left_to_fold() const;
   [[nodiscard]] bool leads_over_fold(double length) const;
   std::optional<Status> start_step(const Demand& there, Iterate& at);

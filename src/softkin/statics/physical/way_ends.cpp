@@ -60,6 +60,12 @@ Status Continuation::limit(double done, const std::string& why, const Iterate& a
   return Status::limit;
 }
 
+/// Is a limit, where it comes, one at which the way turns back? Where things touch it has corners, and a step of many
+/// iterations may be what leads on; where ratios alone change, shorter steps jump.
+bool Continuation::may_turn_back() const {
+  return way_.loads_change && !system_.contact() && !system_.limp();
+}
+
 /// Share of the way that is left to where it turns back: towards a fold the inverse square of the tangent falls
 /// linearly.
 double Continuation::left_to_fold() const {
