@@ -332,7 +332,9 @@ std::optional<Status> Continuation::shorten(double length, bool hurried, Iterate
     report_.reached = whole(way_.done);
   }
   if (loads_at_last(at)) return std::nullopt;
-  way_.advance = leads_over_fold(length) ? std::max(0.1 * length, before_fold * left_to_fold()) : 0.4 * length;
+  const bool untried = leads_over_fold(length);  // no limit is told of it
+  way_.advance = untried ? std::max(0.1 * length, before_fold * left_to_fold()) : 0.4 * length;
+  if (untried) return std::nullopt;
   if (way_.beyond && way_.advance < finest) {
     tell_snap(way_.beyond->jump_mm, whole(way_.done));
     take_beyond(at);
@@ -403,13 +405,6 @@ bool Continuation::factorised_nearby(const Points& shape) const {
 
 Continuation::Judgement Continuation::judged() const {
   return {newton_.imbalance(), newton_.balanced(), newton_.inverted(), newton_.unstable_modes()};
-}
-
-/// Does the workspace's factor hold the constraints that are active?
-bool Continuation::factor_holds_active() const {
-  std::vector<bool> held(active_.size());
-  for (const Index a : work_.saddle.active()) held[a] = true;
-  return held == active_;
 }
 
 bool Continuation::snapped(double predicted_mm, double correction_mm) const {

@@ -110,6 +110,13 @@ Newton::Outcome Continuation::fall_onto(const Demand& here, const Demand& there,
                                                : Newton::Outcome::stuck;  // blocked is what was not tried
 }
 
+/// Does the workspace's factor hold the constraints that are active?
+bool Continuation::factor_holds_active() const {
+  std::vector<bool> held(active_.size());
+  for (const Index a : work_.saddle.active()) held[a] = true;
+  return held == active_;
+}
+
 double Continuation::renew_anchors(Iterate& at) {
   const bool known = free_way_.turned.rows() > 0;
   return renew_friction(system_, from_, known ? free_way_ : FreeWay{at.positions, at.positions}, at, work_, team_);
