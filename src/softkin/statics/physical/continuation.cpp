@@ -103,7 +103,7 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
     return clear.move_mm.has_value();
   };
   if (!prediction()) return whole ? fall_onto(here, there, at, trial) : Newton::Outcome::blocked;
-  slope_ = led ? 0 : move_mm_ / length;
+  tangent_mm_ = led ? 0 : move_mm_ / length;
   if (leads_over_fold(length)) return Newton::Outcome::over_fold;
   if (whole && !led && leads_too_far(here, there, at)) return Newton::Outcome::too_far;
   const bool follows = last_.modes > 0 && !stable_ && length <= 1.001 * follow_below;
@@ -265,13 +265,14 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   const std::vector<bool> active = active_;
   work_.left_field = false;
   tracer_.begin(whole(way_.done), whole(next), length);
-  newton_.be_brief(!way_.thorough && may_turn_back());
-  slope_ = 0;
-  const auto outcome = step(way_.here, there, length, at, trial);
+  tangent_mm_ = 0;
+  const auto outcome = [&] {
+    const Newton::Brief scope(newton_, !way_.thorough && may_turn_back());
+    return step(way_.here, there, length, at, trial);
+  }();
   free_way_ = {};
   if (outcome == Newton::Outcome::interrupted) return Status::interrupted;
   const StepEnd came = judge(outcome, there, length, at, trial);
-  newton_.be_brief(false);
   const double longest = longest_step(came.snap, came.unstable);
   const double corrected_mm = came.found ? system_.largest_move(begun_, trial.positions) : 0;
   const auto trace = [&](bool taken, const std::string& told) { tracer_.end(taken, told, move_mm_, corrected_mm); };
@@ -293,8 +294,8 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
     trace(true, came.snap ? "it jumps" : came.unstable ? "unstable" : came.why);
     if (came.snap) tell_snap(jump_mm_, whole(way_.done));
     take(at, std::move(trial));
-    way_.slope = slope_;
-    way_.slope_at = way_.done;
+    way_.tangent_mm = tangent_mm_;
+    way_.tangent_at = way_.done;
     if (!come_to(there, next, came.unstable, at)) return Status::interrupted;
     lengthen(report_.iterations - before, came.unstable, at);
   }
@@ -332,9 +333,9 @@ std::optional<Status> Continuation::shorten(double length, bool hurried, Iterate
     report_.reached = whole(way_.done);
   }
   if (loads_at_last(at)) return std::nullopt;
-  const bool untried = leads_over_fold(length);  // no limit is told of it
-  way_.advance = untried ? std::max(0.1 * length, before_fold * left_to_fold()) : 0.4 * length;
-  if (untried) return std::nullopt;
+  const bool folds = leads_over_fold(length);  // a shorter step comes before a limit is told
+  way_.advance = folds ? std::max(0.1 * length, before_fold * left_to_fold()) : 0.4 * length;
+  if (folds) return std::nullopt;
   if (way_.beyond && way_.advance < finest) {
     tell_snap(way_.beyond->jump_mm, whole(way_.done));
     take_beyond(at);

@@ -94,12 +94,12 @@ class Continuation {
     bool releases = false;    // a body, which hardly moves until it is nearly free
     bool factorised = false;  // the stiffness here
     std::optional<Beyond> beyond{};
-    std::optional<Demand> then{};                             // where the next way leads
-    double failed = std::numeric_limits<double>::infinity();  // the nearest share at which a step led nowhere
-    bool thorough = true;                                     // is the next step given every iteration
-    double slope = 0, slope_at = 0;                           // of the last tangent but one [mm], and where
-    double before = 0;                                        // share of all that was asked, gone on ways before
-    double marked = 0;                                        // the last share at which it was getting on
+    std::optional<Demand> then{};           // where the next way leads
+    double failed = 0;                      // the nearest share ahead at which a step led nowhere; 0: none
+    bool thorough = true;                   // is the next step given every iteration
+    double tangent_mm = 0, tangent_at = 0;  // the last but one, over the whole way, and where
+    double before = 0;                      // share of all that was asked, gone on ways before
+    double marked = 0;                      // the last share at which it was getting on
     int marked_iterations = 0;
   };
 
@@ -213,7 +213,7 @@ class Continuation {
   Points from_;                       // the last good shape
   Points predicted_, begun_;          // by the last step, and what of it is in nobody's way
   FreeWay free_way_;                  // of the step at hand; empty: not known
-  double slope_ = 0;                  // of the way at the begin of the step at hand, over all of it [mm]
+  double tangent_mm_ = 0;             // at the begin of the step at hand, over the whole way; 0: not known
   double move_mm_ = 0, jump_mm_ = 0;  // of it: to what it predicted, and beside the way
   bool unforetold_ = false;           // does no tangent say where it should have led
   Judgement last_;                    // of the last good shape

@@ -207,12 +207,12 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
   demand_ = &demand;
   active_ = &active;
   const auto in_single = [&] { return report_.factorisations - report_.factorisations_in_double; };
-  const int before = in_single(), iterations = report_.iterations;
+  const int before = in_single();
   start_ = at;
   const Outcome outcome = descend(policy, factorised, at);
   if (outcome != Outcome::stuck) return outcome;
   const bool rounded = in_single() != before && !system_.contact();
-  hurried_ = hurried_ || (brief_ && (rounded || report_.iterations - iterations >= most_briefly));
+  hurried_ = hurried_ || (brief_ && rounded);
   if (!rounded || brief_) return outcome;
   at = start_;  // rounding may be why
   const InPrecision twice(work_.saddle, linear::MixedLdlt::Precision::twice);
@@ -264,6 +264,7 @@ Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
     }
   }
   if (advance == Advance::interrupted) return Outcome::interrupted;
+  hurried_ = hurried_ || (brief_ && advance == Advance::made);
   if (advance != Advance::arrived) {
     if (!std::isfinite(imbalance_.residual) || report_.step_mm >= settings_.tolerance_mm) return Outcome::stuck;
     (void)reject(at);  // the last step was small enough, and none follows it

@@ -31,13 +31,21 @@ class Newton {
   /// begun so near a stable equilibrium, what is unstable are mostly elements that a foretold shape presses.
   enum class Policy { descend, follow, near };
 
-  /// Of a step over which a shorter one is worth more than patience: few iterations, and none again in double
-  /// precision.
-  void be_brief(bool brief) {
-    brief_ = brief;
-    hurried_ = false;
-  }
-  /// Was a solve that got stuck since then too brief to tell?
+  /// For its life, where a shorter step is worth more than patience: few factors, and none again in double precision.
+  class Brief {
+   public:
+    Brief(Newton& newton, bool brief) : newton_(newton) {
+      newton_.brief_ = brief;
+      newton_.hurried_ = false;
+    }
+    ~Brief() { newton_.brief_ = false; }
+    Brief(const Brief&) = delete;
+    Brief& operator=(const Brief&) = delete;
+
+   private:
+    Newton& newton_;
+  };
+  /// Was a solve that got stuck since the last of these began too brief to tell?
   [[nodiscard]] bool hurried() const { return hurried_; }
 
   /// Moves `at` to equilibrium. Multipliers that are not active are given. The workspace is left with the last

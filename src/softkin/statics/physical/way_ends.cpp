@@ -69,9 +69,9 @@ bool Continuation::may_turn_back() const {
 /// Share of the way that is left to where it turns back: towards a fold the inverse square of the tangent falls
 /// linearly.
 double Continuation::left_to_fold() const {
-  if (!(way_.slope > 0 && slope_ > way_.slope)) return std::numeric_limits<double>::infinity();
-  const double ratio = (way_.slope / slope_) * (way_.slope / slope_);
-  return (way_.done - way_.slope_at) * ratio / (1 - ratio);
+  if (!(way_.tangent_mm > 0 && tangent_mm_ > way_.tangent_mm)) return std::numeric_limits<double>::infinity();
+  const double ratio = (way_.tangent_mm / tangent_mm_) * (way_.tangent_mm / tangent_mm_);
+  return (way_.done - way_.tangent_at) * ratio / (1 - ratio);
 }
 
 /// Does the way lead from here to where a longer step came out, without a jump? Where something begins to touch in
