@@ -46,7 +46,7 @@ std::vector<PoseColumn> columns_of(const Model& model, bool volume_only) {
   std::vector<PoseColumn> columns;
   for (Index m = 0; m < static_cast<Index>(model.markers.size()); ++m)
     for (int axis = 0; axis < 3; ++axis)
-      columns.push_back({model.markers[static_cast<std::size_t>(m)].name + "_" + "xyz"[axis] + "_mm", m, axis});
+      columns.push_back({model.markers[m].name + "_" + "xyz"[axis] + "_mm", m, axis});
   return columns;
 }
 
@@ -188,7 +188,7 @@ struct Errors {
     for (Index k = 0; k < static_cast<Index>(unknowns.size()); ++k)
       unknowns += normal(random) * std::sqrt(std::max(0.0, eigen.values[k])) * eigen.vectors.col(k);
     Points moved = Points::Zero(told.moves.front().rows(), 3);
-    for (std::size_t c = 0; c < told.moves.size(); ++c) moved += unknowns[static_cast<Index>(c)] * told.moves[c];
+    for (std::size_t c = 0; c < told.moves.size(); ++c) moved += unknowns[c] * told.moves[c];
     return moved.rowwise().norm().maxCoeff();
   }
 
@@ -407,8 +407,7 @@ void run_map(const Options& options) {
     Eigen::VectorXd values = Eigen::VectorXd::Constant(map.outputs(), std::nan("")), begin = map.commands(commands);
     for (Index m = 0; m < 4; ++m)
       for (int axis = 0; axis < 3; ++axis)
-        values[3 * m + axis] = model.markers[static_cast<std::size_t>(m)].at(truth.state.positions)[axis] +
-                               options.noise_mm * normal(random);
+        values[3 * m + axis] = model.markers[m].at(truth.state.positions)[axis] + options.noise_mm * normal(random);
     begin.tail<3>().setZero();
     const auto start = std::chrono::steady_clock::now();
     std::optional<MapEstimate> found;

@@ -102,7 +102,7 @@ int main() {
   for (const Row& row : rows) {
     Eigen::VectorXd weights = Eigen::VectorXd::Zero(deviations.size());
     for (std::size_t r = 0; r < columns.size(); ++r)
-      if (is_of(row, columns[r])) weights[static_cast<Index>(r)] = std::pow(deviations[static_cast<Index>(r)], -2);
+      if (is_of(row, columns[r])) weights[r] = std::pow(deviations[r], -2);
     const Eigen::MatrixXd matrix = slopes.transpose() * weights.asDiagonal() * slopes + before;
     std::printf("| %s |", row.name);
     for (std::size_t set = 0; set < told.size(); ++set) {
@@ -112,8 +112,7 @@ int main() {
       const Eigen::MatrixXd covariance = CholeskyFactor(own).solve(identity),
                             first = CholeskyFactor(prior).solve(identity);
       for (Index i = 0; i < size; ++i)
-        if (set < 3 || told[set][static_cast<std::size_t>(i)] == 3)
-          print_cell(std::sqrt(covariance(i, i)), std::sqrt(first(i, i)));
+        if (set < 3 || told[set][i] == 3) print_cell(std::sqrt(covariance(i, i)), std::sqrt(first(i, i)));
     }
     std::printf("\n");
   }

@@ -71,7 +71,7 @@ Mesh finger_mesh(double size) {
   const std::vector<double> x = planes(size);
   for (Index v = 0; v < mesh.vertices.rows(); ++v) {
     auto p = mesh.vertices.row(v);
-    p.x() = x[static_cast<std::size_t>(std::lround(p.x() * cells[0]))];
+    p.x() = x[std::lround(p.x() * cells[0])];
     p.y() = width * (p.y() - 0.5);
     p.z() *= top_at(p.x());
   }
@@ -165,7 +165,7 @@ Actuation sample_near(const Model& model, const Statics& statics, const MarkerPa
       follow_path(model, statics, begin, trajectory(methods[0], Solver::newton, options)).at(0).equilibrium.actuation;
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const double low = model.actuators[a].low, range = model.actuators[a].high - low;
-    double& value = near[static_cast<Index>(a)];
+    double& value = near[a];
     value = std::clamp(low + range * std::round((value - low) / range * steps) / steps, low, low + range);
   }
   return near;

@@ -87,8 +87,8 @@ struct Tally {
     seconds += result.seconds;
     for (const InverseTrial& record : result.history)
       for (std::size_t a = 0; a < model.actuators.size(); ++a)
-        inside = inside && record.actuation[static_cast<Index>(a)] >= model.actuators[a].low &&
-                 record.actuation[static_cast<Index>(a)] <= model.actuators[a].high;
+        inside =
+            inside && record.actuation[a] >= model.actuators[a].low && record.actuation[a] <= model.actuators[a].high;
   }
 };
 
@@ -156,7 +156,7 @@ class Bench {
       const auto& asked = std::get<ForceGoal>(goals[0].what);
       Vec3 missed = exerted(on, again.state) - asked.force,
            off = tip_of(model_, again.state) - tip_of(model_, made.state);
-      for (int axis = 0; axis < 3; ++axis) (asked.axes[static_cast<std::size_t>(axis)] ? off : missed)[axis] = 0;
+      for (int axis = 0; axis < 3; ++axis) (asked.axes[axis] ? off : missed)[axis] = 0;
       const double size = asked.force.cwiseAbs().maxCoeff(), share = missed.norm() / size;
       met += share <= 0.01 && off.norm() <= 0.1 ? 1 : 0;
       worst_share = std::max(worst_share, share);
@@ -182,7 +182,7 @@ class Bench {
     for (int i = 0; i < points; ++i) {
       Actuation actuation(m);
       for (Index a = 0; a < m; ++a) {
-        const Actuator& actuator = model_.actuators[static_cast<std::size_t>(a)];
+        const Actuator& actuator = model_.actuators[a];
         const double phase = 2 * std::numbers::pi * (static_cast<double>(i) / points + static_cast<double>(a) / 3.0);
         actuation[a] = actuator.low + (actuator.high - actuator.low) * (0.35 + 0.25 * std::cos(phase));
       }
@@ -221,7 +221,7 @@ class Bench {
   Actuation random_actuation() {
     Actuation actuation(static_cast<Index>(model_.actuators.size()));
     for (Index a = 0; a < actuation.size(); ++a) {
-      const Actuator& actuator = model_.actuators[static_cast<std::size_t>(a)];
+      const Actuator& actuator = model_.actuators[a];
       actuation[a] = std::uniform_real_distribution<double>(actuator.low, actuator.high)(engine_);
     }
     return actuation;
@@ -244,8 +244,8 @@ class Bench {
     (void)force.cwiseAbs().maxCoeff(&along);
     PositionGoal place{0, tip};
     for (int axis = 0; axis < 3; ++axis) {
-      on.axes[static_cast<std::size_t>(axis)] = axis == along;
-      place.axes[static_cast<std::size_t>(axis)] = axis != along;
+      on.axes[axis] = axis == along;
+      place.axes[axis] = axis != along;
     }
     on.force = force[along] * Vec3::Unit(along);
     on.mm_per_N = usual_mm_per_N(on, inverse_.tolerance_mm, std::nullopt);

@@ -111,7 +111,7 @@ double full_grid(const MapData& data) {
     for (; degree > 0; --degree) {
       double beyond = 0;
       for (Index q = 0; q < polynomials.count(); ++q) {
-        if (data.outputs[static_cast<std::size_t>(q)].unit != "mm") continue;
+        if (data.outputs[q].unit != "mm") continue;
         double sum = 0;
         for (Index t = 0; t < static_cast<Index>(polynomials.terms().rows()); ++t)
           if (polynomials.terms()(t, j) >= degree) sum += std::abs(polynomials.coefficients()(t, q));
@@ -127,7 +127,7 @@ double full_grid(const MapData& data) {
 double largest_marker(const MapData& data) {
   double largest = 0;
   for (std::size_t q = 0; q < data.outputs.size(); ++q)
-    if (data.outputs[q].unit == "mm") largest = std::max(largest, data.check.largest[static_cast<Index>(q)]);
+    if (data.outputs[q].unit == "mm") largest = std::max(largest, data.check.largest[q]);
   return largest;
 }
 
@@ -202,8 +202,7 @@ void judge(const char* name, const RobotSpec& spec, const Options& options) {
   State near = statics.rest();
   for (Index i = 0; i < options.fresh; ++i) {
     Actuation actuation = model.rest_actuation();
-    for (Index j = 0; j < map.inputs(); ++j)
-      actuation[result.data.inputs[static_cast<std::size_t>(j)].actuator] = commands(i, j);
+    for (Index j = 0; j < map.inputs(); ++j) actuation[result.data.inputs[j].actuator] = commands(i, j);
     Eigen::VectorXd values(map.outputs());
     if (!map.evaluate(commands.row(i).data(), values.data())) continue;
     const Equilibrium found = statics.solve(actuation, near, alone);
@@ -212,7 +211,7 @@ void judge(const char* name, const RobotSpec& spec, const Options& options) {
     const Eigen::VectorXd off = (values - maps::outputs_of(model, result.data, found.state)).cwiseAbs();
     double ratio = 0;
     for (Index q = 0; q < off.size(); ++q)  // what is exact but for rounding tells nothing
-      if (off[q] > 1e-6 * result.data.outputs[static_cast<std::size_t>(q)].accuracy)
+      if (off[q] > 1e-6 * result.data.outputs[q].accuracy)
         ratio = std::max(ratio, off[q] / result.data.check.largest[q]);
     ++compared;
     beyond += ratio > 1 ? 1 : 0;

@@ -212,7 +212,7 @@ struct Waits {
   [[nodiscard]] double quantile(double share) const {
     std::vector<double> sorted = seconds;
     std::sort(sorted.begin(), sorted.end());
-    return sorted.empty() ? NAN : sorted[static_cast<std::size_t>(share * static_cast<double>(sorted.size() - 1))];
+    return sorted.empty() ? NAN : sorted[share * static_cast<double>(sorted.size() - 1)];
   }
 };
 

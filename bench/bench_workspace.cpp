@@ -81,7 +81,7 @@ int measure(const Options& options) {
   const auto all = static_cast<Index>(plan.groups.size()), count = std::min(options.groups, all);
   for (Index g = 0; g < count; ++g) {
     GroupTask task{static_cast<Index>(static_cast<std::int64_t>(g) * all / count), {}};
-    task.known.resize(plan.groups[static_cast<std::size_t>(task.group)].size());
+    task.known.resize(plan.groups[task.group].size());
     std::vector<WorkspaceSample> samples;
     double start = processor_time();
     (void)solve_group(model, statics, plan, {}, task, [&](const WorkspaceSample& sample) {

@@ -40,7 +40,9 @@ Answers answer(const FingerSource& source, FingerKind kind, const std::vector<do
   options.threads = threads;
   options.keep_history = false;
   Answers answers;
-  const Index chamber = kind == FingerKind::target_shape ? static_cast<Index>(model.actuators[0].tetrahedra.size()) : 0;
+  const Index chamber = kind == FingerKind::target_shape
+                            ? static_cast<Index>(model.actuators[0].as<ChamberDrive>()->tetrahedra.size())
+                            : 0;
   answers.body_tetrahedra = static_cast<int>(model.tetrahedra.size()) - chamber;
   for (Index v = 0; v < model.rest.rows(); ++v) {
     if (!model.used[v]) continue;
@@ -197,7 +199,7 @@ class Deck {
 
   void write_pressure(double pressure) {
     std::map<std::array<Index, 3>, bool> walls;
-    for (const CavityFace& face : model_.actuators[0].cavity) walls[sorted(face.corners)] = false;
+    for (const CavityFace& face : model_.actuators[0].as<ChamberDrive>()->cavity) walls[sorted(face.corners)] = false;
     put("*DLOAD\n");
     for (std::size_t e = 0; e < model_.tetrahedra.size(); ++e)
       for (int f = 0; f < 4; ++f) {

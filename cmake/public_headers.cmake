@@ -16,6 +16,7 @@ set(softkin_public_headers
     model/contact_model.hpp
     model/contact_spec.hpp
     model/direction.hpp
+    model/drives.hpp
     model/equilibrium.hpp
     model/families.hpp
     model/filling.hpp
@@ -85,6 +86,7 @@ set(softkin_public_headers
     calibration/robot_parameters.hpp
     calibration/specimen_test.hpp
     calibration/tensile_fit.hpp
+    runs/findings.hpp
     runs/jobs.hpp
     runs/map_file.hpp
     runs/record_log.hpp

@@ -297,7 +297,7 @@ class FkRun {
 /// Is there a pressure or tension that may have a maximum?
 void check_beyond(const Model& model, const FkOptions& options) {
   const auto loads = [](const Actuator& a) {
-    return a.control == Control::load && (a.kind == ActuatorKind::pneumatic || a.kind == ActuatorKind::cable);
+    return a.control == Control::load && (a.is<ChamberDrive>() || a.is<CableDrive>());
   };
   if (options.beyond == 0) return;
   if (model.formulation != Formulation::physical || std::none_of(model.actuators.begin(), model.actuators.end(), loads))

@@ -105,7 +105,7 @@ class GraspRun {
   }
 
   void write(const Equilibrium& grasp) const {
-    const std::string& name = model_.bodies[static_cast<std::size_t>(body_)].name;
+    const std::string& name = model_.bodies[body_].name;
     const bool held = grasp.report.status == Status::converged;
     if (!options_.output.empty())
       runs::write_shape(options_.output, model_, grasp.state, statics_.measured(grasp.state), held);

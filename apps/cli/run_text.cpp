@@ -80,8 +80,9 @@ std::string findings_text(const Model& model, const StepRecord& step) {
   std::string text;
   for (const runs::Finding& finding : runs::findings(model, step)) {
     text += (text.empty() ? "" : "\n") + runs::finding_text(model, finding);
-    if (finding.kind == runs::Finding::Kind::unstable) text += "; --stable looks for the shape that it goes to";
-    if (finding.kind == runs::Finding::Kind::unstable_way) text += "; --stable looks for it";
+    if (std::holds_alternative<runs::finding::Unstable>(finding))
+      text += "; --stable looks for the shape that it goes to";
+    if (std::holds_alternative<runs::finding::UnstableWay>(finding)) text += "; --stable looks for it";
   }
   return text;
 }

@@ -84,7 +84,7 @@ std::string misspelt(const CLI::App& app, int argc, const char* const* argv, std
     const auto found = std::find(names.begin(), names.end(), argument);
     if (found == names.end() && takes_positionals(*at)) continue;
     if (found == names.end()) return "there is no command " + excerpt(argument) + suggest_name(argument, names);
-    at = subs[static_cast<std::size_t>(found - names.begin())];
+    at = subs[found - names.begin()];
     command += " " + argument;
   }
   return "";

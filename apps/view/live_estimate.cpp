@@ -71,7 +71,7 @@ LiveEstimator::LiveEstimator(const Model& model, EstimateSetup setup)
 
 void LiveEstimator::have(const Eigen::VectorXd& values) {
   for (std::size_t c = 0; c < setup_.columns.size(); ++c)
-    if (!std::isnan(values[static_cast<Index>(c)])) read_[static_cast<std::size_t>(setup_.columns[c].kind)] = true;
+    if (!std::isnan(values[c])) read_[static_cast<std::size_t>(setup_.columns[c].kind)] = true;
   if (read_ != has_ && read_ != Kinds{}) {
     has_ = read_;
     columns_.clear();
@@ -79,7 +79,7 @@ void LiveEstimator::have(const Eigen::VectorXd& values) {
     for (std::size_t c = 0; c < setup_.columns.size(); ++c) {
       if (!has_[static_cast<std::size_t>(setup_.columns[c].kind)]) continue;
       columns_.push_back(setup_.columns[c]);
-      deviations.push_back(setup_.deviations[static_cast<Index>(c)]);
+      deviations.push_back(setup_.deviations[c]);
     }
     estimator_ = Estimator(model_, setup_.unknowns, columns_,
                            Eigen::Map<const Eigen::VectorXd>(deviations.data(), static_cast<Index>(deviations.size())),
@@ -90,7 +90,7 @@ void LiveEstimator::have(const Eigen::VectorXd& values) {
   values_.resize(static_cast<Index>(columns_.size()));
   Index next = 0;
   for (std::size_t c = 0; c < setup_.columns.size(); ++c)
-    if (has_[static_cast<std::size_t>(setup_.columns[c].kind)]) values_[next++] = values[static_cast<Index>(c)];
+    if (has_[static_cast<std::size_t>(setup_.columns[c].kind)]) values_[next++] = values[c];
 }
 
 std::string LiveEstimator::text_for_page() const {
@@ -105,7 +105,7 @@ std::string LiveEstimator::text_for_page() const {
                        {"group", group->name},
                        {"axis", column.axis < 0 ? "" : axis_names[column.axis]},
                        {"unit", reading_units[static_cast<std::size_t>(column.kind)]},
-                       {"deviation", setup_.deviations[static_cast<Index>(c)]}});
+                       {"deviation", setup_.deviations[c]}});
   }
   return runs::line_of({{"columns", columns}, {"told", told_actuators()}, {"fade_s", setup_.how.fade_s}});
 }

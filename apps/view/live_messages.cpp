@@ -50,8 +50,8 @@ class Message {
     if (!list.is_array() || list.size() != size) refuse(std::string(key) + " must be a list of " + count);
     Eigen::VectorXd numbers(static_cast<Index>(size));
     for (std::size_t i = 0; i < size; ++i) {
-      if (list[i].is_number()) numbers[static_cast<Index>(i)] = list[i].get<double>();
-      if (!list[i].is_number() || !std::isfinite(numbers[static_cast<Index>(i)]))
+      if (list[i].is_number()) numbers[i] = list[i].get<double>();
+      if (!list[i].is_number() || !std::isfinite(numbers[i]))
         refuse(std::string(key) + " must be a list of finite numbers");
     }
     return numbers;
@@ -67,7 +67,7 @@ class Message {
       if (list[i].is_null()) continue;
       if (!list[i].is_number() || !(std::abs(list[i].get<double>()) <= largest_reading))
         refuse("values must be null or numbers up to " + number(largest_reading));
-      values[static_cast<Index>(i)] = list[i].get<double>();
+      values[i] = list[i].get<double>();
     }
     return values;
   }
@@ -99,8 +99,7 @@ class Message {
 Actuation commands_of(const Message& message, const Model& model) {
   const std::size_t count = model.actuators.size();
   Actuation commands = message.numbers("commands", count, counted(count, "number") + ", one per actuator");
-  for (std::size_t a = 0; a < count; ++a)
-    check_command(model.actuators[a], commands[static_cast<Index>(a)], message.id());
+  for (std::size_t a = 0; a < count; ++a) check_command(model.actuators[a], commands[a], message.id());
   return commands;
 }
 

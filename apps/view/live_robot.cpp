@@ -28,13 +28,13 @@ std::vector<std::optional<double>> loads_of(const Model& model, const State& sta
     if (shows_measure(model.actuators[a]))
       loads[a] = achieved_ratio(model, model.actuators[a], state.positions);
     else if (!multiplier_key(model.actuators[a]).empty())
-      loads[a] = state.multipliers[static_cast<Index>(a)];
+      loads[a] = state.multipliers[a];
   return loads;
 }
 
 /// How a shape that stays stands to a target that was asked for.
 TargetAnswer target_answer(const Model& model, const TargetRequest& request, const Points& positions) {
-  const Vec3 place = model.markers[static_cast<std::size_t>(request.marker)].at(positions);
+  const Vec3 place = model.markers[request.marker].at(positions);
   return {request.marker, request.at, (place - request.at).norm(), false, ""};
 }
 

@@ -70,7 +70,7 @@ void bind_actuator(nb::module_& module) {
           "connected",
           [](const Actuator& a) {
             std::vector<std::string> regions;
-            for (const ConnectedChamber& chamber : a.connected) regions.push_back(chamber.region);
+            for (const ConnectedChamber& chamber : connected_chambers(a)) regions.push_back(chamber.region);
             return regions;
           },
           "Regions of chambers that share one pipe; [] of others.")
@@ -148,7 +148,7 @@ void bind_robot(nb::module_& module) {
           "parsed",
           [](const Robot& r, const std::string& option, const std::string& actuator, const std::string& text) {
             const auto values = read_settings(r.model(), option, {actuator + "=" + text});
-            return *values[static_cast<std::size_t>(r.actuator(actuator))];
+            return *values[r.actuator(actuator)];
           },
           nb::arg("option"), nb::arg("actuator"), nb::arg("text"), "A command with its unit as a number.")
       .def("marker", &Robot::marker, nb::arg("name"))

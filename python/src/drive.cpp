@@ -126,7 +126,7 @@ Commands commands_of(const Robot& robot, const TableIn& rows, const std::optiona
     check_actuation(robot.model(), row.actuation);
     if (pressures) row.pressures_kpa = row_of(*pressures, i);
     for (std::size_t a = 0; a < actuators && i == 0 && pressures; ++a)
-      commands.pressure_known[a] = !std::isnan(row.pressures_kpa[static_cast<Index>(a)]);
+      commands.pressure_known[a] = !std::isnan(row.pressures_kpa[a]);
     if (times) row.time_s = times->data()[i];
     commands.rows.push_back(std::move(row));
   }

@@ -56,7 +56,7 @@ class RobotEstimator {
   std::vector<PlannedReading> plan(const std::vector<const Told*>& told, const VectorIn& deviations, int count) const {
     PlanOptions options{runs::marker_vertices(robot_->model()), {}, columns_, count};
     const Eigen::VectorXd given = vector_of(deviations);
-    for (std::size_t k = 0; k < readings; ++k) options.deviations[k] = given[static_cast<Index>(k)];
+    for (std::size_t k = 0; k < readings; ++k) options.deviations[k] = given[k];
     std::vector<PlanBasis> estimates;
     for (const Told* each : told) estimates.emplace_back(each->estimate);
     return plan_readings(robot_->model(), estimates, options);
@@ -65,8 +65,7 @@ class RobotEstimator {
   void forget() { estimator_->forget(); }
   [[nodiscard]] std::vector<std::string> told_commands() const {
     std::vector<std::string> names;
-    for (const Index a : estimator_->told_actuators())
-      names.push_back(robot_->model().actuators[static_cast<std::size_t>(a)].name);
+    for (const Index a : estimator_->told_actuators()) names.push_back(robot_->model().actuators[a].name);
     return names;
   }
 

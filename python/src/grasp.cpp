@@ -109,8 +109,7 @@ std::shared_ptr<GraspOut> unpickled_grasp(RobotPtr robot, const nb::bytes& bytes
 
 void bind_grasp(nb::module_& module) {
   nb::class_<GraspOut>(module, "Grasp", "A closed gripper, and how far its body was pulled.")
-      .def_prop_ro("body",
-                   [](const GraspOut& g) { return g.robot->model().bodies[static_cast<std::size_t>(g.body)].name; })
+      .def_prop_ro("body", [](const GraspOut& g) { return g.robot->model().bodies[g.body].name; })
       .def_prop_ro("held", [](const GraspOut& g) { return g.grasp.held; })
       .def_prop_ro("remark", [](const GraspOut& g) { return g.grasp.remark; })
       .def_prop_ro("shape", [](const GraspOut& g) { return g.shape_of(g.grasp.last); })

@@ -54,7 +54,7 @@ struct Answer : std::enable_shared_from_this<Answer> {
     for (std::size_t i = 0; has_shape() && i < goals.named.size(); ++i) {
       const auto* force = std::get_if<ForceGoal>(&goals.named[i].goal.what);
       if ((force != nullptr) != of_forces) continue;
-      errors.push_back(found.errors_mm[static_cast<Index>(i)] / (force != nullptr ? force->mm_per_N : 1));
+      errors.push_back(found.errors_mm[i] / (force != nullptr ? force->mm_per_N : 1));
     }
     return Eigen::Map<Eigen::VectorXd>(errors.data(), static_cast<Index>(errors.size()));
   }
@@ -119,7 +119,7 @@ std::string report_of(const Answer& answer) {
 
 /// From marker to marker at rest [mm], the default lever of a direction.
 double distance_at_rest(const Model& model, Index from, Index to) {
-  const auto at = [&](Index marker) { return model.markers[static_cast<std::size_t>(marker)].at(model.rest); };
+  const auto at = [&](Index marker) { return model.markers[marker].at(model.rest); };
   return (at(to) - at(from)).norm();
 }
 

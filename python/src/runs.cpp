@@ -144,10 +144,9 @@ class FollowRun : public Runner<runs::WaypointRecord> {
               record.asked.time,   record.asked.inserted};
     const MarkerPath& path = follow_.path();
     for (std::size_t p = 0; p < path.markers.size(); ++p) {
-      auto& target = std::get<2>(all)[model().markers[static_cast<std::size_t>(path.markers[p])].name];
+      auto& target = std::get<2>(all)[model().markers[path.markers[p]].name];
       for (Index axis = 0; axis < 3; ++axis)
-        target.push_back(path.axes[p][static_cast<std::size_t>(axis)] ? std::optional(record.asked.targets[p][axis])
-                                                                      : std::nullopt);
+        target.push_back(path.axes[p][axis] ? std::optional(record.asked.targets[p][axis]) : std::nullopt);
     }
     return all;
   }

@@ -141,9 +141,8 @@ VectorOut gradient_of(const Shape& shape, const std::vector<std::string>& number
     for (std::size_t p = 0; p < numbers.size(); ++p)
       for (Eigen::Index m = 0; m < markers.rows(); ++m)
         if (!markers.row(m).isZero(0))
-          gradient[static_cast<Eigen::Index>(p)] +=
-              markers.row(m) *
-              marker_slope(shape.model(), asked.perturbed[p], static_cast<std::size_t>(m), state.positions, still);
+          gradient[p] += markers.row(m) * marker_slope(shape.model(), asked.perturbed[p], static_cast<std::size_t>(m),
+                                                       state.positions, still);
   }
   return vector_out(gradient);
 }

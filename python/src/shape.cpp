@@ -63,7 +63,7 @@ ActuatorOut actuator_of(const Shape& shape, std::size_t a, const runs::ActuatorR
   if (rubs(actuator))
     if (const auto& of = shape.deformation().tendons.at(a)) tendon = {of->end_N, of->sticks};
   const std::optional<double> amount =
-      actuator.filling ? std::optional(runs::amount_mL(actuator, record)) : std::nullopt;
+      filling_of(actuator) ? std::optional(runs::amount_mL(actuator, record)) : std::nullopt;
   return {record.requested,
           record.achieved,
           record.achieved * actuator.rest_measure,
@@ -151,7 +151,7 @@ void bind_fields(nb::class_<Shape>& type) {
             using Three = std::array<double, 3>;
             std::vector<std::tuple<std::string, std::string, Three, Three, Three, std::array<double, 4>>> all;
             if (!s.record().contacts) return all;
-            const auto name = [&](Index part) { return s.model().contact.parts[static_cast<std::size_t>(part)].name; };
+            const auto name = [&](Index part) { return s.model().contact.parts[part].name; };
             for (const PairForces& pair : *s.record().contacts)
               all.emplace_back(name(pair.a), name(pair.b), array_of(pair.force), array_of(pair.moment),
                                array_of(pair.center),

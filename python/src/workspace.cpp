@@ -38,7 +38,7 @@ class MemoryDesk : public GroupDesk {
   }
   void keep(const WorkspaceSample& sample) override {
     const std::lock_guard lock(mutex_);
-    samples_[static_cast<std::size_t>(sample.number)] = sample;
+    samples_[sample.number] = sample;
     ++done_;
   }
   [[nodiscard]] Index done() const { return done_; }

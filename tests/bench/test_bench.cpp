@@ -258,7 +258,7 @@ TEST(CalculixDeck, LoadsEveryWallOnce) {
     force += 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0));
   }
   std::filesystem::remove(path);
-  EXPECT_EQ(loads, model.actuators[0].cavity.size());
+  EXPECT_EQ(loads, model.actuators[0].as<ChamberDrive>()->cavity.size());
   EXPECT_LT(force.norm(), 1e-9);  // a closed surface
 }
 

@@ -74,7 +74,7 @@ class Arm {
     const auto markers = static_cast<Index>(model.markers.size());
     for (Index m = 0; m < markers; ++m)
       for (int axis = 0; axis < 3; ++axis) {
-        const std::string name = model.markers[static_cast<std::size_t>(m)].name;
+        const std::string name = model.markers[m].name;
         poses.columns.push_back({name + "_" + std::string(1, "xyz"[axis]) + "_mm", m, axis});
       }
     for (const auto& [one, two] : {std::pair{0.0, 0.0}, std::pair{0.1, 0.0}, std::pair{0.2, 0.0}, std::pair{0.0, 0.1},

@@ -43,7 +43,7 @@ double area_of(const Mesh& mesh, const std::string& name) {
   for (const Region& region : mesh.regions)
     if (region.name == name)
       for (const Index i : region.triangles) {
-        const Triangle& t = mesh.triangles[static_cast<std::size_t>(i)];
+        const Triangle& t = mesh.triangles[i];
         const Vec3 u = mesh.vertices.row(t[1]) - mesh.vertices.row(t[0]);
         const Vec3 v = mesh.vertices.row(t[2]) - mesh.vertices.row(t[0]);
         area += 0.5 * u.cross(v).norm();
@@ -59,7 +59,7 @@ TEST(BarMesh, FillsTheBarConformingly) {
     double before = 0, beyond = 0;
     for (const Region& region : mesh.regions)
       for (const Index t : region.tetrahedra) {
-        const Tetrahedron& element = mesh.tetrahedra[static_cast<std::size_t>(t)];
+        const Tetrahedron& element = mesh.tetrahedra[t];
         const double volume = signed_volume(mesh.vertices, element);
         EXPECT_GT(volume, 0);
         (region.name == "A" ? before : beyond) += volume;

@@ -99,7 +99,7 @@ TEST(Syringe, NoisyRunsGiveTheRatioWithinHalfAPercentAndKeepTheHysteresis) {
   double worst = 0, scatter = 0;
   for (const SyringeRun& run : runs)
     for (int i = 0; i <= 40; ++i) {
-      const auto& row = run.rows[static_cast<std::size_t>(i)];
+      const auto& row = run.rows[i];
       const double absolute = run.scale == PressureScale::gauge ? row.pressure_kPa + 100 : row.pressure_kPa;
       scatter = std::max(scatter,
                          std::abs(calibration::chamber_ratio(setup, absolute, row.syringe_mm3) / loading(3.5 * i) - 1));

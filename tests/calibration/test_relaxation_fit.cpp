@@ -203,8 +203,7 @@ TEST(NonnegativeLeastSquares, IsTheBestOfAllSetsOfColumns) {
       const Eigen::MatrixXd some = a(Eigen::all, chosen);
       const Eigen::VectorXd x = (some.transpose() * some).inverse() * some.transpose() * b;
       bool allowed = true;
-      for (std::size_t i = 0; i < chosen.size(); ++i)
-        allowed = allowed && (chosen[i] < free || x[static_cast<Eigen::Index>(i)] >= 0);
+      for (std::size_t i = 0; i < chosen.size(); ++i) allowed = allowed && (chosen[i] < free || x[i] >= 0);
       if (allowed) best = std::min(best, (some * x - b).squaredNorm());
     }
     const Eigen::VectorXd found = calibration::nonnegative_least_squares(a, b, free);

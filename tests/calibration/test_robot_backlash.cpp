@@ -83,7 +83,7 @@ TEST(RobotBacklash, SlopesAreThoseOfDifferences) {
                (problem.solve(more, nullptr, false)->computed - problem.solve(less, nullptr, false)->computed);
     }
     for (Index pose = 0; pose < 9; ++pose) {
-      const Eigen::VectorXd exact = point->slopes[static_cast<std::size_t>(pose)].col(i);
+      const Eigen::VectorXd exact = point->slopes[pose].col(i);
       EXPECT_LT((exact - slope.row(pose).transpose()).norm(), 1e-5 * slope.norm()) << i << ", pose " << pose;
       const bool lags = pose >= 4 && pose <= 7;
       EXPECT_TRUE(i != 0 || (exact.norm() > 0) == lags) << pose;

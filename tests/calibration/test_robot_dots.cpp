@@ -39,13 +39,13 @@ MeasuredPoses with_dots(const MeasuredPoses& poses, unsigned seed, const std::ve
   std::vector<Eigen::Index> keep;
   std::vector<Index> markers;
   for (Eigen::Index c = 0; c < static_cast<Eigen::Index>(poses.columns.size()); ++c) {
-    const Index marker = poses.columns[static_cast<std::size_t>(c)].marker;
+    const Index marker = poses.columns[c].marker;
     const bool has_name = std::find(named.begin(), named.end(), marker) != named.end();
     if (has_name) keep.push_back(c);
-    if (!has_name && poses.columns[static_cast<std::size_t>(c)].axis == 0) markers.push_back(static_cast<Index>(c));
+    if (!has_name && poses.columns[c].axis == 0) markers.push_back(static_cast<Index>(c));
   }
   seen.columns.clear();
-  for (const Eigen::Index c : keep) seen.columns.push_back(poses.columns[static_cast<std::size_t>(c)]);
+  for (const Eigen::Index c : keep) seen.columns.push_back(poses.columns[c]);
   seen.values = poses.values(Eigen::all, keep).eval();
   seen.dots.axes = {0, 1, 2};
   for (std::size_t d = 0; d < markers.size(); ++d) seen.dots.names.push_back("dot" + std::to_string(d + 1));
@@ -99,8 +99,8 @@ TEST(Assignment, IsTheLeastOfAll) {
         ++with_none;
         continue;
       }
-      EXPECT_FALSE(taken[static_cast<std::size_t>(columns[row])]);
-      taken[static_cast<std::size_t>(columns[row])] = true;
+      EXPECT_FALSE(taken[columns[row]]);
+      taken[columns[row]] = true;
       ++full;
     }
     std::vector<bool> none(static_cast<std::size_t>(costs.cols()));
@@ -132,7 +132,7 @@ TEST(RobotDots, ShuffledAreFittedAsNamed) {
       EXPECT_NEAR(fit.markers_mm.rms, named.markers_mm.rms, 1e-6);
       for (Index pose = 0; pose < 6; ++pose)
         for (std::size_t d = 0; d < 2; ++d) {
-          const DotMatch& match = fit.dots[static_cast<std::size_t>(pose)][d];
+          const DotMatch& match = fit.dots[pose][d];
           ASSERT_GE(match.marker, 0);
           EXPECT_EQ(dot_at(seen, pose, poses.values.row(pose).segment(3 * match.marker, 3).transpose()),
                     static_cast<Eigen::Index>(d));
@@ -206,8 +206,8 @@ TEST(RobotDots, AreFewerOrFalse) {
     for (Index i = 0; loss == Loss::squares && i < 3; ++i)
       EXPECT_NEAR(fit.values[i], named.values[i], 1e-3 * named.deviations[i]) << i;
     EXPECT_EQ(fit.markers_mm.readings, 10u);
-    EXPECT_FALSE(fit.dots[1][static_cast<std::size_t>(missing)].seen);
-    const DotMatch& no_marker = fit.dots[4][static_cast<std::size_t>(wrong)];
+    EXPECT_FALSE(fit.dots[1][missing].seen);
+    const DotMatch& no_marker = fit.dots[4][wrong];
     EXPECT_TRUE(no_marker.seen);
     EXPECT_EQ(no_marker.marker, -1);
     EXPECT_EQ(no_marker.nearest, 0);

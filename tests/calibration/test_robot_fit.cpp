@@ -46,7 +46,7 @@ TEST(RobotFit, FindsTheNumbersThatMadeThePoses) {
   EXPECT_EQ(fit.status, Status::converged) << fit.remark;
   for (std::size_t i = 0; i < truth.size(); ++i) {
     const double expected = value_of(truth[i]);
-    EXPECT_NEAR(fit.values[static_cast<Index>(i)], expected, 1e-4 * std::abs(expected)) << truth[i];
+    EXPECT_NEAR(fit.values[i], expected, 1e-4 * std::abs(expected)) << truth[i];
   }
   EXPECT_LT(fit.markers_mm.rms, 1e-4);
   EXPECT_EQ(fit.without_equilibrium, 0);
@@ -145,8 +145,7 @@ TEST(RobotFit, DeviationsAreThoseOfTheNoise) {
     for (Index i = 0; i < static_cast<Index>(poses.values.size()); ++i) poses.values.data()[i] += normal(engine);
     const RobotFit fit = fit_robot(robot, poses, {});
     EXPECT_NEAR(fit.scales[0], 0.5, 0.2);
-    for (Index i = 0; i < 2; ++i)
-      inside += std::abs(fit.values[i] - value_of(made[static_cast<std::size_t>(i)])) < 1.645 * fit.deviations[i];
+    for (Index i = 0; i < 2; ++i) inside += std::abs(fit.values[i] - value_of(made[i])) < 1.645 * fit.deviations[i];
   }
   EXPECT_GE(inside, 0.82 * 2 * draws);
   EXPECT_LE(inside, 0.97 * 2 * draws);
@@ -173,7 +172,7 @@ TEST(RobotFit, SaysWhereTheSceneRefusesWhatWouldFitBetter) {
   const Arm arm;
   MeasuredPoses poses = arm.poses({"actuators.t1.factor=0.01"});
   for (Index pose = 0; pose < static_cast<Index>(poses.values.rows()); ++pose)
-    if (poses.commands[static_cast<std::size_t>(pose)][0] > 0) poses.values(pose, 2) -= 5;
+    if (poses.commands[pose][0] > 0) poses.values(pose, 2) -= 5;
   const RobotFit fit = fit_robot(arm.robot({"actuators.t1.factor=0.5"}), poses, {});
   EXPECT_EQ(fit.status, Status::not_converged);
   EXPECT_NE(fit.remark.find("give bounds"), std::string::npos) << fit.remark;

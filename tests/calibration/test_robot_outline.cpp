@@ -57,7 +57,7 @@ class Covered {
             return along.x() * arm.y() - along.y() * arm.x() > 0;
           };
           const bool ab = left_of(a, b), bc = left_of(b, c), ca = left_of(c, a);
-          if (ab == bc && bc == ca) cells_[static_cast<std::size_t>(j * side + i)] = true;
+          if (ab == bc && bc == ca) cells_[j * side + i] = true;
         }
     }
   }
@@ -98,7 +98,7 @@ class Covered {
   static constexpr double step = 0.25;
 
   [[nodiscard]] static int at(double place) { return static_cast<int>(std::floor((place + 60) / step)); }
-  [[nodiscard]] bool is(int i, int j) const { return cells_[static_cast<std::size_t>(j * side + i)]; }
+  [[nodiscard]] bool is(int i, int j) const { return cells_[j * side + i]; }
 
   std::vector<bool> cells_;
 };

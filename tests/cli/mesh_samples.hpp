@@ -76,8 +76,7 @@ inline GmshText quadratic(GmshText mesh) {
     const auto [place, fresh] =
         nodes.try_emplace(std::pair(std::min(a, b), std::max(a, b)), static_cast<int>(mesh.vertices.size()));
     if (!fresh) return place->second;
-    const std::array<double, 3> p = mesh.vertices[static_cast<std::size_t>(a)],
-                                q = mesh.vertices[static_cast<std::size_t>(b)];
+    const std::array<double, 3> p = mesh.vertices[a], q = mesh.vertices[b];
     mesh.vertices.push_back({(p[0] + q[0]) / 2, (p[1] + q[1]) / 2, (p[2] + q[2]) / 2});
     return place->second;
   };
@@ -87,8 +86,7 @@ inline GmshText quadratic(GmshText mesh) {
     if (element.type != 2 && element.type != 4) continue;
     const std::vector<int> corners = element.vertices;
     for (const auto& [a, b] : element.type == 2 ? of_triangle : of_tetrahedron)
-      element.vertices.push_back(
-          node_between(corners[static_cast<std::size_t>(a)], corners[static_cast<std::size_t>(b)]));
+      element.vertices.push_back(node_between(corners[a], corners[b]));
     element.type = element.type == 2 ? 9 : 11;
   }
   return mesh;

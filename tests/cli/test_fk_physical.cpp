@@ -209,7 +209,7 @@ TEST(FkPhysical, AchievedVolumeIsThatOfTheShape) {
     if (region.name != "chamber") continue;
     // the chamber's vertices all lie on its boundary, so that its elements fill it in every shape
     for (const softkin::Index e : region.tetrahedra) {
-      const softkin::Tetrahedron& t = rest.tetrahedra[static_cast<std::size_t>(e)];
+      const softkin::Tetrahedron& t = rest.tetrahedra[e];
       before += std::abs(softkin::signed_volume(rest.vertices, t));
       after += std::abs(softkin::signed_volume(shape, t));
     }

@@ -53,7 +53,7 @@ std::vector<std::pair<double, double>> body_strains(const Solved& solved, double
   std::vector<std::pair<double, double>> strains;
   lowest = 1, highest = -1;
   for (const Index e : tetrahedra_of(solved.shape, "body")) {
-    const Tetrahedron& t = solved.shape.tetrahedra[static_cast<std::size_t>(e)];
+    const Tetrahedron& t = solved.shape.tetrahedra[e];
     const Mat3 f = edges(solved.shape.vertices, t) * edges(solved.rest.vertices, t).inverse();
     const Eigen::SelfAdjointEigenSolver<Mat3> cauchy_green(f.transpose() * f);
     const double least = std::sqrt(cauchy_green.eigenvalues()[0]) - 1;
@@ -192,7 +192,7 @@ TEST(FkReport, AchievedRatioIsTheVolumeOfTheShape) {
   const Solved solved = solve_block(folder, "1.6");
   double before = 0, after = 0;
   for (const Index e : tetrahedra_of(solved.shape, "chamber")) {
-    const Tetrahedron& t = solved.shape.tetrahedra[static_cast<std::size_t>(e)];
+    const Tetrahedron& t = solved.shape.tetrahedra[e];
     before += volume(solved.rest.vertices, t);
     after += volume(solved.shape.vertices, t);
   }

@@ -31,7 +31,7 @@ double cell(const Rows& rows, std::size_t row, const std::string& column) {
   const auto& header = rows.at(0);
   const auto found = std::find(header.begin(), header.end(), column);
   EXPECT_NE(found, header.end()) << "no column " << column;
-  return std::stod(rows.at(row + 1).at(static_cast<std::size_t>(found - header.begin())));
+  return std::stod(rows.at(row + 1).at(found - header.begin()));
 }
 
 /// The block with a chamber and a tendon, and a path of its tip that actuation made, so that it can be reached.

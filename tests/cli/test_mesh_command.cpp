@@ -298,7 +298,7 @@ TEST(MeshConvert, VtuNamesRegionsThatLoseElements) {
   GmshText mesh = cube();
   mesh.names.emplace_back("3 5 \"all\"");
   for (int i = 0; i < 5; ++i) {  // MSH 2.2 repeats an element for each of its groups
-    mesh.elements.push_back(mesh.elements[static_cast<std::size_t>(i)]);
+    mesh.elements.push_back(mesh.elements[i]);
     mesh.elements.back().group = 5;
   }
   const TemporaryFolder folder;

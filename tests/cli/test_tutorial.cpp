@@ -59,7 +59,7 @@ std::vector<double> column(const CsvTable& table, const std::string& name) {
   const auto found = std::find(table.columns.begin(), table.columns.end(), name);
   EXPECT_NE(found, table.columns.end()) << "no column " << name;
   std::vector<double> values;
-  for (const auto& row : table.rows) values.push_back(row.at(static_cast<std::size_t>(found - table.columns.begin())));
+  for (const auto& row : table.rows) values.push_back(row.at(found - table.columns.begin()));
   return values;
 }
 

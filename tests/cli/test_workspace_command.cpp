@@ -308,8 +308,7 @@ TEST(WorkspaceCommand, CloudHullAndPlotAreOfTheMarker) {
   const std::vector<std::string> lines = lines_of(folder.text());
   for (softkin::Index i = 0; i < 36; ++i)
     for (softkin::Index axis = 0; axis < 3; ++axis)
-      EXPECT_EQ(cloud(i, axis),
-                std::stod(cells_of(lines[static_cast<std::size_t>(8 + i)])[static_cast<std::size_t>(6 + axis)]));
+      EXPECT_EQ(cloud(i, axis), std::stod(cells_of(lines[8 + i])[6 + axis]));
   EXPECT_EQ(summary["reach_mm"]["x"][1].get<double>(), cloud.col(0).maxCoeff());
   EXPECT_NE(read_text(folder / "c.vtu").find("Name=\"tendon_tension_N\""), std::string::npos);
   const softkin::TriangleSurface hull = softkin::read_stl(folder / "h.stl");

@@ -19,8 +19,7 @@ inline Sphere make_sphere(int splits, double radius) {
     std::map<Ends, Index> middles;
     const auto middle = [&](Index a, Index b) {
       const auto [at, added] = middles.try_emplace({std::min(a, b), std::max(a, b)}, static_cast<Index>(points.size()));
-      if (added)
-        points.push_back((points[static_cast<std::size_t>(a)] + points[static_cast<std::size_t>(b)]).normalized());
+      if (added) points.push_back((points[a] + points[b]).normalized());
       return at->second;
     };
     std::vector<SixNodes> faces;

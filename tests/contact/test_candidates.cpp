@@ -140,7 +140,7 @@ Points flattened(const Points& x) {
 
 FourPoints gather(const Points& x, const Nodes& nodes) {
   FourPoints out;
-  for (int i = 0; i < 4; ++i) out.col(i) = x.row(nodes[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < 4; ++i) out.col(i) = x.row(nodes[i]);
   return out;
 }
 
@@ -218,7 +218,7 @@ TEST(Candidates, LeaveOutNeighboursAndGroups) {
   const auto keeps = [&](const std::vector<Index>& a, const std::vector<Index>& b) {
     std::set<Index> groups;
     for (const auto& side : {a, b})
-      for (const Index v : side) groups.insert(exclusions.group[static_cast<std::size_t>(v)]);
+      for (const Index v : side) groups.insert(exclusions.group[v]);
     if (groups.size() == 1 && *groups.begin() >= 0) return false;
     for (const Index v : a)
       for (const Index w : b)

@@ -285,9 +285,9 @@ TEST(Collision, AMotionIsAsSafeAsItsLeastSafePair) {
     const Nodes nodes = kind == Kind::edge_edge ? nodes_of_edge_edge(s, pair) : nodes_of_vertex_triangle(s, pair);
     FourPoints a, b, c;
     for (int k = 0; k < 4; ++k) {
-      a.col(k) = sphere.points.row(nodes[static_cast<std::size_t>(k)]);
-      b.col(k) = to.row(nodes[static_cast<std::size_t>(k)]);
-      c.col(k) = stop.row(nodes[static_cast<std::size_t>(k)]);
+      a.col(k) = sphere.points.row(nodes[k]);
+      b.col(k) = to.row(nodes[k]);
+      c.col(k) = stop.row(nodes[k]);
     }
     least = std::min(least, safe(kind, a, b));
     EXPECT_GE(distance(kind, c), 0.1 * distance(kind, a));

@@ -58,8 +58,7 @@ class Least {
 FourPoints to_points(const WholePoints& x) {
   FourPoints out;
   for (int i = 0; i < 4; ++i)
-    for (int k = 0; k < 3; ++k)
-      out(k, i) = static_cast<double>(x[static_cast<std::size_t>(i)][static_cast<std::size_t>(k)]);
+    for (int k = 0; k < 3; ++k) out(k, i) = static_cast<double>(x[i][k]);
   return out;
 }
 

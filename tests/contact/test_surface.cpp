@@ -55,7 +55,7 @@ TEST(Surface, OfASphereIsClosed) {
   EXPECT_NEAR(sum(s.vertex_area), area, 1e-10);
   for (std::size_t t = 0; t < s.triangles.size(); ++t)
     for (std::size_t k = 0; k < 3; ++k) {
-      const Ends edge = s.edges[static_cast<std::size_t>(s.triangle_edges[t][k])];
+      const Ends edge = s.edges[s.triangle_edges[t][k]];
       const Corners& corners = s.triangles[t];
       EXPECT_EQ((std::set<Index>{edge[0], edge[1]}), (std::set<Index>{corners[k], corners[(k + 1) % 3]}));
     }

@@ -12,7 +12,6 @@ inline Model two_tendons() {
   for (const auto& [name, length] : {std::pair("a", 40.0), std::pair("b", 60.0)}) {
     Actuator actuator;
     actuator.name = name;
-    actuator.kind = ActuatorKind::cable;
     actuator.low = 0.5;
     actuator.high = 1;
     actuator.rest_measure = length;

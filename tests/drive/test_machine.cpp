@@ -212,10 +212,10 @@ TEST(Machine, RefusesWhatDoesNotFit) {
   Model model = two_tendons();
   model.actuators[0].control = Control::load;
   refused(model, two_motors(), commands, "commands.csv: cable 'a' is commanded by its tension");
-  model.actuators[0].kind = ActuatorKind::dea;
+  model.actuators[0].drive = DeaDrive{};
   refused(model, two_motors(), commands, "commands.csv: actuator 'a' is a dielectric elastomer");
   model.actuators[0] = two_tendons().actuators[0];
-  model.actuators[0].kind = ActuatorKind::pneumatic;
+  model.actuators[0].drive = ChamberDrive{};
   refused(model, two_motors(), commands, "commands.csv: chamber 'a' is commanded by its volume");
   refused(model, two_motors(), commands, "'a_pressure_kPa'");
   model.actuators[0].control = Control::load;
@@ -225,6 +225,7 @@ TEST(Machine, RefusesWhatDoesNotFit) {
 TEST(PressureSchedule, FollowsTheCommandsWithinLimits) {
   Model model;
   model.actuators.resize(2);
+  for (Actuator& chamber : model.actuators) chamber.drive = ChamberDrive{};
   model.actuators[0].name = "air";
   model.actuators[0].control = Control::load;
   model.actuators[1].name = "tail";  // commanded by volume, its pressures known

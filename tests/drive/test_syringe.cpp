@@ -17,7 +17,7 @@ Model one_chamber() {
   Model model;
   Actuator actuator;
   actuator.name = "air";
-  actuator.kind = ActuatorKind::pneumatic;
+  actuator.drive = ChamberDrive{};
   actuator.low = 0.5;
   actuator.high = 2;
   actuator.rest_measure = 20'000;
@@ -153,7 +153,8 @@ TEST(Syringe, PushesWhatASealedChamberIsCommandedBy) {
   air.control = Control::filling;
   air.low = -5;
   air.high = 40;
-  air.filling = Filling{
+  Filling& filling = std::get<ChamberDrive>(air.drive).filling.emplace();
+  filling = {
       .pushed = true, .atmosphere_MPa = 0.101325, .dead_mm3 = 5000, .syringe_mm3 = 40'000, .chamber_mm3 = 20'000};
   const Commands commands = air_commands({{0, 0}, {17, 0}, {-3.4, 0}}, false);
   HardwareSpec pulled = one_syringe();
@@ -178,7 +179,7 @@ TEST(Syringe, PushesWhatASealedChamberIsCommandedBy) {
   other = one_syringe();
   other.syringes[0].limits_kpa = {{-5, 20}};
   expect_refused(model, other, commands, "limits_kPa cannot be kept");
-  air.filling->pushed = false;
+  filling.pushed = false;
   expect_refused(
       model, one_syringe(), commands,
       "commands.csv: chamber 'air' is commanded by its amount of gas, and a plunger sets what it has pushed");
@@ -225,7 +226,7 @@ TEST(Syringe, RefusesChambersWithoutPressureOrVolume) {
   model.actuators[0].control = Control::load;
   expect_refused(model, one_syringe(), air_commands({{1, 0}}, false),
                  "chamber 'air' is commanded by its pressure, and its syringe needs its volume, too");
-  model.actuators[0].kind = ActuatorKind::cable;
+  model.actuators[0].drive = CableDrive{};
   model.actuators[0].control = Control::ratio;
   expect_refused(model, one_syringe(), air_commands({{1, 0}}, false),
                  "hardware.yaml:3: actuator 'air' stands in 'syringes' but is no chamber");

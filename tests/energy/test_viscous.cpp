@@ -48,10 +48,10 @@ struct Sample {
   void put(int point, const Mat3& c) {
     const double entries[6] = {c(0, 0), c(1, 1), c(2, 2), c(0, 1), c(1, 2), c(0, 2)};
     for (int e = 0; e < 6; ++e)
-      for (int l = 0; l < lanes; ++l) strains[static_cast<std::size_t>((6 * point + e) * lanes + l)] = entries[e];
+      for (int l = 0; l < lanes; ++l) strains[(6 * point + e) * lanes + l] = entries[e];
   }
   [[nodiscard]] Mat3 strain(int point, const std::vector<double>& of) const {
-    const auto e = [&](int entry) { return of[static_cast<std::size_t>((6 * point + entry) * lanes)]; };
+    const auto e = [&](int entry) { return of[(6 * point + entry) * lanes]; };
     Mat3 c;
     c << e(0), e(3), e(5), e(3), e(1), e(4), e(5), e(4), e(2);
     return c;

@@ -53,7 +53,7 @@ void run_marlin(const Input& input) {
 void require_commands(const Model& model, const Actuation& commands) {
   require(commands.size() == static_cast<Index>(model.actuators.size()), "other actuators");
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
-    const double value = commands[static_cast<Index>(a)];
+    const double value = commands[a];
     require(value >= model.actuators[a].low && value <= model.actuators[a].high, "a command outside its range");
   }
 }

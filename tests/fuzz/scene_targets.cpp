@@ -28,8 +28,13 @@ void check(const Model& model) {
     require(actuator.low <= actuator.high, "a range without values");
     require_finite(actuator.low + actuator.high + actuator.rest + actuator.weight, "a range is not finite");
     require_finite(actuator.rest_measure, "a measure at rest is not finite");
-    for (const EmbeddedPoint& point : actuator.points) check(point, vertices);
-    for (const CableGap& gap : actuator.gaps) check(gap.apex, vertices);
+    if (const auto* cable = actuator.as<CableDrive>()) {
+      for (const EmbeddedPoint& point : cable->points) check(point, vertices);
+      for (const CableGap& gap : cable->gaps) check(gap.apex, vertices);
+    }
+    if (const auto* chamber = actuator.as<ChamberDrive>())
+      for (const EmbeddedPoint& point : chamber->points) check(point, vertices);
+    if (const auto* force = actuator.as<ForceCommand>(); force && force->place) check(*force->place, vertices);
   }
   for (const Marker& marker : model.markers) check(marker.point, vertices);
   for (const Material& material : model.materials) {
@@ -140,7 +145,7 @@ Model driven_model(bool by_volume) {
   for (const auto& [name, length] : {std::pair("a", 40.0), std::pair("b", 60.0), std::pair("air", 1000.0)}) {
     Actuator actuator;
     actuator.name = name;
-    actuator.kind = length < 100 ? ActuatorKind::cable : ActuatorKind::pneumatic;
+    if (length > 100) actuator.drive = ChamberDrive{};
     if (length > 100 && !by_volume) actuator.control = Control::load;
     actuator.low = 0.5;
     actuator.high = length < 100 ? 1 : 50;

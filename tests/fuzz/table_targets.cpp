@@ -24,7 +24,7 @@ void run_csv(const Input& input) {
 void check(const Model& model, const Actuation& actuation) {
   require(actuation.size() == static_cast<Index>(model.actuators.size()), "other actuators");
   for (Index a = 0; a < actuation.size(); ++a) {
-    const Actuator& actuator = model.actuators[static_cast<std::size_t>(a)];
+    const Actuator& actuator = model.actuators[a];
     require(actuation[a] >= actuator.low && actuation[a] <= actuator.high, "a command outside its range");
   }
 }
@@ -56,7 +56,7 @@ Model squeezing_chambers() {
   for (const char* name : {"air", "tail"}) {
     Actuator actuator;
     actuator.name = name;
-    actuator.kind = ActuatorKind::pneumatic;
+    actuator.drive = ChamberDrive{};
     model.actuators.push_back(actuator);
   }
   return model;

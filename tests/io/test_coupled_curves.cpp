@@ -19,7 +19,7 @@ Model two_coupled_chambers() {
   for (const char* name : {"left", "cable", "right"}) {
     Actuator actuator;
     actuator.name = name;
-    actuator.kind = std::string(name) == "cable" ? ActuatorKind::cable : ActuatorKind::pneumatic;
+    if (std::string(name) != "cable") actuator.drive = ChamberDrive{};
     model.actuators.push_back(actuator);
   }
   return model;

@@ -34,8 +34,8 @@ void expect_nodes_on_edges(const Mesh& mesh) {
   EXPECT_TRUE(mesh.prisms.empty());
   for (std::size_t e = 0; e < mesh.tetrahedra.size(); ++e)
     for (std::size_t k = 0; k < 6; ++k) {
-      const Vec3 a = at(mesh, mesh.tetrahedra[e][static_cast<std::size_t>(tetrahedron_edges[k][0])]);
-      const Vec3 b = at(mesh, mesh.tetrahedra[e][static_cast<std::size_t>(tetrahedron_edges[k][1])]);
+      const Vec3 a = at(mesh, mesh.tetrahedra[e][tetrahedron_edges[k][0]]);
+      const Vec3 b = at(mesh, mesh.tetrahedra[e][tetrahedron_edges[k][1]]);
       EXPECT_LT((at(mesh, mesh.edge_nodes[e][k]) - (a + b) / 2).norm(), 1e-9) << "element " << e << " edge " << k;
     }
 }

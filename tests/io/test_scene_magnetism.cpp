@@ -184,7 +184,7 @@ TEST(SceneMagnetism, AGridFromAFile) {
   EXPECT_EQ(grid.counts, (std::array<Index, 3>{4, 5, 6}));
   EXPECT_EQ(grid.low, Vec3(0, 0, -1));
   EXPECT_LT((grid.high() - Vec3(30, 20, 4)).norm(), 1e-12);
-  EXPECT_EQ(grid.per_ampere[static_cast<std::size_t>(2 + 4 * (3 + 5 * 1))], Vec3(2, 3, 1));
+  EXPECT_EQ(grid.per_ampere[2 + 4 * (3 + 5 * 1)], Vec3(2, 3, 1));
 }
 
 TEST(SceneMagnetism, RefusesFilesThatAreNoGrid) {

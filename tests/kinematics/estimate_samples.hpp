@@ -30,7 +30,7 @@ inline std::vector<PoseColumn> marker_columns(const Model& model) {
   std::vector<PoseColumn> columns;
   for (Index m = 0; m < static_cast<Index>(model.markers.size()); ++m)
     for (int axis = 0; axis < 3; ++axis)
-      columns.push_back({model.markers[static_cast<std::size_t>(m)].name + "_" + "xyz"[axis] + "_mm", m, axis});
+      columns.push_back({model.markers[m].name + "_" + "xyz"[axis] + "_mm", m, axis});
   return columns;
 }
 
@@ -62,8 +62,7 @@ inline void expect_slopes(const std::vector<PoseColumn>& columns, const Eigen::M
   for (Index r = 0; r < static_cast<Index>(difference.size()); ++r) {
     double size = 0;
     for (Index other = 0; other < static_cast<Index>(difference.size()); ++other)
-      if (columns[static_cast<std::size_t>(other)].kind == columns[static_cast<std::size_t>(r)].kind)
-        size = std::max(size, slopes.row(other).cwiseAbs().maxCoeff());
+      if (columns[other].kind == columns[r].kind) size = std::max(size, slopes.row(other).cwiseAbs().maxCoeff());
     EXPECT_NEAR(slopes(r, c), difference[r], share * size) << "reading " << r << ", column " << c;
   }
 }

@@ -133,8 +133,7 @@ Touch touched(const Vec3& force, const Vec3& place, double pressure) {
   touch.found = statics.solve(touch.commands, statics.rest());
   EXPECT_EQ(touch.found.report.status, Status::converged);
   touch.readings.resize(12);
-  for (Index m = 0; m < 4; ++m)
-    touch.readings.segment<3>(3 * m) = model.markers[static_cast<std::size_t>(m)].at(touch.found.state.positions);
+  for (Index m = 0; m < 4; ++m) touch.readings.segment<3>(3 * m) = model.markers[m].at(touch.found.state.positions);
   // the model that tells has commands more
   touch.commands.conservativeResize(4);
   touch.commands.tail(3).setZero();
@@ -347,9 +346,8 @@ TEST(Estimator, TellsCommandsThatWereNotMeasured) {
   std::vector<PoseColumn> columns = all_columns(model);
   columns.erase(columns.begin() + 14, columns.end());  // without volume and support
   Eigen::VectorXd values(14), deviations = Eigen::VectorXd::Constant(14, 0.05);
-  for (Index r = 0; r < 12; ++r)
-    values[r] = model.markers[static_cast<std::size_t>(r / 3)].at(found.state.positions)[r % 3];
-  for (Index s = 0; s < 2; ++s) values[12 + s] = model.sensors[static_cast<std::size_t>(s)]->at(found.state.positions);
+  for (Index r = 0; r < 12; ++r) values[r] = model.markers[r / 3].at(found.state.positions)[r % 3];
+  for (Index s = 0; s < 2; ++s) values[12 + s] = model.sensors[s]->at(found.state.positions);
   values[4] = std::numeric_limits<double>::quiet_NaN();  // not read
   EstimatorOptions options;
   options.accuracy = 1e-3;
@@ -357,9 +355,7 @@ TEST(Estimator, TellsCommandsThatWereNotMeasured) {
   EXPECT_EQ(estimator.told_actuators(), (std::vector<Index>{0, 1, 2, 3}));
   const Estimate& told = estimator.update(model.rest_actuation(), values);
   ASSERT_EQ(told.status, Status::converged);
-  for (Index a = 0; a < 4; ++a)
-    EXPECT_NEAR(told.numbers[static_cast<std::size_t>(a)].value, commands[a],
-                0.2 * told.numbers[static_cast<std::size_t>(a)].deviation);
+  for (Index a = 0; a < 4; ++a) EXPECT_NEAR(told.numbers[a].value, commands[a], 0.2 * told.numbers[a].deviation);
   EXPECT_TRUE(told.places.empty());
   EXPECT_TRUE(told.actuation.isApprox(commands, 1e-2));
 }
@@ -425,7 +421,7 @@ TEST(Estimator, PlansWhatToReadFurther) {
   double most = 0;
   for (const Index v : options.vertices) {
     Eigen::MatrixXd slopes(3, 5);
-    for (Index c = 0; c < 5; ++c) slopes.col(c) = vertex_at(few.moves[static_cast<std::size_t>(c)], v) / 0.1;
+    for (Index c = 0; c < 5; ++c) slopes.col(c) = vertex_at(few.moves[c], v) / 0.1;
     const Eigen::MatrixXd posterior = (few.near_covariance.inverse() + slopes.transpose() * slopes).inverse();
     most = std::max(most, 0.5 * std::log2(few.near_covariance.determinant() / posterior.determinant()));
   }

@@ -58,7 +58,7 @@ TEST(Goal, SlopesEqualDifferences) {
   ASSERT_EQ(slopes.cols(), 2);
   constexpr double reach = 1e-5;
   for (Index a = 0; a < 2; ++a) {
-    const Points& move = along.positions[static_cast<std::size_t>(a)];
+    const Points& move = along.positions[a];
     const Eigen::VectorXd change =
         (inverse::goal_terms(model, goals, at + reach * move) - inverse::goal_terms(model, goals, at - reach * move)) /
         (2 * reach);

@@ -18,7 +18,7 @@ using namespace testing;
 Actuation random_actuation(const Model& model, std::mt19937& engine) {
   Actuation actuation(static_cast<Index>(model.actuators.size()));
   for (Index a = 0; a < actuation.size(); ++a) {
-    const Actuator& actuator = model.actuators[static_cast<std::size_t>(a)];
+    const Actuator& actuator = model.actuators[a];
     actuation[a] = std::uniform_real_distribution<double>(actuator.low, actuator.high)(engine);
   }
   return actuation;
@@ -33,8 +33,8 @@ void expect_inside(const Model& model, const InverseResult& result) {
   for (const InverseTrial& record : result.history) all.push_back(record.actuation);
   for (const Actuation& actuation : all)
     for (std::size_t a = 0; a < model.actuators.size(); ++a) {
-      EXPECT_GE(actuation[static_cast<Index>(a)], model.actuators[a].low);
-      EXPECT_LE(actuation[static_cast<Index>(a)], model.actuators[a].high);
+      EXPECT_GE(actuation[a], model.actuators[a].low);
+      EXPECT_LE(actuation[a], model.actuators[a].high);
     }
   EXPECT_EQ(result.equilibria, static_cast<int>(result.history.size()));
 }
@@ -119,7 +119,7 @@ double least_on_grid(const Model& model, const Statics& statics, const std::vect
       Actuation actuation(2);
       const int places[] = {i, i % 2 == 0 ? j : cells - j};  // neighbours from each other
       for (Index a = 0; a < 2; ++a) {
-        const Actuator& actuator = model.actuators[static_cast<std::size_t>(a)];
+        const Actuator& actuator = model.actuators[a];
         actuation[a] = actuator.low + (actuator.high - actuator.low) * places[a] / cells;
       }
       const Equilibrium found = statics.solve(actuation, state);
@@ -127,8 +127,7 @@ double least_on_grid(const Model& model, const Statics& statics, const std::vect
       state = found.state;
       const Eigen::VectorXd errors = goal_errors(model, goals, state.positions);
       double sum = 0;
-      for (std::size_t k = 0; k < goals.size(); ++k)
-        sum += goals[k].weight * errors[static_cast<Index>(k)] * errors[static_cast<Index>(k)];
+      for (std::size_t k = 0; k < goals.size(); ++k) sum += goals[k].weight * errors[k] * errors[k];
       least = std::min(least, std::sqrt(sum));
     }
   return least;
@@ -136,8 +135,7 @@ double least_on_grid(const Model& model, const Statics& statics, const std::vect
 
 double weighted_error(const std::vector<Goal>& goals, const InverseResult& result) {
   double sum = 0;
-  for (std::size_t k = 0; k < goals.size(); ++k)
-    sum += goals[k].weight * std::pow(result.errors_mm[static_cast<Index>(k)], 2);
+  for (std::size_t k = 0; k < goals.size(); ++k) sum += goals[k].weight * std::pow(result.errors_mm[k], 2);
   return std::sqrt(sum);
 }
 
@@ -177,9 +175,9 @@ TEST(Inverse, TellsWhichRangesBind) {
   const InverseResult far = solve_inverse(model, statics, at_point({200, 10, 100}), statics.rest());
   EXPECT_EQ(far.status, InverseStatus::unreachable);
   for (Index a = 0; a < 2; ++a) {
-    const auto& actuator = model.actuators[static_cast<std::size_t>(a)];
+    const auto& actuator = model.actuators[a];
     const double value = far.equilibrium.actuation[a];
-    const int active = far.active[static_cast<std::size_t>(a)];
+    const int active = far.active[a];
     EXPECT_EQ(active, value == actuator.high ? 1 : value == actuator.low ? -1 : 0);
   }
   EXPECT_NE(far.active, (std::vector<int>{0, 0}));

@@ -15,7 +15,7 @@ using namespace testing;
 Eigen::VectorXd places(const Model& model, const std::vector<Index>& markers, const Points& positions) {
   Eigen::VectorXd all(3 * static_cast<Index>(markers.size()));
   for (std::size_t p = 0; p < markers.size(); ++p)
-    all.segment<3>(3 * static_cast<Index>(p)) = model.markers[static_cast<std::size_t>(markers[p])].point.at(positions);
+    all.segment<3>(3 * static_cast<Index>(p)) = model.markers[markers[p]].point.at(positions);
   return all;
 }
 
@@ -30,7 +30,7 @@ void expect_slopes(const RobotSpec& spec, const Actuation& actuation) {
   const Steps steps;
   for (Index a = 0; a < actuation.size(); ++a) {
     SCOPED_TRACE("actuator " + std::to_string(a));
-    const double step = steps.of(model.actuators[static_cast<std::size_t>(a)]);
+    const double step = steps.of(model.actuators[a]);
     const auto moved = [&](double by) {
       Actuation there = actuation;
       there[a] += by;

@@ -42,8 +42,8 @@ TEST(WrenchEstimates, TellForceAndMoment) {
   const std::vector<PoseColumn> columns = all_columns(model);
   Eigen::VectorXd deviations = Eigen::VectorXd::Constant(static_cast<Index>(columns.size()), 0.02);
   for (std::size_t r = 0; r < columns.size(); ++r) {
-    if (columns[r].kind == Reading::volume) deviations[static_cast<Index>(r)] = 2;
-    if (columns[r].kind == Reading::force) deviations[static_cast<Index>(r)] = 0.002;
+    if (columns[r].kind == Reading::volume) deviations[r] = 2;
+    if (columns[r].kind == Reading::force) deviations[r] = 0.002;
   }
   Estimator estimator(model, {{"tool"}}, columns, deviations);
   const estimate::Problem problem(model, {{"tool"}}, columns, exactly());
@@ -66,7 +66,7 @@ TEST(WrenchEstimates, TellForceAndMoment) {
     EXPECT_EQ(told.numbers[3].unit, "N mm");
     EXPECT_LT(told.misfit(), 3);
     for (std::size_t i = 0; i < 6; ++i, ++all) {
-      const double off = told.numbers[i].value - wrench[static_cast<Index>(i)];
+      const double off = told.numbers[i].value - wrench[i];
       EXPECT_LT(std::abs(off), 4.5 * told.numbers[i].deviation) << told.numbers[i].name;
       EXPECT_LT(told.numbers[i].deviation, i < 3 ? 0.003 : 0.3);
       held += std::abs(off) < 1.645 * told.numbers[i].deviation ? 1 : 0;
@@ -85,8 +85,7 @@ TEST(WrenchEstimates, TellThePressureOverAPatch) {
   const Equilibrium truth = Statics(model).solve(commands, Statics(model).rest(), exactly());
   Eigen::VectorXd values(static_cast<Index>(columns.size()));
   for (std::size_t r = 0; r < columns.size(); ++r)
-    values[static_cast<Index>(r)] =
-        model.markers[static_cast<std::size_t>(columns[r].marker)].at(truth.state.positions)[columns[r].axis];
+    values[r] = model.markers[columns[r].marker].at(truth.state.positions)[columns[r].axis];
   const Estimate& told = estimator.update(commands_of(model, 5), values);
   ASSERT_EQ(told.status, Status::converged);
   EXPECT_EQ(told.numbers[0].unit, "kPa");
@@ -166,8 +165,8 @@ TEST(StiffnessEstimates, FollowAMaterialThatDrifts) {
   const std::vector<PoseColumn> columns = all_columns(model);
   Eigen::VectorXd deviations = Eigen::VectorXd::Constant(static_cast<Index>(columns.size()), 0.02);
   for (std::size_t r = 0; r < columns.size(); ++r) {
-    if (columns[r].kind == Reading::volume) deviations[static_cast<Index>(r)] = 2;
-    if (columns[r].kind == Reading::force) deviations[static_cast<Index>(r)] = 0.002;
+    if (columns[r].kind == Reading::volume) deviations[r] = 2;
+    if (columns[r].kind == Reading::force) deviations[r] = 0.002;
   }
   const std::vector<EstimatedUnknown> unknowns{stiffness("all", 1, 0.2), {"touch"}};
   EstimatorOptions options;
@@ -189,7 +188,7 @@ TEST(StiffnessEstimates, FollowAMaterialThatDrifts) {
     EXPECT_EQ(told.numbers[0].name, "materials.all.stiffness");
     EXPECT_EQ(told.numbers[0].unit, "");
     for (std::size_t i = 0; i < 4; ++i)
-      EXPECT_LT(std::abs(told.numbers[i].value - truth[static_cast<Index>(i)]), 4 * told.numbers[i].deviation)
+      EXPECT_LT(std::abs(told.numbers[i].value - truth[i]), 4 * told.numbers[i].deviation)
           << told.numbers[i].name << " at " << time;
     EXPECT_LT(told.numbers[0].deviation, 0.05) << "0.2 before";
   }

@@ -54,16 +54,14 @@ void expect_agreement(const Model& model, const MapResult& result, int points) {
   const maps::RowMatrix commands = maps::random_commands(result.data, points, 77);
   for (Index i = 0; i < points; ++i) {
     Actuation actuation = model.rest_actuation();
-    for (Index j = 0; j < map.inputs(); ++j)
-      actuation[result.data.inputs[static_cast<std::size_t>(j)].actuator] = commands(i, j);
+    for (Index j = 0; j < map.inputs(); ++j) actuation[result.data.inputs[j].actuator] = commands(i, j);
     const Equilibrium found = settled(statics, actuation);
     Eigen::VectorXd values(map.outputs());
     const auto place = map.evaluate(commands.row(i).data(), values.data());
     ASSERT_TRUE(place);
     const Eigen::VectorXd expected = maps::outputs_of(model, result.data, found.state);
     for (Index q = 0; q < values.size(); ++q)
-      EXPECT_NEAR(values[q], expected[q], 2 * result.data.outputs[static_cast<std::size_t>(q)].accuracy)
-          << result.data.outputs[static_cast<std::size_t>(q)].name;
+      EXPECT_NEAR(values[q], expected[q], 2 * result.data.outputs[q].accuracy) << result.data.outputs[q].name;
     EXPECT_LT(largest_move(map.shape(commands.row(i).data(), *place), found.state.positions), 0.02);
   }
 }

@@ -40,8 +40,7 @@ struct Weighed {
   }
   Weighed() {
     for (Index i = 0; i < map.inputs(); ++i)
-      if (const MapInput& input = map.data().inputs[static_cast<std::size_t>(i)]; input.unit == "N")
-        forces.push_back({i, 0, input.high});
+      if (const MapInput& input = map.data().inputs[i]; input.unit == "N") forces.push_back({i, 0, input.high});
   }
 };
 
@@ -63,16 +62,14 @@ TEST(MapEstimate, TellsTheSolversForces) {
     const Equilibrium found = statics.solve(commands, statics.rest());
     ASSERT_EQ(found.report.status, Status::converged);
     Eigen::VectorXd values = Eigen::VectorXd::Constant(map.outputs(), std::nan(""));
-    for (Index m = 0; m < 3; ++m)
-      values.segment<3>(3 * m) = model.markers[static_cast<std::size_t>(m)].at(found.state.positions);
+    for (Index m = 0; m < 3; ++m) values.segment<3>(3 * m) = model.markers[m].at(found.state.positions);
     Eigen::VectorXd begin = map.commands(commands);
     for (const MapUnknown& unknown : forces) begin[unknown.input] = 0;
     const auto told = estimate_by_map(map, forces, begin, values, Eigen::VectorXd::Constant(map.outputs(), 1e-3));
     ASSERT_TRUE(told && told->converged);
     EXPECT_LE(told->iterations, 8);
     for (Index k = 0; k < 3; ++k)
-      EXPECT_NEAR(told->commands[forces[static_cast<std::size_t>(k)].input], force[k],
-                  5 * std::sqrt(told->covariance(k, k)));
+      EXPECT_NEAR(told->commands[forces[k].input], force[k], 5 * std::sqrt(told->covariance(k, k)));
     EXPECT_LT((told->commands - map.commands(commands)).norm(), 0.01);
   }
 }
@@ -102,7 +99,7 @@ TEST(MapEstimate, IsTheLeastCost) {
   const double h = 1e-3;
   const auto column = [&](Index i, double by) {
     Eigen::VectorXd move = Eigen::VectorXd::Zero(map.inputs());
-    move[unknowns[static_cast<std::size_t>(i)].input] = by;
+    move[unknowns[i].input] = by;
     return move;
   };
   const Eigen::Matrix3d information = told->covariance.inverse();
@@ -131,8 +128,7 @@ TEST(MapEstimate, DeviationsAreHonest) {
     truth[0] = 7;
     for (const MapUnknown& unknown : forces) truth[unknown.input] = 0.2 * unknown.deviation * normal(random);
     for (Index i = 0; i < map.inputs(); ++i)
-      truth[i] = std::clamp(truth[i], map.data().inputs[static_cast<std::size_t>(i)].low,
-                            map.data().inputs[static_cast<std::size_t>(i)].high);
+      truth[i] = std::clamp(truth[i], map.data().inputs[i].low, map.data().inputs[i].high);
     ASSERT_TRUE(map.evaluate(truth.data(), values.data()));
     for (Index q = 0; q < 9; ++q) values[q] += 0.1 * normal(random);
     values.tail(map.outputs() - 9).setConstant(std::nan(""));
@@ -146,7 +142,7 @@ TEST(MapEstimate, DeviationsAreHonest) {
     ASSERT_TRUE(told && told->converged);
     Vec3 off;
     for (Index k = 0; k < 3; ++k) {
-      const Index i = forces[static_cast<std::size_t>(k)].input;
+      const Index i = forces[k].input;
       off[k] = told->commands[i] - truth[i];
     }
     held += off.dot(told->covariance.inverse() * off) < 6.2514;
@@ -171,7 +167,7 @@ TEST(MapEstimate, StaysInItsRangesAndRefuses) {
   ASSERT_TRUE(told);
   bool at_end = false;
   for (const MapUnknown& unknown : forces) {
-    const MapInput& input = map.data().inputs[static_cast<std::size_t>(unknown.input)];
+    const MapInput& input = map.data().inputs[unknown.input];
     EXPECT_GE(told->commands[unknown.input], input.low);
     EXPECT_LE(told->commands[unknown.input], input.high);
     at_end = at_end || told->commands[unknown.input] == input.low || told->commands[unknown.input] == input.high;

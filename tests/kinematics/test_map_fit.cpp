@@ -36,8 +36,8 @@ TEST(MapFit, TermsAreThoseOfLeastSumWithAllBelowThem) {
   ASSERT_EQ(terms.rows(), 6);
   const std::vector<std::array<int, 2>> expected{{0, 0}, {0, 1}, {1, 0}, {1, 1}, {2, 0}, {3, 0}};
   for (Index t = 0; t < 6; ++t) {
-    EXPECT_EQ(terms(t, 0), expected[static_cast<std::size_t>(t)][0]);
-    EXPECT_EQ(terms(t, 1), expected[static_cast<std::size_t>(t)][1]);
+    EXPECT_EQ(terms(t, 0), expected[t][0]);
+    EXPECT_EQ(terms(t, 1), expected[t][1]);
   }
 }
 

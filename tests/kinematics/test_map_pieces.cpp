@@ -25,7 +25,7 @@ struct Made {
     for (RowMatrix asked = fit.next(); asked.rows() > 0; asked = fit.next()) {
       std::vector<Sample> samples(static_cast<std::size_t>(asked.rows()));
       for (Index i = 0; i < asked.rows(); ++i) {
-        Sample& sample = samples[static_cast<std::size_t>(i)];
+        Sample& sample = samples[i];
         sample.commands = asked.row(i);
         sample.values = Eigen::VectorXd::Constant(1, function(sample.commands));
         sample.slopes.resize(2, 1);

@@ -45,9 +45,8 @@ template <class Error>
 std::vector<Index> by_brute_force(const std::vector<WorkspaceSample>& samples, Index count, const Error& error) {
   std::vector<Index> order(samples.size());
   std::iota(order.begin(), order.end(), 0);
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
-    return error(samples[static_cast<std::size_t>(a)].markers) < error(samples[static_cast<std::size_t>(b)].markers);
-  });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Index a, Index b) { return error(samples[a].markers) < error(samples[b].markers); });
   order.resize(static_cast<std::size_t>(count));
   return order;
 }
@@ -124,8 +123,7 @@ TEST(NearestSamples, LeavesOutSamplesWithoutAnEquilibrium) {
   samples[3].status = Status::limit;
   NearestSamples nearest(model, samples);
   EXPECT_EQ(nearest.samples().size(), 9u);
-  for (const Index row : nearest.find({{PositionGoal{0, target}, 1}}, 9))
-    EXPECT_NE(nearest.samples()[static_cast<std::size_t>(row)].number, 3);
+  for (const Index row : nearest.find({{PositionGoal{0, target}, 1}}, 9)) EXPECT_NE(nearest.samples()[row].number, 3);
   for (WorkspaceSample& sample : samples) sample.status = Status::not_converged;
   EXPECT_THROW(NearestSamples(model, samples), InvalidInput);
 }

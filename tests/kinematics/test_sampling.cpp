@@ -125,10 +125,10 @@ TEST(Sampling, NoSampleLeavesItsRange) {
   for (const auto& [kind, count] : {std::pair{Sampling::grid, 1000}, {Sampling::sobol, 999}, {Sampling::random, 999}}) {
     const Actuations points = samples(model, kind, count);
     for (Index a = 0; a < points.cols(); ++a) {
-      EXPECT_GE(points.col(a).minCoeff(), each[static_cast<std::size_t>(a)].first);
-      EXPECT_LE(points.col(a).maxCoeff(), each[static_cast<std::size_t>(a)].second);
+      EXPECT_GE(points.col(a).minCoeff(), each[a].first);
+      EXPECT_LE(points.col(a).maxCoeff(), each[a].second);
       if (kind == Sampling::grid) {
-        EXPECT_EQ(points.col(a).maxCoeff(), each[static_cast<std::size_t>(a)].second);
+        EXPECT_EQ(points.col(a).maxCoeff(), each[a].second);
       }
     }
   }

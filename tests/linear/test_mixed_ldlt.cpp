@@ -30,7 +30,7 @@ Symmetric shifted_to(Symmetric sample, double nearest) {
   const BlockColumns& p = sample.pattern;
   for (Index node = 0; node < p.nodes(); ++node)
     for (Index i = 0; i < p.width(node); ++i)
-      sample.values[static_cast<std::size_t>(p.offsets[p.starts[node]] + i * (p.width(node) + 1))] += shift;
+      sample.values[p.offsets[p.starts[node]] + i * (p.width(node) + 1)] += shift;
   sample.dense.diagonal().array() += shift;
   return sample;
 }

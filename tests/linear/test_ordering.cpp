@@ -110,7 +110,7 @@ TEST(Ordering, MeshesOfOrderTwoAreDissectedAtTheirCornersToo) {
     const Ordering found = nested_dissection(bar.matrix, bar.ends), alike = nested_dissection(bar.matrix);
     std::vector<Index> sorted = found.order;
     std::sort(sorted.begin(), sorted.end());
-    for (Index i = 0; i < bar.matrix.rows(); ++i) ASSERT_EQ(sorted[static_cast<std::size_t>(i)], i);
+    for (Index i = 0; i < bar.matrix.rows(); ++i) ASSERT_EQ(sorted[i], i);
     const auto flops = [&](const Ordering& order) { return make_front_tree(columns_of(bar.matrix, order)).flops; };
     const double share = flops(found) / flops(alike);
     EXPECT_LT(share, 1.05) << length << " " << width;

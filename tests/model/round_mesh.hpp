@@ -47,7 +47,7 @@ inline Footprint cut_on_ball(std::vector<Vec3> at, std::vector<Triangle> triangl
     std::map<std::pair<Index, Index>, Index> middles;
     const auto middle = [&](Index a, Index b) {
       const auto [found, fresh] = middles.try_emplace(std::minmax(a, b), static_cast<Index>(at.size()));
-      if (fresh) at.push_back((at[static_cast<std::size_t>(a)] + at[static_cast<std::size_t>(b)]).normalized());
+      if (fresh) at.push_back((at[a] + at[b]).normalized());
       return found->second;
     };
     std::vector<Triangle> finer;

@@ -13,7 +13,6 @@ Model two_loads(double first, double second) {
   Model model;
   for (const double backlash : {first, second}) {
     Actuator actuator;
-    actuator.kind = ActuatorKind::cable;
     actuator.control = Control::load;
     actuator.rest = 0;
     actuator.backlash = backlash;

@@ -23,13 +23,13 @@ TEST(Pneumatic, ARegionBecomesTheChamber) {
   ASSERT_EQ(model.actuators.size(), 1u);
   const Actuator& compiled = model.actuators[0];
   EXPECT_EQ(compiled.name, "air");
-  EXPECT_EQ(compiled.tetrahedra.size(), 6u);
+  EXPECT_EQ(compiled.as<ChamberDrive>()->tetrahedra.size(), 6u);
   EXPECT_NEAR(compiled.rest_measure, 1000, 1e-9);
   EXPECT_EQ(compiled.low, 0.5);
   EXPECT_EQ(compiled.high, 3);
   EXPECT_EQ(compiled.weight, 7);
   EXPECT_EQ(compiled.distribution, Distribution::uniform);
-  EXPECT_TRUE(compiled.points.empty());
+  EXPECT_TRUE(compiled.as<ChamberDrive>()->points.empty());
   int members = 0;
   for (std::size_t i = 0; i < model.tetrahedra.size(); ++i) {
     const ElementRole& role = model.tetrahedron_roles[i];
@@ -48,7 +48,7 @@ TEST(Pneumatic, IndicesFollowTheDroppedVoids) {
   const Model model = compile(spec);
   EXPECT_EQ(model.tetrahedra.size(), 24u * 6);
   EXPECT_NEAR(model.actuators[0].rest_measure, 1000, 1e-9);
-  for (const Index i : model.actuators[0].tetrahedra) {
+  for (const Index i : model.actuators[0].as<ChamberDrive>()->tetrahedra) {
     Vec3 centroid = Vec3::Zero();
     for (const Index v : model.tetrahedra[i]) centroid += 0.25 * model.rest.row(v).transpose();
     EXPECT_LT((centroid - Vec3(15, 15, 15)).cwiseAbs().maxCoeff(), 5);
@@ -75,15 +75,15 @@ TEST(Pneumatic, ASurfaceTakesTheElementsInside) {
     spec.actuators.push_back(air);
     const Model model = compile(spec);
     const Actuator& compiled = model.actuators[0];
-    EXPECT_EQ(compiled.tetrahedra.size(), 6u);
+    EXPECT_EQ(compiled.as<ChamberDrive>()->tetrahedra.size(), 6u);
     EXPECT_NEAR(compiled.rest_measure, 1000, 1e-9);
-    ASSERT_EQ(compiled.points.size(), 8u);
+    ASSERT_EQ(compiled.as<ChamberDrive>()->points.size(), 8u);
     Points corners(8, 3);
     for (Index i = 0; i < 8; ++i) {
-      corners.row(i) = compiled.points[i].at(model.rest).transpose();
+      corners.row(i) = compiled.as<ChamberDrive>()->points[i].at(model.rest).transpose();
       EXPECT_LT((corners.row(i) - air.surface->vertices.row(i)).norm(), 1e-12);
     }
-    EXPECT_NEAR(enclosed_volume(corners, compiled.surface), 1331, 1e-9) << "normals outwards";
+    EXPECT_NEAR(enclosed_volume(corners, compiled.as<ChamberDrive>()->surface), 1331, 1e-9) << "normals outwards";
   }
 }
 
@@ -100,12 +100,12 @@ TEST(Dea, MeasuresItsMeanArea) {
   skin.rest = 1.2;
   spec.actuators.push_back(skin);
   const Model model = compile(spec);
-  const auto count = static_cast<double>(model.actuators[0].prisms.size());
+  const auto count = static_cast<double>(model.actuators[0].as<DeaDrive>()->prisms.size());
   EXPECT_EQ(count, 8);
   // a triangle is 2 mm^2 at the bottom and 0.5 mm^2 at the top
   EXPECT_NEAR(model.actuators[0].rest_measure, count * 1.25, 1e-12);
   EXPECT_EQ(model.rest_actuation()[0], 1.2);
-  for (const Index i : model.actuators[0].prisms) EXPECT_EQ(model.prism_roles[i].actuator, 0);
+  for (const Index i : model.actuators[0].as<DeaDrive>()->prisms) EXPECT_EQ(model.prism_roles[i].actuator, 0);
 }
 
 /// 30 x 10 x 20 mm with the notch 10 < x < 20, z > 10.
@@ -125,12 +125,12 @@ TEST(Cable, FindsItsGapAndTheApexAcrossIt) {
   const Model model = compile(spec);
   const Actuator& tendon = model.actuators[0];
   EXPECT_NEAR(tendon.rest_measure, 30, 1e-12);
-  ASSERT_EQ(tendon.gaps.size(), 1u);
-  EXPECT_EQ(tendon.gaps[0].segment, 1);
+  ASSERT_EQ(tendon.as<CableDrive>()->gaps.size(), 1u);
+  EXPECT_EQ(tendon.as<CableDrive>()->gaps[0].segment, 1);
   // the body's centroid is at (15, 5, 9): straight down, onto the floor of the notch
-  EXPECT_LT((tendon.gaps[0].apex.at(model.rest) - Vec3(15, 5, 10)).norm(), 1e-9);
-  EXPECT_EQ(tendon.points.size(), 4u);
-  EXPECT_LT((tendon.points[3].at(model.rest) - Vec3(30, 5, 15)).norm(), 1e-12);
+  EXPECT_LT((tendon.as<CableDrive>()->gaps[0].apex.at(model.rest) - Vec3(15, 5, 10)).norm(), 1e-9);
+  EXPECT_EQ(tendon.as<CableDrive>()->points.size(), 4u);
+  EXPECT_LT((tendon.as<CableDrive>()->points[3].at(model.rest) - Vec3(30, 5, 15)).norm(), 1e-12);
 }
 
 TEST(Cable, IsOneGapPerSegmentInAContinuousBody) {
@@ -139,9 +139,9 @@ TEST(Cable, IsOneGapPerSegmentInAContinuousBody) {
     spec.actuators = {cable({at(3, 5, z), at(14, 5, z), at(27, 5, z)}, 0.1, 1)};
     const Model model = compile(spec);
     const Actuator& tendon = model.actuators[0];
-    ASSERT_EQ(tendon.gaps.size(), 2u);
-    EXPECT_LT((tendon.gaps[0].apex.at(model.rest) - Vec3(8.5, 5, 0)).norm(), 1e-9);
-    EXPECT_LT((tendon.gaps[1].apex.at(model.rest) - Vec3(20.5, 5, 0)).norm(), 1e-9);
+    ASSERT_EQ(tendon.as<CableDrive>()->gaps.size(), 2u);
+    EXPECT_LT((tendon.as<CableDrive>()->gaps[0].apex.at(model.rest) - Vec3(8.5, 5, 0)).norm(), 1e-9);
+    EXPECT_LT((tendon.as<CableDrive>()->gaps[1].apex.at(model.rest) - Vec3(20.5, 5, 0)).norm(), 1e-9);
     EXPECT_NEAR(tendon.rest_measure, 24, 1e-12);
   }
 }
@@ -153,15 +153,15 @@ TEST(Cable, IsGuidedInsideTheBodyAsOftenAsItsSpacingSays) {
   const Model model = compile(spec);
   const Actuator& tendon = model.actuators[0];
   // 13 places 2.5 mm apart, of which three lie in the notch
-  ASSERT_EQ(tendon.points.size(), 10u);
+  ASSERT_EQ(tendon.as<CableDrive>()->points.size(), 10u);
   double before = -2.5;
-  for (const EmbeddedPoint& point : tendon.points) {
+  for (const EmbeddedPoint& point : tendon.as<CableDrive>()->points) {
     const Vec3 place = point.at(model.rest);
     EXPECT_LT((place - Vec3(before == 10 ? 20 : before + 2.5, 5, 15)).norm(), 1e-9);
     before = place[0];
   }
-  ASSERT_EQ(tendon.gaps.size(), 1u) << "the notch alone";
-  EXPECT_EQ(tendon.gaps[0].segment, 4);
+  ASSERT_EQ(tendon.as<CableDrive>()->gaps.size(), 1u) << "the notch alone";
+  EXPECT_EQ(tendon.as<CableDrive>()->gaps[0].segment, 4);
   EXPECT_NEAR(tendon.rest_measure, 30, 1e-12);
 }
 
@@ -172,10 +172,10 @@ TEST(Cable, TakesMeansOfRegionsAndGivenApexes) {
   spec.actuators[0].apexes = {at(15, 5, 2)};
   const Model model = compile(spec);
   const Actuator& tendon = model.actuators[0];
-  EXPECT_LT((tendon.points[0].at(model.rest) - Vec3(0, 5, 10)).norm(), 1e-12);
-  EXPECT_LT((tendon.points[2].at(model.rest) - Vec3(20, 5, 10)).norm(), 1e-12);
+  EXPECT_LT((tendon.as<CableDrive>()->points[0].at(model.rest) - Vec3(0, 5, 10)).norm(), 1e-12);
+  EXPECT_LT((tendon.as<CableDrive>()->points[2].at(model.rest) - Vec3(20, 5, 10)).norm(), 1e-12);
   EXPECT_NEAR(tendon.rest_measure, 2 * std::sqrt(125.0), 1e-12);
-  EXPECT_LT((tendon.gaps[0].apex.at(model.rest) - Vec3(15, 5, 2)).norm(), 1e-12);
+  EXPECT_LT((tendon.as<CableDrive>()->gaps[0].apex.at(model.rest) - Vec3(15, 5, 2)).norm(), 1e-12);
 }
 
 TEST(Cable, AChamberCountsAsOutside) {
@@ -183,8 +183,8 @@ TEST(Cable, AChamberCountsAsOutside) {
   spec.actuators = {chamber("chamber"), cable({at(15, 15, 2), at(15, 15, 10), at(15, 15, 20), at(15, 15, 28)}, 0.9, 1)};
   spec.actuators[1].apexes = {at(10, 15, 15)};
   const Model model = compile(spec);
-  ASSERT_EQ(model.actuators[1].gaps.size(), 1u);
-  EXPECT_EQ(model.actuators[1].gaps[0].segment, 1);
+  ASSERT_EQ(model.actuators[1].as<CableDrive>()->gaps.size(), 1u);
+  EXPECT_EQ(model.actuators[1].as<CableDrive>()->gaps[0].segment, 1);
 }
 
 TEST(Cable, Refusals) {
@@ -341,7 +341,7 @@ TEST(Actuators, ARobotMayBeAllChamber) {
   RobotSpec spec = block_robot(block_mesh({2, 1, 1}, {2, 1, 1}));
   spec.materials.clear();
   spec.actuators.push_back(chamber("body"));
-  EXPECT_EQ(compile(spec).actuators[0].tetrahedra.size(), 12u);
+  EXPECT_EQ(compile(spec).actuators[0].as<ChamberDrive>()->tetrahedra.size(), 12u);
   spec.markers.push_back({"tip", at(2, 0, 0)});
   EXPECT_NE(refusal(spec).find("marker 'tip' needs a body to lie in"), std::string::npos);
 }

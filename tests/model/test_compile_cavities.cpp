@@ -47,7 +47,7 @@ using Face = std::array<Index, 6>;
 /// The faces, each from its smallest corner on.
 std::set<Face> faces_of(const Actuator& actuator) {
   std::set<Face> faces;
-  for (const auto& [corners, edges] : actuator.cavity) {
+  for (const auto& [corners, edges] : actuator.as<ChamberDrive>()->cavity) {
     const auto first = std::min_element(corners.begin(), corners.end()) - corners.begin();
     Face face;
     for (std::size_t i = 0; i < 3; ++i) {
@@ -74,7 +74,7 @@ TEST(Cavity, ASurfaceSelectsTheFacesOfItsSpace) {
       const Actuator& air = model.actuators[0];
       EXPECT_EQ(faces_of(air), faces_of(expected.actuators[0]));
       EXPECT_NEAR(air.rest_measure, 1000, 1e-9);
-      EXPECT_TRUE(air.points.empty() && air.surface.empty());
+      EXPECT_TRUE(air.as<ChamberDrive>()->points.empty() && air.as<ChamberDrive>()->surface.empty());
       EXPECT_TRUE(has_note(model,
                            "The surface of actuator 'air' bounds the empty space of 1000 mm^3 (12 faces) around "
                            "(15, 15, 15) mm, whose own faces take the pressure; it lies up to "));
@@ -85,7 +85,7 @@ TEST(Cavity, ASurfaceSelectsTheFacesOfItsSpace) {
 
 TEST(Cavity, TheOnlySpaceIsFound) {
   const Model model = compile(hollow_robot({}));
-  EXPECT_EQ(model.actuators[0].cavity.size(), 12u);
+  EXPECT_EQ(model.actuators[0].as<ChamberDrive>()->cavity.size(), 12u);
   EXPECT_TRUE(has_note(model, "Actuator 'air' is the only empty space in the body, 1000 mm^3 (12 faces) around (15, "));
   const std::string needs = "robot.yaml:9: actuator 'air' needs a region or a surface, since the body encloses ";
   RobotSpec none = hollow_robot({});
@@ -100,7 +100,7 @@ TEST(Cavity, TheOnlySpaceIsFound) {
       << refusal(two);
   // a surface may have both, and then neither is left
   two.actuators = {bag_of(both(box_surface({10, 10, 10}, {10, 10, 10}), box_surface({30, 10, 10}, {10, 10, 10})))};
-  EXPECT_EQ(compile(two).actuators[0].cavity.size(), 24u);
+  EXPECT_EQ(compile(two).actuators[0].as<ChamberDrive>()->cavity.size(), 24u);
   two.actuators.push_back(bag_of(box_surface({30, 10, 10}, {10, 10, 10}), "bag"));
   EXPECT_NE(refusal(two).find("actuator 'bag' and actuator 'air' both take the empty space of 1000 mm^3"),
             std::string::npos)
@@ -133,7 +133,7 @@ TEST(Cavity, AGroupOfFacesIsItsWall) {
   target.formulation = Formulation::target_shape;
   target.materials[0].shape_ratio = 1;
   target.voids.clear();
-  EXPECT_EQ(compile(target).actuators[0].tetrahedra.size(), 6u);
+  EXPECT_EQ(compile(target).actuators[0].as<ChamberDrive>()->tetrahedra.size(), 6u);
   expect_refused(walled(false),
                  {{"open", [](RobotSpec& s) { s.mesh.regions.back().triangles.pop_back(); },
                    "actuator 'air' has a wall, region 'wall', that bounds no chamber: the surface is not "
@@ -155,9 +155,9 @@ TEST(Cavity, ASurfaceThatSelectsNothingIsEmbedded) {
   spec.voids.push_back(shaped(Box{{20, 10, 10}, {30, 20, 20}}));  // a duct to the outside
   for (Triangle& t : spec.actuators[0].surface->triangles) std::swap(t[0], t[1]);
   const Model model = compile(spec);
-  const Actuator& air = model.actuators[0];
+  const auto& air = *model.actuators[0].as<ChamberDrive>();
   EXPECT_TRUE(air.cavity.empty());
-  EXPECT_NEAR(air.rest_measure, 1000, 1e-9);
+  EXPECT_NEAR(model.actuators[0].rest_measure, 1000, 1e-9);
   EXPECT_EQ(air.surface.size(), 12u * 128);
   for (const auto& [a, b, c] : air.surface)
     for (const auto& [p, q] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})

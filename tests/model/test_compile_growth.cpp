@@ -57,7 +57,7 @@ TEST(CompileGrowth, TakesTheElementsOfItsRegions) {
     spec.actuators = {growing({{"left"}, along("right", {.uniform = {0, 0, 5}})})};
     const Model model = compile(spec);
     ASSERT_EQ(model.growths.size(), 2u);
-    EXPECT_EQ(model.actuators[0].other, 0);
+    EXPECT_EQ(model.actuators[0].as<GrowthDrive>()->growth, 0);
     for (const auto& growth : model.growths) {
       EXPECT_EQ(growth->actuator, 0);
       EXPECT_EQ(2 * growth->tetrahedra.size(), model.tetrahedra.size());
@@ -94,8 +94,7 @@ TEST(CompileGrowth, DirectionsAboutALine) {
   for (const auto& growth : model.growths)
     for (std::size_t i = 0; i < growth->tetrahedra.size(); ++i) {
       Vec3 at = -center;
-      for (const Index v : model.tetrahedra[static_cast<std::size_t>(growth->tetrahedra[i])])
-        at += 0.25 * vertex_at(model.rest, v);
+      for (const Index v : model.tetrahedra[growth->tetrahedra[i]]) at += 0.25 * vertex_at(model.rest, v);
       const Vec3 d = growth->directions[i], out = at - at.dot(axis) / 9 * axis;
       EXPECT_NEAR(d.norm(), 1, 1e-14);
       const bool turned = growth == model.growths[1];
@@ -119,7 +118,7 @@ TEST(CompileGrowth, DirectionsOfTheNearestSample) {
   const Growth& growth = *model.growths.at(0);
   for (std::size_t i = 0; i < growth.tetrahedra.size(); ++i) {
     double x = 0;
-    for (const Index v : model.tetrahedra[static_cast<std::size_t>(growth.tetrahedra[i])]) x += 0.25 * model.rest(v, 0);
+    for (const Index v : model.tetrahedra[growth.tetrahedra[i]]) x += 0.25 * model.rest(v, 0);
     EXPECT_EQ(growth.directions[i], x < 10 ? Vec3(0, 1, 0) : Vec3(0, 0, -1));
   }
   spec.actuators = {growing({along("all", samples)})};

@@ -89,7 +89,7 @@ TEST(CompileMagnetism, CommandsOfOneSource) {
   spec.actuators.push_back(field_command("coil", {"coil", CoilField{{CoilLoop{}}}}, FieldCommand::current));
   const Model model = compile(spec);
   EXPECT_EQ(model.magnetism->sources.size(), 3u);
-  EXPECT_EQ(model.actuators[1].other, model.actuators[2].other);
+  EXPECT_EQ(model.actuators[1].as<MagneticDrive>()->source, model.actuators[2].as<MagneticDrive>()->source);
   EXPECT_EQ(model.rest_actuation()[1], 3);
   const std::vector<std::array<std::string, 3>> names{{"flux density", "mT", "field_mT"},
                                                       {"position", "mm", "x_mm"},

@@ -107,8 +107,9 @@ TEST(Order2, CurvedElementsAndCavitiesHaveTheirVolume) {
   EXPECT_NEAR(sum(model.tetrahedron_volumes), Bend{}.moments(Vec3::Zero(), cube).first - hole, 1e-12);
   EXPECT_NEAR(model.actuators[0].rest_measure, hole, 1e-14);
   const EdgeTable table(spec.mesh);
-  ASSERT_EQ(model.actuators[0].cavity.size(), 12u);
-  for (const CavityFace& face : model.actuators[0].cavity) EXPECT_EQ(face.edges, table.of(face.corners));
+  ASSERT_EQ(model.actuators[0].as<ChamberDrive>()->cavity.size(), 12u);
+  for (const CavityFace& face : model.actuators[0].as<ChamberDrive>()->cavity)
+    EXPECT_EQ(face.edges, table.of(face.corners));
   // the node inside the chamber belongs to no element, and nobody misses it
   EXPECT_TRUE(model.notes.empty());
   EXPECT_EQ(std::count(model.used.begin(), model.used.end(), false), 1);

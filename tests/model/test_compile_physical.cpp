@@ -24,10 +24,10 @@ TEST(Physical, AChamberIsACavityWithoutElements) {
   const Model model = compile(spec);
   EXPECT_EQ(model.formulation, Formulation::physical);
   EXPECT_EQ(model.tetrahedra.size(), 26u * 6);
-  const Actuator& air = model.actuators[0];
+  const auto& air = *model.actuators[0].as<ChamberDrive>();
   EXPECT_TRUE(air.tetrahedra.empty());
   EXPECT_EQ(air.cavity.size(), 12u);
-  EXPECT_NEAR(air.rest_measure, 1000, 1e-9);
+  EXPECT_NEAR(model.actuators[0].rest_measure, 1000, 1e-9);
   for (const Index v : vertices_of(air.cavity)) {
     EXPECT_DOUBLE_EQ((model.rest.row(v).transpose() - Vec3(15, 15, 15)).cwiseAbs().maxCoeff(), 5);
     EXPECT_TRUE(model.used[v]);
@@ -49,7 +49,7 @@ TEST(Physical, ReversedElementsOfAChamberAreTurned) {
   for (const Index i : spec.mesh.regions.back().tetrahedra)
     if (i % 2 == 0) std::swap(spec.mesh.tetrahedra[i][2], spec.mesh.tetrahedra[i][3]);
   const Model model = compile(spec);
-  EXPECT_EQ(model.actuators[0].cavity.size(), 12u);
+  EXPECT_EQ(model.actuators[0].as<ChamberDrive>()->cavity.size(), 12u);
   EXPECT_NEAR(model.actuators[0].rest_measure, 1000, 1e-9);
   EXPECT_TRUE(has_note(model, "3 elements were reordered"));
 }
@@ -65,13 +65,14 @@ RobotSpec against_a_plate() {
 
 TEST(Physical, AHeldPlateClosesAChamber) {
   const Model model = compile(against_a_plate());
-  EXPECT_EQ(model.actuators[0].cavity.size(), 2 * (2 * 16u + 4 * 4));
+  EXPECT_EQ(model.actuators[0].as<ChamberDrive>()->cavity.size(), 2 * (2 * 16u + 4 * 4));
   EXPECT_NEAR(model.actuators[0].rest_measure, 32000, 1e-8);
   EXPECT_TRUE(has_note(model, "9 vertices on the boundary of the chamber of actuator 'air' belong to no element"));
   EXPECT_EQ(model.notes.size(), 1u);
   RobotSpec half = against_a_plate();  // x = 0 a plane of symmetry
   half.fixed = {{named("x_low"), {true, false, false}}, {named("x_high"), {true, true, true}}};
-  EXPECT_EQ(compile(half).actuators[0].cavity.size(), model.actuators[0].cavity.size());
+  EXPECT_EQ(compile(half).actuators[0].as<ChamberDrive>()->cavity.size(),
+            model.actuators[0].as<ChamberDrive>()->cavity.size());
 }
 
 TEST(Physical, AnOpenChamberIsRefused) {
@@ -111,7 +112,7 @@ TEST(Physical, VerticesInsideAChamberAreNoLooseVertices) {
   const Model model = compile(spec);
   EXPECT_TRUE(model.notes.empty());
   EXPECT_NEAR(model.actuators[0].rest_measure, 8000, 1e-9);
-  EXPECT_EQ(model.actuators[0].cavity.size(), 6u * 8);
+  EXPECT_EQ(model.actuators[0].as<ChamberDrive>()->cavity.size(), 6u * 8);
 }
 
 TEST(Physical, ACableHasNoGaps) {
@@ -119,8 +120,8 @@ TEST(Physical, ACableHasNoGaps) {
   spec.actuators.push_back(cable({at(0, 5, 15), at(10, 5, 15), at(30, 5, 15)}, 0.01, 1));
   spec.actuators[0].apexes = {at(15, 5, 2)};
   const Model model = compile(spec);
-  EXPECT_TRUE(model.actuators[0].gaps.empty());
-  EXPECT_EQ(model.actuators[0].points.size(), 3u);
+  EXPECT_TRUE(model.actuators[0].as<CableDrive>()->gaps.empty());
+  EXPECT_EQ(model.actuators[0].as<CableDrive>()->points.size(), 3u);
   EXPECT_NEAR(model.actuators[0].rest_measure, 30, 1e-12);
 }
 
@@ -143,7 +144,7 @@ TEST(Physical, ADeaHasAMaterialAndAnActuator) {
   skin.rest = 1.2;
   spec.actuators.push_back(skin);
   const Model model = compile(spec);
-  EXPECT_EQ(model.actuators[0].prisms.size(), 8u);
+  EXPECT_EQ(model.actuators[0].as<DeaDrive>()->prisms.size(), 8u);
   EXPECT_NEAR(model.actuators[0].rest_measure, 16, 1e-12);
   int actuated = 0;
   for (const ElementRole& role : model.prism_roles) {
@@ -293,12 +294,12 @@ TEST(Physical, ALayerUnderVoltage) {
   const Model model = compile(spec);
   EXPECT_EQ(model.actuators[0].control, Control::load);
   EXPECT_EQ(model.materials[0].permittivity, 3);
-  EXPECT_EQ(model.actuators[0].shares, std::vector<double>(8, 1));
+  EXPECT_EQ(model.actuators[0].as<DeaDrive>()->shares, std::vector<double>(8, 1));
   EXPECT_EQ(model.rest_actuation()[0], 0);
   spec.actuators[0].shares = shares_of({3, 1, 0, 2, 7, 6, 5, 4});
   const Model shared = compile(spec);
-  for (std::size_t i = 0; i < 8; ++i)
-    EXPECT_EQ(shared.actuators[0].shares[i], 0.1 * shared.actuators[0].prisms[i]);  // all of the mesh, in its order
+  const auto& dea = *shared.actuators[0].as<DeaDrive>();
+  for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(dea.shares[i], 0.1 * dea.prisms[i]);  // all of the mesh, in its order
   EXPECT_NE(fingerprint_of(model), fingerprint_of(shared));
   spec.materials[0].permittivity = 4;
   EXPECT_NE(fingerprint_of(shared), fingerprint_of(compile(spec)));

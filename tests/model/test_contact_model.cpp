@@ -116,7 +116,7 @@ TEST(ContactModel, RobotsAreParts) {
   const double whole = 2 * (40 * 20 + 40 * 10 + 20 * 10), end = 2 * 10 * 10 + 2 * 10 * 20 + 20 * 10;
   const double areas[] = {whole, whole - end, end};
   for (Index part = 0; part < 3; ++part) {
-    EXPECT_EQ(contact.parts[static_cast<std::size_t>(part)].robot, part == 0 ? 0 : 1);
+    EXPECT_EQ(contact.parts[part].robot, part == 0 ? 0 : 1);
     double area = 0;
     for (const Triangle& t : triangles_of(contact, part)) {
       area += area_of(model.rest, t);

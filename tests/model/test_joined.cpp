@@ -179,11 +179,13 @@ TEST(Joined, PointsLieInTheirOwnBody) {
       weights[alone.vertices[i] + robot * vertices] -= alone.weights[i];
     for (const auto& [vertex, weight] : weights) EXPECT_NEAR(weight, 0, 1e-9) << vertex << " of robot " << robot;
   };
+  const auto points = [](const Model& model, Index actuator) {
+    return model.actuators[actuator].as<CableDrive>()->points;
+  };
   for (const Index robot : {0, 1}) {
     for (std::size_t m = 0; m < 2; ++m)
       expect_own(both.markers[static_cast<std::size_t>(2 * robot) + m].point, one.markers[m].point, robot);
-    for (std::size_t p = 0; p < 3; ++p)
-      expect_own(both.actuators[static_cast<std::size_t>(robot)].points[p], one.actuators[0].points[p], robot);
+    for (std::size_t p = 0; p < 3; ++p) expect_own(points(both, robot)[p], points(one, 0)[p], robot);
     EXPECT_LT((both.dead_load.middleRows(robot * vertices, vertices) - one.dead_load).norm(), 1e-9);
   }
 }

@@ -96,12 +96,12 @@ TEST(CommandedForce, IsOfTheAxesThatHaveARange) {
   EXPECT_LT((model.dead_load.colwise().sum() - Vec3(0, 2, 0).transpose()).norm(), 1e-12);
   ASSERT_EQ(model.actuators.size(), 2u);
   for (const Actuator& command : model.actuators) {
-    EXPECT_EQ(command.kind, ActuatorKind::force);
+    const auto& force = std::get<ForceCommand>(command.drive);
     EXPECT_FALSE(drives(command));
     double sum = 0, area = 0;
-    for (const double weight : command.points[0].weights) sum += weight;
+    for (const double weight : force.place->weights) sum += weight;
     EXPECT_NEAR(sum, 1, 1e-12);
-    for (const CavityFace& face : command.cavity) {
+    for (const CavityFace& face : force.faces) {
       const Vec3 a = vertex_at(model.rest, face.corners[0]);
       area += (vertex_at(model.rest, face.corners[1]) - a).cross(vertex_at(model.rest, face.corners[2]) - a).norm() / 2;
       EXPECT_NEAR(a.x(), model.rest.col(0).maxCoeff(), 1e-12);

@@ -71,13 +71,13 @@ Mesh two_cubes(const Vec3& offset) {
   const Points second = cube_corners(offset);
   for (Index i = 0; i < 8; ++i)
     for (Index j = 0; j < 8; ++j)
-      if ((second.row(i) - mesh.vertices.row(j)).norm() < 1e-12) corner[static_cast<std::size_t>(i)] = j;
+      if ((second.row(i) - mesh.vertices.row(j)).norm() < 1e-12) corner[i] = j;
   for (Index i = 0; i < 8; ++i) {
-    if (corner[static_cast<std::size_t>(i)] >= 0) continue;
-    corner[static_cast<std::size_t>(i)] = static_cast<Index>(mesh.vertices.rows());
+    if (corner[i] >= 0) continue;
+    corner[i] = static_cast<Index>(mesh.vertices.rows());
     append(mesh, second.row(i));
   }
-  add_cube(mesh, [&](int i) { return corner[static_cast<std::size_t>(i)]; });
+  add_cube(mesh, [&](int i) { return corner[i]; });
   return mesh;
 }
 
@@ -234,10 +234,9 @@ TEST(MeshCheck, DuplicateVerticesAgreeWithBruteForce) {
   Indices expected;
   std::vector<bool> is_twin(static_cast<std::size_t>(count), false);
   for (Index i = 0; i < count; ++i)
-    for (Index j = 0; j < i && !is_twin[static_cast<std::size_t>(i)]; ++j)
-      if (!is_twin[static_cast<std::size_t>(j)] &&
-          (mesh.vertices.row(i) - mesh.vertices.row(j)).norm() < 1e-9 * size.norm()) {
-        is_twin[static_cast<std::size_t>(i)] = true;
+    for (Index j = 0; j < i && !is_twin[i]; ++j)
+      if (!is_twin[j] && (mesh.vertices.row(i) - mesh.vertices.row(j)).norm() < 1e-9 * size.norm()) {
+        is_twin[i] = true;
         expected.push_back(i);
       }
   ASSERT_GT(expected.size(), 100u);

@@ -36,7 +36,7 @@ TEST(Surroundings, OfBodiesAndObstacles) {
     const Vec3 load = model.dead_load.row(v).transpose();
     force += load;
     moment += (vertex_at(model.rest, v) - Vec3(35, 5, 10)).cross(load);
-    EXPECT_FALSE(model.fixed[static_cast<std::size_t>(v)][0]);
+    EXPECT_FALSE(model.fixed[v][0]);
   }
   EXPECT_LT((force - Vec3(0, 0, -10 * cube.mass_kg)).norm(), 1e-15);
   EXPECT_LT(moment.norm(), 1e-14);

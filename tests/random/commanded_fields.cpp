@@ -9,12 +9,12 @@ CommandedFields::CommandedFields(const Model& model, const State& state) {
     of_source.push_back(dipole ? *dipole : DipoleField{});
   }
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
-    const Actuator& actuator = model.actuators[a];
-    if (actuator.kind != ActuatorKind::magnetic) continue;
-    const auto source = static_cast<std::size_t>(actuator.other);
-    const double value = state.actuation[static_cast<Index>(a)];
+    const auto* drive = model.actuators[a].as<MagneticDrive>();
+    if (!drive) continue;
+    const auto source = static_cast<std::size_t>(drive->source);
+    const double value = state.actuation[a];
     const auto* along = std::get_if<UniformField>(&model.magnetism->sources[source].field);
-    switch (static_cast<FieldCommand>(actuator.axis)) {
+    switch (drive->command) {
       case FieldCommand::flux_density:
         uniform += static_cast<Real>(value) * along->direction.cast<Real>();
         break;

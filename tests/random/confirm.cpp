@@ -21,9 +21,10 @@ std::string digits(double value) {
 Points held_places(const Model& model, const State& state) {
   Points places = model.rest + state.share * (model.held - model.rest);
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
-    if (model.actuators[a].kind != ActuatorKind::turn) continue;
-    const SupportTurn& turn = model.turns[static_cast<std::size_t>(model.actuators[a].other)];
-    const double angle = state.share * state.actuation[static_cast<Index>(a)] * std::acos(-1.0) / 180;
+    const auto* command = model.actuators[a].as<TurnCommand>();
+    if (!command) continue;
+    const SupportTurn& turn = model.turns[command->turn];
+    const double angle = state.share * state.actuation[a] * std::acos(-1.0) / 180;
     for (const Index v : turn.vertices) {  // Rodrigues
       const Vec3 arm = model.rest.row(v).transpose() - turn.about;
       const Vec3 turned = std::cos(angle) * arm + std::sin(angle) * turn.axis.cross(arm) +

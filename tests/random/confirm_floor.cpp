@@ -16,7 +16,7 @@ ConfirmedFloor::ConfirmedFloor(const Model& model, const Points& positions)
     : model_(model), of_surface_(model.used.size()), near_(model.used.size()), beside_(model.used.size()) {
   double floor = 0;
   for (std::size_t t = 0; t < model.contact.triangles.size(); ++t) {
-    const bool halfspace = model.contact.parts[static_cast<std::size_t>(model.contact.part_of[t])].halfspace;
+    const bool halfspace = model.contact.parts[model.contact.part_of[t]].halfspace;
     for (const Index v : model.contact.triangles[t]) {
       if (halfspace) floor = model.rest(v, 2);
       of_surface_[v] = of_surface_[v] || !halfspace;
@@ -28,8 +28,8 @@ ConfirmedFloor::ConfirmedFloor(const Model& model, const Points& positions)
   depth_ = -std::numeric_limits<double>::infinity();
   for (std::size_t v = 0; v < near_.size(); ++v) {
     if (!of_surface_[v]) continue;
-    near_[v] = height[static_cast<Index>(v)] < model.contact.distance_mm;
-    depth_ = std::max(depth_, -height[static_cast<Index>(v)]);
+    near_[v] = height[v] < model.contact.distance_mm;
+    depth_ = std::max(depth_, -height[v]);
   }
   for (const auto& [a, b, node] : model.contact.edges)
     if (near_[node]) beside_[a] = beside_[b] = true;

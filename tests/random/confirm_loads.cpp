@@ -16,8 +16,9 @@ void add_tractions(const Model& model, const State& state, Forces& forces) {
     if (!traction.deeper_MPa_mm.isZero(0)) continue;
     Real pressure = static_cast<Real>(state.share) * static_cast<Real>(traction.pressure_MPa);
     for (std::size_t a = 0; a < model.actuators.size(); ++a)
-      if (model.actuators[a].kind == ActuatorKind::pressure && model.actuators[a].other == static_cast<Index>(t))
-        pressure += 1e-3L * static_cast<Real>(state.actuation[static_cast<Index>(a)]);
+      if (const auto* command = model.actuators[a].as<PressureCommand>();
+          command && command->traction == static_cast<Index>(t))
+        pressure += 1e-3L * static_cast<Real>(state.actuation[a]);
     for (const LoadedFace& loaded : traction.faces) {
       const std::vector<Index> nodes = nodes_of(loaded.face);
       for (const TrianglePoint& point : triangle_points(nodes.size())) {
@@ -39,8 +40,7 @@ void add_tractions(const Model& model, const State& state, Forces& forces) {
             (static_cast<Real>(state.share) * normal.norm() * (turn * traction.traction_MPa.cast<Real>()) -
              pressure * normal);
         for (std::size_t i = 0; i < nodes.size(); ++i)
-          forces.add(nodes[i], -static_cast<Real>(point.shape[static_cast<Eigen::Index>(i)]) * force,
-                     sums * rounding_unit * force.norm());
+          forces.add(nodes[i], -static_cast<Real>(point.shape[i]) * force, sums * rounding_unit * force.norm());
       }
     }
   }

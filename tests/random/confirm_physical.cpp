@@ -33,14 +33,15 @@ LayerDrive drive_of(const Model& model, const State& state, const ElementRole& r
   constexpr Real vacuum = 8.8541878128e-6L;  // MPa per (kV/mm)^2
   if (role.actuator < 0) return {};
   const Real command = state.actuation[role.actuator];
-  if (model.actuators[role.actuator].control == Control::ratio) return {command, 0};
-  return {1 + static_cast<Real>(state.share) * (static_cast<Real>(model.actuators[role.actuator].prestretch) - 1),
+  const Actuator& dea = model.actuators[role.actuator];
+  if (dea.control == Control::ratio) return {command, 0};
+  return {1 + static_cast<Real>(state.share) * (static_cast<Real>(dea.as<DeaDrive>()->prestretch) - 1),
           vacuum * static_cast<Real>(model.materials[role.material].permittivity) * command * command};
 }
 
 /// How a tetrahedron or prism has grown in a state, and by which of the growths.
 struct Grown {
-  GrowthDrive drive;
+  ElementGrowth drive;
   Index grower = -1;
 };
 Grown grown(const Model& model, const State& state, bool prism, Index element) {
@@ -182,7 +183,7 @@ EmbeddedPoint vertex(Index v) {
   return {{v}, {1.0}, 0};
 }
 
-Measure length_of(const Actuator& cable, const Points& positions) {
+Measure length_of(const CableDrive& cable, const Points& positions) {
   Measure measure;
   for (const EmbeddedPoint& point : cable.points) (void)measure.add_node(point);
   for (std::size_t i = 0; i + 1 < cable.points.size(); ++i) {
@@ -201,7 +202,7 @@ Measure length_of(const Actuator& cable, const Points& positions) {
 
 /// The same with every segment's slope times its tension over that at the motor, where it rubs: by what its eyelets
 /// remember. memory: of the first of them
-void rub(const Actuator& cable, const Points& positions, const std::vector<double>& eyelets, std::size_t memory,
+void rub(const CableDrive& cable, const Points& positions, const std::vector<double>& eyelets, std::size_t memory,
          double rest_length, Measure& measure) {
   const Real creep = 1e-4L * rest_length;
   const std::size_t count = cable.points.size() - 1;
@@ -275,7 +276,7 @@ void add_face(const std::vector<std::size_t>& nodes, const std::vector<RealVec3>
   });
 }
 
-Measure volume_of(const Actuator& chamber, const Points& positions) {
+Measure volume_of(const ChamberDrive& chamber, const Points& positions) {
   Measure measure;
   std::vector<std::vector<std::size_t>> faces;
   if (!chamber.surface.empty()) {
@@ -300,7 +301,8 @@ Measure volume_of(const Actuator& chamber, const Points& positions) {
 }
 
 Measure measure_of(const Actuator& actuator, const Points& positions) {
-  return actuator.kind == ActuatorKind::cable ? length_of(actuator, positions) : volume_of(actuator, positions);
+  if (const auto* cable = actuator.as<CableDrive>()) return length_of(*cable, positions);
+  return volume_of(std::get<ChamberDrive>(actuator.drive), positions);
 }
 
 /// What a gauge pressure [kPa] leaves a chamber of what is sealed in it, by its law [mm^3]; not finite below a vacuum.
@@ -321,10 +323,10 @@ void check_measure(const Actuator& actuator, const Measure& now, const Measure& 
       out.faults.push_back(name + ": load " + digits(multiplier) + " instead of " + digits(command));
     return;
   }
-  const Real asked =
-      actuator.filling ? filled_volume(*actuator.filling, rest.value, command, multiplier) : command * rest.value;
+  const Filling* filling = filling_of(actuator);
+  const Real asked = filling ? filled_volume(*filling, rest.value, command, multiplier) : command * rest.value;
   const Real allowed = met * std::abs(asked) + sums * (now.rounding + rest.rounding);
-  const bool cable = actuator.kind == ActuatorKind::cable;
+  const bool cable = actuator.is<CableDrive>();
   if (cable && multiplier < 0) out.faults.push_back(name + ": a tension of " + digits(multiplier) + " N");
   const bool slack = cable && multiplier == 0;
   const Real miss = slack ? std::max<Real>(0, now.value - asked) : std::abs(now.value - asked);
@@ -336,7 +338,7 @@ void check_measure(const Actuator& actuator, const Measure& now, const Measure& 
 }
 
 /// Edges that the faces of a cavity do not pass once in each direction: 0 where it is a closed surface with one side.
-int open_edges(const Actuator& chamber) {
+int open_edges(const ChamberDrive& chamber) {
   std::map<std::pair<Index, Index>, int> passes;
   for (const CavityFace& face : chamber.cavity)
     for (int i = 0; i < 3; ++i) {
@@ -354,17 +356,17 @@ void add_actuators(const Model& model, const Equilibrium& found, Forces& forces,
     const Actuator& actuator = model.actuators[a];
     const auto index = static_cast<Index>(a);
     const double multiplier = state.multipliers[index];
-    if (actuator.kind == ActuatorKind::dea || actuator.kind == ActuatorKind::magnetic ||
-        actuator.kind == ActuatorKind::turn || actuator.kind == ActuatorKind::growth ||
-        actuator.kind == ActuatorKind::moment || actuator.kind == ActuatorKind::pressure) {
-      const bool charged = actuator.kind == ActuatorKind::dea && actuator.control == Control::load;
+    if (actuator.is<DeaDrive>() || actuator.is<MagneticDrive>() || actuator.is<TurnCommand>() ||
+        actuator.is<GrowthDrive>() || actuator.is<MomentCommand>() || actuator.is<PressureCommand>()) {
+      const bool charged = actuator.is<DeaDrive>() && actuator.control == Control::load;
       const double expected = charged ? state.actuation[index] : 0;
       if (!(std::abs(multiplier - expected) <= 4 * rounding_unit * std::abs(expected)))
         out.faults.push_back("'" + actuator.name + "' has the multiplier " + digits(multiplier) + " instead of " +
                              digits(expected));
       continue;
     }
-    if (const int open = open_edges(actuator); open > 0)
+    const auto* chamber = actuator.as<ChamberDrive>();
+    if (const int open = chamber ? open_edges(*chamber) : 0; open > 0)
       out.faults.push_back(
           "actuator '" + actuator.name + "': " + std::to_string(open) +
           " edges of its chamber's boundary are open or turned over: its volume depends on the origin");
@@ -372,11 +374,12 @@ void add_actuators(const Model& model, const Equilibrium& found, Forces& forces,
     const Measure rest = measure_of(actuator, model.rest);
     check_measure(actuator, now, rest, state.actuation[index], multiplier, out);
     if (rubs(actuator)) {
-      rub(actuator, state.positions, state.eyelets, memory, static_cast<double>(rest.value), now);
-      memory += actuator.points.size() - 1;
+      const auto& cable = *actuator.as<CableDrive>();
+      rub(cable, state.positions, state.eyelets, memory, static_cast<double>(rest.value), now);
+      memory += cable.points.size() - 1;
     }
     // kPa: 1e-3 N/mm^2, outwards
-    const Real load = actuator.kind == ActuatorKind::cable ? static_cast<Real>(multiplier) : -1e-3L * multiplier;
+    const Real load = actuator.is<CableDrive>() ? static_cast<Real>(multiplier) : -1e-3L * multiplier;
     for (std::size_t i = 0; i < now.nodes.size(); ++i)
       for (std::size_t k = 0; k < now.nodes[i].vertices.size(); ++k) {
         const Real weight = now.nodes[i].weights[k];
@@ -434,7 +437,7 @@ void add_families(const Model& model, const Equilibrium& found, Forces& forces) 
       add(i, nodes.data(), model.edge_nodes.empty() ? 4 : 10);
     }
     for (std::size_t i = 0; i < all.prisms.size(); ++i)
-      add(all.tetrahedra.size() + i, model.prisms[static_cast<std::size_t>(all.prisms[i])].data(), 6);
+      add(all.tetrahedra.size() + i, model.prisms[all.prisms[i]].data(), 6);
   }
 }
 
@@ -505,8 +508,9 @@ RealVec3 moment_on(const Model& model, const RigidRegion& region, const State& s
     if (!std::binary_search(region.vertices.begin(), region.vertices.end(), model.moments[m].vertices[0])) continue;
     sum += static_cast<Real>(state.share) * model.moments[m].moment_Nmm.cast<Real>();
     for (std::size_t a = 0; a < model.actuators.size(); ++a)
-      if (model.actuators[a].kind == ActuatorKind::moment && model.actuators[a].other == static_cast<Index>(m))
-        sum[model.actuators[a].axis] += static_cast<Real>(state.actuation[static_cast<Index>(a)]);
+      if (const auto* command = model.actuators[a].as<MomentCommand>();
+          command && command->moment == static_cast<Index>(m))
+        sum[command->axis] += static_cast<Real>(state.actuation[a]);
   }
   return sum;
 }

@@ -70,9 +70,9 @@ double area(const Shape& p, Index first) {
 }
 
 /// What the actuator of an element controls.
-double measure(ActuatorKind kind, const Shape& p) {
-  if (kind == ActuatorKind::cable) return (row(p, 1) - row(p, 0)).norm();
-  return kind == ActuatorKind::pneumatic ? volume(p) : (area(p, 0) + area(p, 3)) / 2;
+double measure(const Actuator& actuator, const Shape& p) {
+  if (actuator.is<CableDrive>()) return (row(p, 1) - row(p, 0)).norm();
+  return actuator.is<ChamberDrive>() ? volume(p) : (area(p, 0) + area(p, 3)) / 2;
 }
 
 Shape cable_target(const Shape& rest, double ratio) {
@@ -96,9 +96,9 @@ Shape layer_target(const Shape& rest, double ratio) {
 }
 
 /// Target of Eqs. (6) to (8), not yet turned.
-Shape actuated(ActuatorKind kind, const Shape& rest, double ratio) {
-  if (kind == ActuatorKind::cable) return cable_target(rest, ratio);
-  return kind == ActuatorKind::pneumatic ? Shape(std::cbrt(ratio) * rest) : layer_target(rest, ratio);
+Shape actuated(const Actuator& actuator, const Shape& rest, double ratio) {
+  if (actuator.is<CableDrive>()) return cable_target(rest, ratio);
+  return actuator.is<ChamberDrive>() ? Shape(std::cbrt(ratio) * rest) : layer_target(rest, ratio);
 }
 
 /// A third of the squared distances of the corners from their centre, by those from each other.
@@ -134,12 +134,12 @@ struct Elements {
                     const std::vector<std::vector<EmbeddedPoint>>& parts, const std::vector<double>& weights) {
     double sum = 0, shares = 0, now = 0;
     // alike where the mesh must not matter; how many gaps a cable has does not depend on the mesh
-    const bool alike = model.weights == ElementWeights::mesh_independent && actuator.kind != ActuatorKind::cable;
+    const bool alike = model.weights == ElementWeights::mesh_independent && !actuator.is<CableDrive>();
     const auto share = [alike](double measure) { return alike ? 1 : measure; };
     std::vector<double> at_rest, ratios;
     for (const auto& nodes : parts) {
-      at_rest.push_back(measure(actuator.kind, shape_at(nodes, model.rest)));
-      const double current = measure(actuator.kind, shape_at(nodes, positions));
+      at_rest.push_back(measure(actuator, shape_at(nodes, model.rest)));
+      const double current = measure(actuator, shape_at(nodes, positions));
       ratios.push_back(current / at_rest.back());
       sum += at_rest.back();
       shares += share(at_rest.back()) * at_rest.back();
@@ -155,7 +155,7 @@ struct Elements {
                           : now > 0 ? ratios[i] * asked / now
                                     : even;
       Element element{parts[i], centred(shape_at(parts[i], positions)),
-                      actuated(actuator.kind, centred(shape_at(parts[i], model.rest)), std::max(least_ratio, free))};
+                      actuated(actuator, centred(shape_at(parts[i], model.rest)), std::max(least_ratio, free))};
       element.weight = weight_of(model, shape_at(parts[i], model.rest), actuator.weight * weights[i]);
       all.push_back(std::move(element));
     }
@@ -173,6 +173,13 @@ double mean_body_volume(const Model& model) {
   return count > 0 ? sum / count : 1;
 }
 
+/// What an actuator is; empty: it is of another kind.
+template <class Kind>
+Kind part_of(const Actuator& actuator) {
+  const auto* is = actuator.as<Kind>();
+  return is ? *is : Kind{};
+}
+
 Elements elements_of(const Model& model, const Equilibrium& found) {
   const Points& positions = found.state.positions;
   Elements elements;
@@ -186,22 +193,23 @@ Elements elements_of(const Model& model, const Equilibrium& found) {
     const Actuator& actuator = model.actuators[a];
     std::vector<std::vector<EmbeddedPoint>> parts;
     std::vector<double> weights;
-    for (const CableGap& gap : actuator.gaps) {
-      parts.push_back({actuator.points[gap.segment], actuator.points[gap.segment + 1], gap.apex});
+    const auto cable = part_of<CableDrive>(actuator);
+    for (const CableGap& gap : cable.gaps) {
+      parts.push_back({cable.points[gap.segment], cable.points[gap.segment + 1], gap.apex});
       const double edge =
           std::sqrt(3 * squared_size(shape_at(parts.back(), model.rest)));  // of as large an equilateral one
       weights.push_back(model.weights == ElementWeights::printed ? mean_body_volume(model)
                                                                  : edge * edge * edge / (6 * std::sqrt(2.0)));
     }
-    for (const Index e : actuator.tetrahedra) {
+    for (const Index e : part_of<ChamberDrive>(actuator).tetrahedra) {
       parts.push_back(vertices(model.tetrahedra[e]));
       weights.push_back(model.tetrahedron_volumes[e]);
     }
-    for (const Index e : actuator.prisms) {
+    for (const Index e : part_of<DeaDrive>(actuator).prisms) {
       parts.push_back(vertices(model.prisms[e]));
       weights.push_back(model.prism_volumes[e]);
     }
-    elements.add_actuator(model, positions, actuator, found.state.actuation[static_cast<Index>(a)], parts, weights);
+    elements.add_actuator(model, positions, actuator, found.state.actuation[a], parts, weights);
   }
   return elements;
 }
@@ -285,7 +293,7 @@ void check_held(const Model& model, const State& state, Confirmation& out) {
   if (!(worst <= 1e-9 * model.diagonal_mm + 64 * epsilon * far))
     out.faults.push_back("a held vertex is " + digits(worst) + " mm from its place");
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
-    if (state.multipliers.size() > 0 && state.multipliers[static_cast<Index>(a)] != 0)
+    if (state.multipliers.size() > 0 && state.multipliers[a] != 0)
       out.faults.push_back("'" + model.actuators[a].name + "' has a multiplier, and target shapes know no loads");
   worst = 0;
   for (const RigidRegion& region : model.rigid)

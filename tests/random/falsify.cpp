@@ -44,12 +44,11 @@ std::vector<Lie> lies_about(const Model& model, const Equilibrium& truth) {
     if (model.actuators[a].control == Control::load) {
       lies.push_back({"another load", truth});
       lies.back().answer.state.multipliers[a] += 1e-6 * (1 + std::abs(truth.state.multipliers[a]));
-    } else if (model.actuators[a].filling && model.actuators[a].filling->gives_way() &&
-               !model.actuators[a].filling->liquid) {
+    } else if (const Filling* filling = filling_of(model.actuators[a]);
+               filling && filling->gives_way() && !filling->liquid) {
       lies.push_back({"another pressure of a gas", truth});
-      lies.back().answer.state.multipliers[a] +=
-          1e-5 * (1e3 * model.actuators[a].filling->atmosphere_MPa + truth.state.multipliers[a]);
-    } else if (model.actuators[a].kind == ActuatorKind::cable && model.formulation == Formulation::physical) {
+      lies.back().answer.state.multipliers[a] += 1e-5 * (1e3 * filling->atmosphere_MPa + truth.state.multipliers[a]);
+    } else if (model.actuators[a].is<CableDrive>() && model.formulation == Formulation::physical) {
       lies.push_back({"a cable that pushes", truth});
       lies.back().answer.state.multipliers[a] = -1e-6;
     }

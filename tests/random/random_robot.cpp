@@ -218,7 +218,7 @@ void make_commands(Making& m) {
   const int count = m.draw.chance(0.2) ? 2 : 1;
   for (int i = 0; i < count; ++i) {
     Actuation command(static_cast<Index>(actuators.size()));
-    for (std::size_t a = 0; a < actuators.size(); ++a) command[static_cast<Index>(a)] = random_command(m, actuators[a]);
+    for (std::size_t a = 0; a < actuators.size(); ++a) command[a] = random_command(m, actuators[a]);
     if (m.is(Oddity::commands) && m.draw.chance(0.05)) command.conservativeResize(command.size() + 1);
     m.made.commands.push_back(std::move(command));
   }

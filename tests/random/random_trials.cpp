@@ -185,7 +185,7 @@ double chamber_mL(const Mesh& mesh, const ActuatorSpec& spec) {
   for (const Region& region : mesh.regions) {
     if (!spec.region || region.name != *spec.region) continue;
     for (const Index e : region.tetrahedra) {
-      const Tetrahedron& t = mesh.tetrahedra[static_cast<std::size_t>(e)];
+      const Tetrahedron& t = mesh.tetrahedra[e];
       if (*std::min_element(t.begin(), t.end()) < 0 || *std::max_element(t.begin(), t.end()) >= mesh.vertices.rows())
         return 0;
       const Vec3 a = corner(t[0]);
@@ -222,8 +222,7 @@ void make_sealed(Making& m) {
     spec.high = command(spec.high);
     spec.filling = filling;
     for (Actuation& actuation : m.made.commands)
-      if (static_cast<Index>(a) < actuation.size())
-        actuation[static_cast<Index>(a)] = command(actuation[static_cast<Index>(a)]);
+      if (static_cast<Index>(a) < actuation.size()) actuation[a] = command(actuation[a]);
   }
 }
 

@@ -240,7 +240,7 @@ std::vector<ParentPoint> prism_points() {
         const Real l = i == q ? 2.0L / 3 : 1.0L / 6, x = i == 0 ? -1 : i == 1 ? 1 : 0, y = i == 0 ? -1 : i == 2 ? 1 : 0;
         point.slope.row(i) << x * (1 - z) / 2, y * (1 - z) / 2, -l / 2;
         point.slope.row(i + 3) << x * (1 + z) / 2, y * (1 + z) / 2, l / 2;
-        point.shape[static_cast<std::size_t>(i)] = l * (1 - z) / 2;
+        point.shape[i] = l * (1 - z) / 2;
         point.shape[static_cast<std::size_t>(i) + 3] = l * (1 + z) / 2;
       }
       points.push_back(point);
@@ -269,7 +269,7 @@ RealMat3 inverse_stretch(const RealPoints& rest, Real ratio) {
 }  // namespace
 
 ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealPoints& current, const LayerDrive& drive,
-                      const BranchDrive& viscous, const GrowthDrive& growth) {
+                      const BranchDrive& viscous, const ElementGrowth& growth) {
   constexpr Real ulp = std::numeric_limits<double>::epsilon();
   const Eigen::Index count = rest.rows();
   const auto nodes = static_cast<std::size_t>(count);
@@ -372,7 +372,7 @@ ElementPulls family_pulls_of(const RealPoints& rest, const RealPoints& current, 
 }
 
 PressurePulls pressure_pulls_of(const RealPoints& rest, const RealPoints& current, const std::array<Real, 4>& pressures,
-                                Real bulk, Real shear, const GrowthDrive& growth) {
+                                Real bulk, Real shear, const ElementGrowth& growth) {
   constexpr Real ulp = std::numeric_limits<double>::epsilon();
   const Eigen::Index count = rest.rows();
   const auto nodes = static_cast<std::size_t>(count);
@@ -407,9 +407,9 @@ PressurePulls pressure_pulls_of(const RealPoints& rest, const RealPoints& curren
     }
     for (Eigen::Index a = 0; a < count; ++a) {
       const Real own = volume * slope.row(a).norm() * std::abs(p);
-      out.pulls.force[static_cast<std::size_t>(a)] += volume * p * (cofactor * slope.row(a).transpose());
-      out.pulls.stiffness[static_cast<std::size_t>(a)] += own * 2 * f.norm() * all;
-      out.pulls.rounding[static_cast<std::size_t>(a)] += own * f.norm() * (f.norm() + 2 * all * size) * ulp;
+      out.pulls.force[a] += volume * p * (cofactor * slope.row(a).transpose());
+      out.pulls.stiffness[a] += own * 2 * f.norm() * all;
+      out.pulls.rounding[a] += own * f.norm() * (f.norm() + 2 * all * size) * ulp;
     }
   }
   Real mean = 0;
@@ -439,8 +439,7 @@ ElementPulls magnetic_pulls_of(const RealPoints& rest, const RealPoints& current
     const RealMat3 gradient = (current.rowwise() - current.row(0)).transpose() * slope;
     const SignedValues values(gradient);
     RealVec3 at = RealVec3::Zero();
-    for (Eigen::Index a = 0; a < count; ++a)
-      at += point.shape[static_cast<std::size_t>(a)] * current.row(a).transpose();
+    for (Eigen::Index a = 0; a < count; ++a) at += point.shape[a] * current.row(a).transpose();
     const RealFlux field = flux(at);
     const RealVec3 pull = field.slope.transpose() * ((turns ? values.rotation() : gradient) * remanence);
     RealMat3 by_gradient = field.value * remanence.transpose();

@@ -36,7 +36,7 @@ struct LayerDrive {
 };
 
 /// How an element has grown: stretches along a direction of unit length and across it.
-struct GrowthDrive {
+struct ElementGrowth {
   Real along = 1, across = 1;
   RealVec3 direction = RealVec3::UnitX();
 
@@ -53,14 +53,14 @@ struct BranchDrive {
   double elapsed_s = 0;
   RealPoints begun{};    // nodes of the element in that rest
   Real begun_ratio = 1;  // active stretch there
-  GrowthDrive begun_growth{};
+  ElementGrowth begun_growth{};
 };
 
 /// rest, current: nodes of a tetrahedron of order 1 (4) or 2 (10: corners, then edges 01, 12, 02, 03, 13, 23) or of a
 /// prism (6).
 [[nodiscard]] ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealPoints& current,
                                     const LayerDrive& drive, const BranchDrive& viscous,
-                                    const GrowthDrive& growth = {});
+                                    const ElementGrowth& growth = {});
 
 /// What a mixed element's pressures at its corners [MPa; tension is positive] do to its nodes, and what their equations
 /// miss: the integral of L_i (J - 1 - p / bulk), less what smooths them on linear tetrahedra (docs/formulations.md).
@@ -73,7 +73,7 @@ struct PressurePulls {
 /// bulk: what the pressures stand for [MPa]; shear: shear modulus at small strain [MPa]
 [[nodiscard]] PressurePulls pressure_pulls_of(const RealPoints& rest, const RealPoints& current,
                                               const std::array<Real, 4>& pressures, Real bulk, Real shear,
-                                              const GrowthDrive& growth = {});
+                                              const ElementGrowth& growth = {});
 
 /// A family of fibres: its constants, and the unit vector that it runs along.
 struct FibreDrive {

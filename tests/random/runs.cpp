@@ -4,6 +4,7 @@
 #include <cstdio>
 #include <softkin/core/error.hpp>
 #include <softkin/model/families.hpp>
+#include <softkin/model/names.hpp>
 
 #include "random/confirm.hpp"
 #include "random/generator.hpp"
@@ -76,9 +77,9 @@ void describe(const RandomCase& robot, const Model& model) {
     if (m.families)
       std::printf("  material %s: %zu families of fibres\n", m.region.c_str(), m.families->families.size());
   for (const Actuator& a : model.actuators)
-    std::printf("  actuator %s: kind %d, %s, %g to %g, measure at rest %g\n", a.name.c_str(), static_cast<int>(a.kind),
+    std::printf("  actuator %s: %s, %s, %g to %g, measure at rest %g\n", a.name.c_str(), kind_name(a),
                 a.control == Control::load ? "load"
-                : a.filling                ? "filling"
+                : filling_of(a)            ? "filling"
                                            : "ratio",
                 a.low, a.high, a.rest_measure);
   for (const RigidRegion& r : model.rigid) std::printf("  rigid: %zu vertices\n", r.vertices.size());

@@ -110,7 +110,7 @@ namespace {
 std::pair<int, std::uint64_t> quantile(const std::vector<std::pair<int, std::uint64_t>>& sorted, double share) {
   if (sorted.empty()) return {};
   const double place = std::ceil(share * static_cast<double>(sorted.size())) - 1;
-  return sorted[static_cast<std::size_t>(std::max(0.0, place))];
+  return sorted[std::max(0.0, place)];
 }
 
 }  // namespace

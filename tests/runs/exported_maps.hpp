@@ -29,7 +29,7 @@ inline std::vector<Eigen::VectorXd> commands_of(const KinematicMap& map, bool fl
   const auto add = [&](const auto& share_of) {
     Eigen::VectorXd& row = rows.emplace_back(map.inputs());
     for (Index i = 0; i < map.inputs(); ++i) {
-      const MapInput& input = map.data().inputs[static_cast<std::size_t>(i)];
+      const MapInput& input = map.data().inputs[i];
       const double at = share_of(i);
       row[i] = at == 1 ? input.high : input.low + at * (input.high - input.low);
       if (floats) row[i] = static_cast<float>(row[i]);

@@ -56,9 +56,8 @@ inline MapData outline(const std::string& name, const std::vector<MapInput>& inp
 }
 
 inline Eigen::VectorXd limits(const MapData& data, const std::vector<Index>& inputs, double MapInput::*which) {
-  return Eigen::VectorXd::NullaryExpr(static_cast<Index>(inputs.size()), [&](Index j) {
-    return data.inputs[static_cast<std::size_t>(inputs[static_cast<std::size_t>(j)])].*which;
-  });
+  return Eigen::VectorXd::NullaryExpr(static_cast<Index>(inputs.size()),
+                                      [&](Index j) { return data.inputs[inputs[j]].*which; });
 }
 
 /// An arm of constant curvature that three chambers bend: 6 outputs.
@@ -161,17 +160,17 @@ inline MapData cable_map(bool tied = false, double askew = 0) {
     piece.taut = {(bits & 1) != 0, (bits & 2) != 0};
     piece.inputs = {0};
     for (Index c = 0; c < 2; ++c)
-      if (piece.taut[static_cast<std::size_t>(c)] && (c == 0 || !tied)) piece.inputs.push_back(c + 1);
+      if (piece.taut[c] && (c == 0 || !tied)) piece.inputs.push_back(c + 1);
     const auto commands_of = [inputs = piece.inputs](const Eigen::VectorXd& of_piece) {
       Eigen::Vector3d commands(0, 1, 0.9);
-      for (std::size_t j = 0; j < inputs.size(); ++j) commands[inputs[j]] = of_piece[static_cast<Index>(j)];
+      for (std::size_t j = 0; j < inputs.size(); ++j) commands[inputs[j]] = of_piece[j];
       return commands;
     };
     const Function outputs = [=, taut = piece.taut](const Eigen::VectorXd& of_piece) {
       const Eigen::Vector3d commands = commands_of(of_piece);
       Eigen::VectorXd values = TwoCables().outputs(commands[0], commands.tail<2>(), taut);
       for (const Index c : {0, 1})
-        if (!taut[static_cast<std::size_t>(c)]) values[4 + 2 * c] += askew;
+        if (!taut[c]) values[4 + 2 * c] += askew;
       return values;
     };
     const Function amplitudes = [=](const Eigen::VectorXd& of_piece) -> Eigen::VectorXd {
@@ -191,8 +190,8 @@ inline MapData askew_map() {
   MapData data = cable_map(false, askew);
   data.name = "askew";
   for (const MapCable& cable : data.cables) {
-    data.outputs[static_cast<std::size_t>(cable.tension)].accuracy = 1.2 * askew / 0.02;
-    data.outputs[static_cast<std::size_t>(cable.ratio)].accuracy = 0;
+    data.outputs[cable.tension].accuracy = 1.2 * askew / 0.02;
+    data.outputs[cable.ratio].accuracy = 0;
   }
   return data;
 }
@@ -202,7 +201,7 @@ inline MapData ending_map() {
   MapData data = cable_map();
   data.name = "ends";
   data.pieces.resize(1);
-  for (const MapCable& cable : data.cables) data.outputs[static_cast<std::size_t>(cable.tension)].accuracy = 8;
+  for (const MapCable& cable : data.cables) data.outputs[cable.tension].accuracy = 8;
   return data;
 }
 

@@ -11,12 +11,12 @@ namespace {
 Actuator two_chambers() {
   Actuator actuator;
   actuator.name = "air";
-  actuator.kind = ActuatorKind::pneumatic;
   actuator.control = Control::filling;
   actuator.rest_measure = 5000;
-  actuator.connected = {{"left", 12}, {"right", 24}};
-  actuator.filling =
-      Filling{.pushed = true, .atmosphere_MPa = 0.1, .dead_mm3 = 1000, .syringe_mm3 = 4000, .chamber_mm3 = 5000};
+  actuator.drive = ChamberDrive{
+      .filling =
+          Filling{.pushed = true, .atmosphere_MPa = 0.1, .dead_mm3 = 1000, .syringe_mm3 = 4000, .chamber_mm3 = 5000},
+      .connected = {{"left", 12}, {"right", 24}}};
   return actuator;
 }
 
@@ -36,8 +36,9 @@ TEST(ChamberJson, VolumesAndAmountsThere) {
   read_chamber(air, json, read);
   EXPECT_EQ(read.volumes_mL, record.volumes_mL);
   Actuator amount = air;
-  amount.filling->pushed = false;
-  amount.filling->syringe_mm3 = 0;
+  Filling& filling = *std::get<ChamberDrive>(amount.drive).filling;
+  filling.pushed = false;
+  filling.syringe_mm3 = 0;
   EXPECT_DOUBLE_EQ(chamber_json(amount, record).at("amount_mL"), (6.5 + 1) * 1.25);
 }
 
@@ -48,7 +49,7 @@ TEST(ChamberJson, WhatIsNotKnownIsNull) {
   EXPECT_TRUE(json.at("volume_mL").is_null());
   EXPECT_TRUE(json.at("volumes_mL").at("right").is_null());
   Actuator by_volume;
-  by_volume.kind = ActuatorKind::pneumatic;
+  by_volume.drive = ChamberDrive{};
   EXPECT_TRUE(chamber_json(by_volume, record = {1.2, 1.2}).empty()) << "nothing of others";
 }
 

@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <softkin/runs/records.hpp>
+#include <softkin/runs/findings.hpp>
 
 #include "small_runs.hpp"
 
@@ -9,8 +9,6 @@
 
 namespace softkin::runs {
 namespace {
-
-using Kind = Finding::Kind;
 
 /// A block of so many MPa that is driven by a pressure [kPa].
 Model pressed_block(const std::string& modulus) {
@@ -31,9 +29,10 @@ StepRecord at_pressure(const Model& model, double pressure_kPa) {
   return step_record(model, found, deformation_of(model, found.state.positions));
 }
 
-const Finding* find(const std::vector<Finding>& all, Kind kind) {
+template <class Kind>
+const Kind* find(const std::vector<Finding>& all) {
   for (const Finding& each : all)
-    if (each.kind == kind) return &each;
+    if (const auto* is = std::get_if<Kind>(&each)) return is;
   return nullptr;
 }
 
@@ -42,13 +41,13 @@ TEST(Findings, NothingMovesWhereTheModulusIsInPascal) {
   const StepRecord unmoved = at_pressure(wrong, 50), moved = at_pressure(right, 50);
   const std::vector<Finding> of_unmoved = findings(wrong, unmoved), of_moved = findings(right, moved),
                              of_rest = findings(wrong, at_pressure(wrong, 0));
-  const Finding* motionless = find(of_unmoved, Kind::motionless);
+  const auto* motionless = find<finding::Motionless>(of_unmoved);
   ASSERT_NE(motionless, nullptr);
-  EXPECT_EQ(motionless->values.at(0), unmoved.largest_displacement_mm);
+  EXPECT_EQ(motionless->largest_mm, unmoved.largest_displacement_mm);
   // linear: a millionth of what moves at a millionth of the modulus, but for the large strains there
   EXPECT_NEAR(unmoved.largest_displacement_mm / (1e-6 * moved.largest_displacement_mm), 1, 0.3);
-  EXPECT_EQ(find(of_moved, Kind::motionless), nullptr);
-  EXPECT_EQ(find(of_rest, Kind::motionless), nullptr);  // nothing was asked for
+  EXPECT_EQ(find<finding::Motionless>(of_moved), nullptr);
+  EXPECT_EQ(find<finding::Motionless>(of_rest), nullptr);  // nothing was asked for
   const auto doubted = [](const Model& model) {
     return std::any_of(model.warnings.begin(), model.warnings.end(), [](const std::string& warning) {
       return warning.find("taken as Pa it would be 0.6 MPa") != std::string::npos;
@@ -61,17 +60,18 @@ TEST(Findings, NothingMovesWhereTheModulusIsInPascal) {
 TEST(Findings, WhatStrainsAndMovesBeyondAnyRobotIsTold) {
   const Model model = pressed_block("0.6");
   StepRecord record = at_pressure(model, 20);
-  const auto has = [&](Kind kind) { return find(findings(model, record), kind) != nullptr; };
-  EXPECT_FALSE(has(Kind::far_strained) || has(Kind::far_moved) || has(Kind::self_overlap));
+  const std::vector<Finding> usual = findings(model, record);
+  EXPECT_FALSE(find<finding::FarStrained>(usual) || find<finding::FarMoved>(usual) || find<SelfOverlap>(usual));
   record.strain.greatest = 6.42;
   record.largest_displacement_mm = 3.1 * model.diagonal_mm;
   record.self_overlap = {7, 0.25, {1, 2, 3}};
   const std::vector<Finding> found = findings(model, record);
-  ASSERT_TRUE(find(found, Kind::far_strained) && find(found, Kind::far_moved) && find(found, Kind::self_overlap));
-  EXPECT_EQ(find(found, Kind::far_strained)->values, std::vector<double>{6.42});
-  EXPECT_EQ(find(found, Kind::far_moved)->values,
-            (std::vector<double>{record.largest_displacement_mm, model.diagonal_mm}));
-  EXPECT_EQ(find(found, Kind::self_overlap)->values, (std::vector<double>{7, 0.25, 1, 2, 3}));
+  ASSERT_TRUE(find<finding::FarStrained>(found) && find<finding::FarMoved>(found) && find<SelfOverlap>(found));
+  EXPECT_EQ(find<finding::FarStrained>(found)->greatest, 6.42);
+  EXPECT_EQ(find<finding::FarMoved>(found)->largest_mm, record.largest_displacement_mm);
+  EXPECT_EQ(find<finding::FarMoved>(found)->diagonal_mm, model.diagonal_mm);
+  EXPECT_EQ(find<SelfOverlap>(found)->points, 7u);
+  EXPECT_EQ(find<SelfOverlap>(found)->where, Vec3(1, 2, 3));
 }
 
 }  // namespace

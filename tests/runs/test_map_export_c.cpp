@@ -88,7 +88,7 @@ Found next_found(ProgramOutput& answers, Index inputs) {
 void expect_true(const Exported& map, Found found, const Eigen::Vector3d& target) {
   Eigen::VectorXd values(map.map.outputs());
   for (Index i = 0; i < map.map.inputs(); ++i) {  // bounds in float may be just outside
-    const MapInput& input = map.data.inputs[static_cast<std::size_t>(i)];
+    const MapInput& input = map.data.inputs[i];
     if (map.floats) found.commands[i] = std::clamp(found.commands[i], input.low, input.high);
   }
   ASSERT_TRUE(map.map.evaluate(found.commands.data(), values.data())) << map.data.name;
@@ -106,7 +106,7 @@ double nearest_of_grid(const KinematicMap& map, const Eigen::Vector3d& target) {
   Eigen::VectorXd commands(inputs), values(map.outputs());
   for (int n = 0, count = static_cast<int>(std::pow(steps + 1, inputs) + 0.5); n < count; ++n) {
     for (int i = 0, rest = n; i < inputs; ++i, rest /= steps + 1) {
-      const MapInput& input = map.data().inputs[static_cast<std::size_t>(i)];
+      const MapInput& input = map.data().inputs[i];
       commands[i] = std::min(input.high, input.low + (input.high - input.low) * (rest % (steps + 1)) / steps);
     }
     if (map.evaluate(commands.data(), values.data())) nearest = std::min(nearest, (values.head<3>() - target).norm());
@@ -133,7 +133,7 @@ void compare_values(const Exported& map, const Eigen::VectorXd& values, const ma
   for (Index q = 0; q < outputs; ++q) {
     const double off = std::abs(found[q] - values[q]);
     tally.worst = std::max(tally.worst, off / std::max(1.0, std::abs(values[q])));
-    if (map.data.outputs[static_cast<std::size_t>(q)].unit == "mm") tally.worst_mm = std::max(tally.worst_mm, off);
+    if (map.data.outputs[q].unit == "mm") tally.worst_mm = std::max(tally.worst_mm, off);
   }
   for (Index q = 0; q < outputs; ++q) {
     const Eigen::VectorXd row = answers.next(inputs);
@@ -160,7 +160,7 @@ void compare_ik(const Exported& map, const Eigen::VectorXd& commands, const Eige
   expect_true(map, beside, target + Eigen::Vector3d(0.1, 0, 0));
   bool amid = inputs > 3;  // more than coordinates, and far from all bounds
   for (Index i = 0; i < inputs; ++i) {
-    const MapInput& input = map.data.inputs[static_cast<std::size_t>(i)];
+    const MapInput& input = map.data.inputs[i];
     amid = amid && std::abs((2 * commands[i] - input.low - input.high) / (input.high - input.low)) < 0.7;
   }
   if (!amid) return;
@@ -179,7 +179,7 @@ void compare_estimate(const Exported& map, const Eigen::VectorXd& commands, cons
   Eigen::VectorXd begin = commands, readings = values;
   std::vector<MapUnknown> unknowns;
   for (Index i = 1; i < inputs; ++i) {
-    const MapInput& input = map.data.inputs[static_cast<std::size_t>(i)];
+    const MapInput& input = map.data.inputs[i];
     unknowns.push_back({i, (input.low + input.high) / 2, (input.high - input.low) / 2});
     begin[i] = unknowns.back().mean;
   }

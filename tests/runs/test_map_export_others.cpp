@@ -52,8 +52,7 @@ Told told_by(const std::string& program, const std::filesystem::path& exported, 
 void expect_close(const Told& found, const Eigen::Ref<const Eigen::VectorXd>& wanted, double tolerance) {
   ASSERT_EQ(found.size(), static_cast<std::size_t>(wanted.size()));
   for (Index i = 0; i < static_cast<Index>(wanted.size()); ++i)
-    EXPECT_NEAR(found[static_cast<std::size_t>(i)].get<double>(), wanted[i],
-                tolerance * std::max(1.0, std::abs(wanted[i])));
+    EXPECT_NEAR(found[i].get<double>(), wanted[i], tolerance * std::max(1.0, std::abs(wanted[i])));
 }
 
 void expect_shape(const Told& found, const KinematicMap& map, const Eigen::VectorXd& commands,
@@ -62,8 +61,7 @@ void expect_shape(const Told& found, const KinematicMap& map, const Eigen::Vecto
   const Points points = map.shape(commands.data(), place);
   ASSERT_EQ(found.size(), static_cast<std::size_t>(points.size()));
   for (Index v = 0; v < points.rows(); ++v)
-    for (Index k = 0; k < 3; ++k)
-      EXPECT_NEAR(found[static_cast<std::size_t>(3 * v + k)].get<double>(), points(v, k), 1e-4) << "vertex " << v;
+    for (Index k = 0; k < 3; ++k) EXPECT_NEAR(found[3 * v + k].get<double>(), points(v, k), 1e-4) << "vertex " << v;
 }
 
 /// How many of the commands are inside; calls compare with what the map says of those.
@@ -122,8 +120,7 @@ void compare_module(const MapData& data) {
   int reached = 0, reached_far = 0;
   const int inside =
       compare_all(map, commands, told["answers"], [&](const Told& answer, const auto& values, const auto& slopes) {
-        for (Index q = 0; q < map.outputs(); ++q)
-          expect_close(answer["jacobian"][static_cast<std::size_t>(q)], slopes.col(q), 1e-9);
+        for (Index q = 0; q < map.outputs(); ++q) expect_close(answer["jacobian"][q], slopes.col(q), 1e-9);
         expect_ik(map, answer["near"], values.template head<3>(), reached);
         expect_ik(map, answer["far"], 4 * values.template head<3>(), reached_far);
       });

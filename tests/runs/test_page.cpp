@@ -116,7 +116,7 @@ TEST(Page, SurfaceIsClosedAndOutward) {
     // a vertex of the surface comes before those that only the cable needs
     std::vector<bool> of_surface(static_cast<std::size_t>(rest.rows()));
     for (const Triangle& t : triangles)
-      for (const Index v : t) of_surface[static_cast<std::size_t>(v)] = true;
+      for (const Index v : t) of_surface[v] = true;
     EXPECT_TRUE(std::is_partitioned(of_surface.begin(), of_surface.end(), [](bool is) { return is; }));
     EXPECT_EQ(triangles.size(), order == 1 ? 120u : 480u);  // 6 x 9 + 6 squares
     const auto regions = unpacked<std::uint16_t>(surface.at("region").at("u16").get<std::string>());
@@ -145,7 +145,7 @@ TEST(Page, StepsHaveTheShapeOfTheVtu) {
     ASSERT_EQ(static_cast<std::size_t>(shown.rows()), document.vertices().size());
     const double rounding = std::sqrt(3) * 14 / 65535 / 2;  // the block reaches 13.44 mm along x, less across it
     for (Index i = 0; i < static_cast<Index>(shown.rows()); ++i)
-      EXPECT_LT((shown.row(i) - written.row(document.vertices()[static_cast<std::size_t>(i)])).norm(), rounding + 1e-5);
+      EXPECT_LT((shown.row(i) - written.row(document.vertices()[i])).norm(), rounding + 1e-5);
     EXPECT_EQ(step.at("status"), "not converged");
     EXPECT_EQ(step.at("remark"), record.remark);
     EXPECT_EQ(step.at("loads"), PageJson::parse("[2.5]"));
@@ -168,13 +168,13 @@ TEST(Page, CablesAreWhereTheyAreInTheModel) {
   const PageJson page = page_of(model, document);
   const Points shown = points_of(page.at("steps").at(0).at("positions"));
   const PageJson& points = page.at("cables").at(0).at("points");
-  ASSERT_EQ(points.size(), model.actuators[0].points.size());
+  ASSERT_EQ(points.size(), model.actuators[0].as<CableDrive>()->points.size());
   for (std::size_t i = 0; i < points.size(); ++i) {
     Vec3 at = Vec3::Zero();
     for (std::size_t k = 0; k < points[i].at("vertices").size(); ++k)
       at += points[i].at("weights").at(k).get<double>() *
             shown.row(points[i].at("vertices").at(k).get<Index>()).transpose();
-    EXPECT_LT((at - model.actuators[0].points[i].at(positions)).norm(), 2e-4);
+    EXPECT_LT((at - model.actuators[0].as<CableDrive>()->points[i].at(positions)).norm(), 2e-4);
   }
 }
 
@@ -282,7 +282,7 @@ TEST(Page, MapBendsTheVerticesOfThePage) {
     ASSERT_TRUE(place);
     const Points wanted = map.shape(commands.data(), *place);
     // the amplitudes that small_maps.hpp made the map of; bits: the piece's taut cables
-    const auto& taut = data.pieces[static_cast<std::size_t>(place->piece)].taut;
+    const auto& taut = data.pieces[place->piece].taut;
     const double bits = (taut[0] ? 1 : 0) + (taut[1] ? 2 : 0);
     Eigen::Vector3d amounts = commands;
     if (!taut[0]) amounts[1] = 1;
@@ -291,8 +291,7 @@ TEST(Page, MapBendsTheVerticesOfThePage) {
     for (std::size_t i = 0; i < document.vertices().size(); ++i)
       for (std::size_t k = 0; k < 3; ++k) {
         double at = static_cast<double>(mean[3 * i + k]);
-        for (std::size_t m = 0; m < units.size(); ++m)
-          at += units[m] * amplitudes[static_cast<Index>(m)] * modes[m * numbers + 3 * i + k];
+        for (std::size_t m = 0; m < units.size(); ++m) at += units[m] * amplitudes[m] * modes[m * numbers + 3 * i + k];
         EXPECT_NEAR(at, wanted(document.vertices()[i], static_cast<Index>(k)), 1e-4);
       }
   }

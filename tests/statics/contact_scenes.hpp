@@ -100,8 +100,8 @@ inline double push_of_gap(double z) {
   for (const auto& [a, b, node] : model.contact.edges)
     height[node] = 4 * positions(node, 2) / 3 - (positions(a, 2) + positions(b, 2)) / 6;
   for (std::size_t i = 0; i < vertices.size(); ++i)
-    push[static_cast<Index>(i)] = push_of_gap(height[vertices[i]] / model.contact.distance_mm) *
-                                  model.contact.modulus_MPa * model.contact.area[vertices[i]];
+    push[i] = push_of_gap(height[vertices[i]] / model.contact.distance_mm) * model.contact.modulus_MPa *
+              model.contact.area[vertices[i]];
   return push;
 }
 

@@ -63,9 +63,7 @@ inline Pillow pillow(const Sheet& sheet) {
   made.mesh.vertices.resize(static_cast<Index>(points.size()), 3);
   for (std::size_t v = 0; v < points.size(); ++v) made.mesh.vertices.row(static_cast<Index>(v)) = points[v].transpose();
   made.mesh.triangles = sheet.triangles;
-  for (const Triangle& t : sheet.triangles)
-    made.mesh.triangles.push_back({below[static_cast<std::size_t>(t[0])], below[static_cast<std::size_t>(t[2])],
-                                   below[static_cast<std::size_t>(t[1])]});
+  for (const Triangle& t : sheet.triangles) made.mesh.triangles.push_back({below[t[0]], below[t[2]], below[t[1]]});
   return made;
 }
 

@@ -43,7 +43,7 @@ class ReferenceTable {
   [[nodiscard]] double at(std::size_t row, const std::string& column) const {
     const auto found = std::find(columns_.begin(), columns_.end(), column);
     if (found == columns_.end()) throw InvalidInput("no column " + column);
-    return rows_.at(row).at(static_cast<std::size_t>(found - columns_.begin()));
+    return rows_.at(row).at(found - columns_.begin());
   }
   [[nodiscard]] Vec3 point(std::size_t row, const std::string& name) const {
     return {at(row, name + "_x"), at(row, name + "_y"), at(row, name + "_z")};

@@ -51,16 +51,16 @@ struct Steps {
 
   [[nodiscard]] double of(const Actuator& actuator) const {
     if (actuator.control == Control::ratio) return ratio;
-    return actuator.kind == ActuatorKind::cable ? tension : pressure;
+    return actuator.is<CableDrive>() ? tension : pressure;
   }
 };
 
 /// The difference that there is: one-sided at a command from which only one direction has the same cables taut.
 inline Difference difference_by(const Model& model, const Statics& statics, const State& at, Index actuator,
                                 double step) {
-  const Actuator& a = model.actuators[static_cast<std::size_t>(actuator)];
+  const Actuator& a = model.actuators[actuator];
   const double command = at.actuation[actuator];
-  if (model.formulation == Formulation::physical && a.kind == ActuatorKind::cable) {
+  if (model.formulation == Formulation::physical && a.is<CableDrive>()) {
     if (a.control == Control::load && command < 3 * step) return one_sided(statics, at, actuator, step);
     if (a.control == Control::ratio && at.multipliers[actuator] < 1e-6) return one_sided(statics, at, actuator, -step);
   }
@@ -74,7 +74,7 @@ inline void expect_differences(const Model& model, const Statics& statics, const
   EXPECT_TRUE(found.regular);
   for (Index a = 0; a < at.actuation.size(); ++a) {
     SCOPED_TRACE("actuator " + std::to_string(a) + " at " + std::to_string(at.actuation[a]));
-    const double step = steps.of(model.actuators[static_cast<std::size_t>(a)]);
+    const double step = steps.of(model.actuators[a]);
     const Difference expected = difference_by(model, statics, at.state, a, step);
     EXPECT_GT(expected.positions.cwiseAbs().maxCoeff(), 0);
     EXPECT_LT(off_by(found.positions[a], expected.positions), tolerance);

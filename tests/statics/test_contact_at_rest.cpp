@@ -17,7 +17,7 @@ Mesh drawn(const std::vector<std::string>& rows, double width = 10) {
     Vec3 middle = Vec3::Zero();
     for (const Index v : t) middle += vertex_at(mesh.vertices, v) / 4;
     const auto row = static_cast<std::size_t>(cells[1] - 1 - static_cast<int>(middle.y() / 10));
-    return rows[row][static_cast<std::size_t>(middle.x() / width)] == ' ';
+    return rows[row][middle.x() / width] == ' ';
   });
   return mesh;
 }

@@ -83,7 +83,7 @@ TEST(ContactCrossings, ExamplesAndScenesOfTheDocuments) {
     Actuation actuation = model.rest_actuation();
     for (std::size_t a = 0; a < model.actuators.size(); ++a)
       if (const auto found = pose.commands.find(model.actuators[a].name); found != pose.commands.end())
-        actuation[static_cast<Index>(a)] = found->second;
+        actuation[a] = found->second;
     const Statics statics(model);
     const Equilibrium found = statics.solve(actuation, statics.rest());
     EXPECT_EQ(found.report.status, Status::converged) << found.report.remark;

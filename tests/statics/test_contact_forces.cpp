@@ -59,7 +59,7 @@ Touched touched(const RobotSpec& spec) {
 }
 
 const std::string& name_of_part(const Touched& shape, Index part) {
-  return shape.model.contact.parts[static_cast<std::size_t>(part)].name;
+  return shape.model.contact.parts[part].name;
 }
 
 }  // namespace
@@ -91,7 +91,7 @@ TEST(ContactForces, ABlockOnAFloorPressesWithItsLoadOverItsArea) {
     EXPECT_NEAR(floor.pressure_kPa, pressure, 0.02 * pressure);
     for (Index v = 0; v < shape.model.rest.rows(); ++v) {  // rim, corners and nodes in the middle of edges alike
       const bool below = v < robot.rows() && shape.model.rest(v, 2) == 0;
-      EXPECT_NEAR(shape.contacts.pressure_kPa[static_cast<std::size_t>(v)], below ? pressure : 0, 0.02 * pressure)
+      EXPECT_NEAR(shape.contacts.pressure_kPa[v], below ? pressure : 0, 0.02 * pressure)
           << shape.model.rest.row(v) << (quadratic ? " order 2" : "");
     }
   }
@@ -150,8 +150,7 @@ TEST(ContactForces, WhatPushesBetweenVerticesIsSpreadOverTheirArea) {
   for (const auto& [x, y] : {std::pair(0, 0), std::pair(12, 0), std::pair(0, 12), std::pair(12, 12)}) {
     const double area = x == y ? 48 : 24;
     for (Index v = 0; v < shape.model.robot_vertices(); ++v)
-      if (shape.model.rest.row(v).transpose() == Vec3(x, y, 0))
-        borne += 1e-3 * shape.contacts.pressure_kPa[static_cast<std::size_t>(v)] * area;
+      if (shape.model.rest.row(v).transpose() == Vec3(x, y, 0)) borne += 1e-3 * shape.contacts.pressure_kPa[v] * area;
   }
   EXPECT_NEAR(borne, load, 0.03 * load);
 }
@@ -210,7 +209,7 @@ TEST(ContactForces, OfAPartWithItselfCountOnce) {
   // both sides bear it
   double low = 0, high = 0;
   for (Index v = 0; v < shape.model.rest.rows(); ++v)
-    (shape.model.rest(v, 2) < 8.2 ? low : high) += shape.contacts.pressure_kPa[static_cast<std::size_t>(v)];
+    (shape.model.rest(v, 2) < 8.2 ? low : high) += shape.contacts.pressure_kPa[v];
   EXPECT_GT(low, 0);
   EXPECT_NEAR(low / high, 1, 0.5);
 }

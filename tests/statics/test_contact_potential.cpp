@@ -209,8 +209,7 @@ TEST(ContactPotential, GradientAndStiffnessAreDerivatives) {
       sample.potential->stiffness(at, term, false, block);
       for (int i = 0; i < 4; ++i)
         for (int j = 0; j < 4; ++j)
-          stiffness.block<3, 3>(3 * term.nodes[static_cast<std::size_t>(i)],
-                                3 * term.nodes[static_cast<std::size_t>(j)]) += block.block<3, 3>(3 * i, 3 * j);
+          stiffness.block<3, 3>(3 * term.nodes[i], 3 * term.nodes[j]) += block.block<3, 3>(3 * i, 3 * j);
     }
     constexpr double step = 1e-6;
     for (Index k = 0; k < n; ++k) {

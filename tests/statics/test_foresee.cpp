@@ -50,8 +50,7 @@ TEST(Foresee, IsOfSecondOrder) {
       const Points expected = Statics(model).solve(to, from.state, tight()).state.positions;
       const Sensitivity slopes = statics.sensitivity(from.state, tight());
       Points tangent = from.state.positions;
-      for (Index a = 0; a < c.way.size(); ++a)
-        tangent += share * c.way[a] * slopes.positions[static_cast<std::size_t>(a)];
+      for (Index a = 0; a < c.way.size(); ++a) tangent += share * c.way[a] * slopes.positions[a];
       const double error = distance(foreseen(statics, from, to), expected);
       EXPECT_LT(error, 0.3 * distance(tangent, expected)) << c.name << " " << share;
       if (before > 0) {

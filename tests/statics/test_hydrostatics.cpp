@@ -38,12 +38,12 @@ double wet_volume(const std::array<Vec3, 4>& corners, double level, int depth) {
   if (high <= level) return volume;
   // exact where one corner is alone on its side, by similar tetrahedra
   std::vector<int> below, above;
-  for (int i = 0; i < 4; ++i) (corners[static_cast<std::size_t>(i)].z() < level ? below : above).push_back(i);
+  for (int i = 0; i < 4; ++i) (corners[i].z() < level ? below : above).push_back(i);
   const auto cap = [&](int tip, const std::vector<int>& others) {
     double share = 1;
     for (const int other : others) {
-      const double z = corners[static_cast<std::size_t>(tip)].z();
-      share *= (level - z) / (corners[static_cast<std::size_t>(other)].z() - z);
+      const double z = corners[tip].z();
+      share *= (level - z) / (corners[other].z() - z);
     }
     return share * volume;
   };
@@ -54,15 +54,13 @@ double wet_volume(const std::array<Vec3, 4>& corners, double level, int depth) {
   double longest = 0;
   for (int i = 0; i < 4; ++i)
     for (int j = 0; j < i; ++j)
-      if (const double length = (corners[static_cast<std::size_t>(i)] - corners[static_cast<std::size_t>(j)]).norm();
-          length > longest) {
+      if (const double length = (corners[i] - corners[j]).norm(); length > longest) {
         longest = length;
         from = i;
         to = j;
       }
   auto one = corners, two = corners;
-  one[static_cast<std::size_t>(to)] = two[static_cast<std::size_t>(from)] =
-      0.5 * (corners[static_cast<std::size_t>(from)] + corners[static_cast<std::size_t>(to)]);
+  one[to] = two[from] = 0.5 * (corners[from] + corners[to]);
   return wet_volume(one, level, depth - 1) + wet_volume(two, level, depth - 1);
 }
 
@@ -75,8 +73,8 @@ double wet_volume(const Model& model, std::size_t element, const Points& positio
       const Eigen::Vector4d& l = corners[c];
       at[c].setZero();
       for (Eigen::Index i = 0; i < 4; ++i)
-        at[c] += l[i] * (model.edge_nodes.empty() ? 1 : 2 * l[i] - 1) *
-                 vertex_at(positions, model.tetrahedra[element][static_cast<std::size_t>(i)]);
+        at[c] +=
+            l[i] * (model.edge_nodes.empty() ? 1 : 2 * l[i] - 1) * vertex_at(positions, model.tetrahedra[element][i]);
       for (std::size_t i = 0; i < 6 && !model.edge_nodes.empty(); ++i)
         at[c] += 4 * l[tetrahedron_edges[i][0]] * l[tetrahedron_edges[i][1]] *
                  vertex_at(positions, model.edge_nodes[element][i]);
@@ -100,7 +98,7 @@ double wet_volume(const Model& model, std::size_t element, const Points& positio
 
 double wet_volume(const Model& model, const Points& positions, double level) {
   std::array<Eigen::Vector4d, 4> whole;
-  for (Eigen::Index i = 0; i < 4; ++i) whole[static_cast<std::size_t>(i)] = Eigen::Vector4d::Unit(i);
+  for (Eigen::Index i = 0; i < 4; ++i) whole[i] = Eigen::Vector4d::Unit(i);
   double sum = 0;
   for (std::size_t e = 0; e < model.tetrahedra.size(); ++e)
     sum += wet_volume(model, e, positions, whole, level, model.edge_nodes.empty() ? 0 : 9);

@@ -84,8 +84,8 @@ struct MagneticSample {
 Actuation commands(const Model& model, const std::string& of, double value) {
   Actuation actuation = model.rest_actuation();
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
-    if (model.actuators[a].name.starts_with(of) && !places_dipole(static_cast<FieldCommand>(model.actuators[a].axis)))
-      actuation[static_cast<Index>(a)] = value + 0.3 * value * static_cast<double>(a);
+    if (model.actuators[a].name.starts_with(of) && !places_dipole(model.actuators[a].as<MagneticDrive>()->command))
+      actuation[a] = value + 0.3 * value * static_cast<double>(a);
   return actuation;
 }
 
@@ -211,8 +211,7 @@ TEST(Magnets, CommandForcesAreTheSlopesByTheCommands) {
       low.actuation[a] -= 1e-3;
       const Points slope = (sample.gradient(high, sample.positions) - sample.gradient(low, sample.positions)) / 2e-3;
       EXPECT_GT(exact.norm(), 1e-9) << a;
-      EXPECT_LT((slope - exact).norm(), 1e-6 * exact.norm())
-          << sample.model.actuators[static_cast<std::size_t>(a)].name;
+      EXPECT_LT((slope - exact).norm(), 1e-6 * exact.norm()) << sample.model.actuators[a].name;
     }
   }
 }
@@ -311,8 +310,7 @@ TEST(MagneticRobots, SensitivitiesAreTheSlopesOfSolves) {
         sides[side] = statics.solve(changed, found.state, tight(1e-12)).state.positions;
       }
       const Points slope = (sides[0] - sides[1]) / (2 * reach);
-      EXPECT_LT((slope - exact.positions[static_cast<std::size_t>(a)]).norm(), 1e-5 * slope.norm())
-          << model.actuators[static_cast<std::size_t>(a)].name;
+      EXPECT_LT((slope - exact.positions[a]).norm(), 1e-5 * slope.norm()) << model.actuators[a].name;
     }
   }
 }

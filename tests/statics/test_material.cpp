@@ -198,8 +198,7 @@ TEST(Material, NewtonAndAlgorithmOneAgreeForMeshIndependentWeights) {
       return statics.solve(moved, newton.state, options).state.positions;
     };
     const Points difference = (at(step) - at(-step)) / (2 * step);
-    EXPECT_LT((difference - slopes.positions[static_cast<std::size_t>(a)]).cwiseAbs().maxCoeff(),
-              1e-4 * difference.cwiseAbs().maxCoeff())
+    EXPECT_LT((difference - slopes.positions[a]).cwiseAbs().maxCoeff(), 1e-4 * difference.cwiseAbs().maxCoeff())
         << "actuator " << a;
   }
 }

@@ -49,7 +49,7 @@ TEST(Measure, AHomogeneousDeformationIsFoundInACurvedElement) {
   const Vec3 stretches = Eigen::JacobiSVD<Mat3>(f).singularValues();
   ASSERT_EQ(found.strain.size(), 1u);
   EXPECT_NEAR(found.volume_ratio[0], f.determinant(), 1e-12);
-  for (int i = 0; i < 3; ++i) EXPECT_NEAR(found.strain[0][static_cast<std::size_t>(i)], stretches[i] - 1, 1e-12);
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(found.strain[0][i], stretches[i] - 1, 1e-12);
 }
 
 /// x -> x + bend with quadratic terms, which an element of order 2 represents exactly, and its gradient.
@@ -104,15 +104,15 @@ TEST(Measure, AnElementThatFoldsAtACornerIsInverted) {
 TEST(Measure, AChamberOfOrderTwoIsMeasuredByItsBoundary) {
   Model model = quadratic_element(0.05);
   Actuator air;
+  auto& chamber = air.drive.emplace<ChamberDrive>();
   const Tetrahedron& t = model.tetrahedra[0];
   for (const auto& corners : tetrahedron_faces) {
     CavityFace face;
     for (std::size_t i = 0; i < 3; ++i) {
-      face.corners[i] = t[static_cast<std::size_t>(corners[i])];
-      face.edges[i] = edge_node(t, model.edge_nodes[0], t[static_cast<std::size_t>(corners[i])],
-                                t[static_cast<std::size_t>(corners[(i + 1) % 3])]);
+      face.corners[i] = t[corners[i]];
+      face.edges[i] = edge_node(t, model.edge_nodes[0], t[corners[i]], t[corners[(i + 1) % 3]]);
     }
-    air.cavity.push_back(face);
+    chamber.cavity.push_back(face);
   }
   air.rest_measure = model.tetrahedron_volumes[0];
   EXPECT_NEAR(achieved_ratio(model, air, model.rest), 1, 1e-12);
@@ -126,8 +126,9 @@ TEST(Measure, AChamberOfOrderTwoIsMeasuredByItsBoundary) {
 TEST(Measure, ASurfaceIsMeasuredByItself) {
   const Model model = quadratic_element(0);
   Actuator air;
-  for (const Index v : {0, 1, 2, 3}) air.points.push_back({{v}, {1}, 0});
-  for (const auto& [a, b, c] : tetrahedron_faces) air.surface.push_back({a, b, c});
+  auto& chamber = air.drive.emplace<ChamberDrive>();
+  for (const Index v : {0, 1, 2, 3}) chamber.points.push_back({{v}, {1}, 0});
+  for (const auto& [a, b, c] : tetrahedron_faces) chamber.surface.push_back({a, b, c});
   air.rest_measure = 17;  // of elements that fill it only roughly
   EXPECT_NEAR(achieved_ratio(model, air, model.rest), 1, 1e-12);
   EXPECT_NEAR(achieved_ratio(model, air, 1.5 * model.rest), 1.5 * 1.5 * 1.5, 1e-12);

@@ -107,9 +107,9 @@ TEST(MixedElements, NegativePivotsAreThoseOfTheShape) {
       sample.system.gather(sample.at, sample.balance, sample.work, sample.team);
       sample.system.multiply(sample.at, Eigen::MatrixXd::Identity(size, size), sample.work, whole, sample.team);
       std::vector<bool> scalar(static_cast<std::size_t>(size));
-      for (const Index u : sample.system.freedoms().scalar_unknowns()) scalar[static_cast<std::size_t>(u)] = true;
+      for (const Index u : sample.system.freedoms().scalar_unknowns()) scalar[u] = true;
       std::vector<Index> moves, own;
-      for (Index u = 0; u < size; ++u) (scalar[static_cast<std::size_t>(u)] ? own : moves).push_back(u);
+      for (Index u = 0; u < size; ++u) (scalar[u] ? own : moves).push_back(u);
       const Eigen::MatrixXd across = whole(moves, own);
       const Eigen::MatrixXd shape = whole(moves, moves) - across * whole(own, own).ldlt().solve(across.transpose());
       const Eigen::VectorXd values = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(shape).eigenvalues();
@@ -156,13 +156,13 @@ double inf_sup(int cells, bool quadratic, bool smoothed) {
   for (Index p = 0; p < count; ++p) places(system.pressures()->first + p, 0) = static_cast<double>(p);
   Eigen::VectorXd reduced(size);
   system.freedoms().reduce(places, at.positions, reduced);
-  for (Index i = 0; i < count; ++i) place[static_cast<std::size_t>(reduced[own[static_cast<std::size_t>(i)]])] = i;
+  for (Index i = 0; i < count; ++i) place[reduced[own[i]]] = i;
   Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(count, count);
   for (std::size_t e = 0; e < model.tetrahedra.size(); ++e)
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t j = 0; j < 4; ++j)
-        mass(place[static_cast<std::size_t>(system.pressures()->of[e][i] - system.pressures()->first)],
-             place[static_cast<std::size_t>(system.pressures()->of[e][j] - system.pressures()->first)]) +=
+        mass(place[system.pressures()->of[e][i] - system.pressures()->first],
+             place[system.pressures()->of[e][j] - system.pressures()->first]) +=
             model.tetrahedron_volumes[e] * (i == j ? 0.1 : 0.05);
   const Eigen::VectorXd values = Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(schur, mass).eigenvalues();
   EXPECT_NEAR(values[0], 0, 1e-6) << "of the constant pressure, which nothing answers";

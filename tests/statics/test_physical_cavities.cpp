@@ -133,7 +133,7 @@ TEST(PhysicalCavities, AnEmbeddedSurfaceIsFineEnough) {
     spec.actuators[0].region.reset();
     const TriangleSurface box = box_surface({4, 4, 8}, {22, 4, 4}), fine = cut(box, 0.4);
     spec.actuators[0].surface = box;
-    EXPECT_LT(3 * compile(spec).actuators[0].surface.size(), fine.triangles.size());
+    EXPECT_LT(3 * compile(spec).actuators[0].as<ChamberDrive>()->surface.size(), fine.triangles.size());
     const double pressure = pressure_at(spec, 1.3);
     spec.actuators[0].surface = fine;
     EXPECT_NEAR(pressure_at(spec, 1.3), pressure, 2e-3 * pressure) << "order " << (quadratic ? 2 : 1);

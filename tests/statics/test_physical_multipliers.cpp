@@ -27,7 +27,7 @@ void expect_slopes(const RobotSpec& spec, const Actuation& actuation) {
   const Statics statics(model);
   const Equilibrium found = settled(statics, actuation);
   for (Index a = 0; a < actuation.size(); ++a) {
-    const bool cable = model.actuators[a].kind == ActuatorKind::cable;
+    const bool cable = model.actuators[a].is<CableDrive>();
     const double force = cable ? -found.state.multipliers[a] : 1e-3 * found.state.multipliers[a];  // kPa to MPa
     EXPECT_GT(std::abs(force), 1e-4);
     EXPECT_NEAR(force, energy_slope(model, statics, found, a), 1e-5 * std::abs(force)) << "actuator " << a;

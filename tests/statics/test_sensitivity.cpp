@@ -113,7 +113,7 @@ TEST(Sensitivity, ForcesAtPlacesOfTheRobot) {
     EXPECT_EQ(model.actuators[3].name, "poke_fz");
     EXPECT_EQ(model.actuators[3].rest, -0.1);
     EXPECT_EQ(model.actuators[5].name, "tip_fz");
-    EXPECT_FALSE(model.actuators[5].cavity.empty());
+    EXPECT_FALSE(model.actuators[5].as<ForceCommand>()->faces.empty());
     const Statics statics(model);
     for (const Actuation& commands : {model.rest_actuation(), values({1.2, 0.3, -0.2, 0.5, 0.1, -0.3})})
       expect_differences(model, statics, settled(statics, commands), 1e-6, {5e-4, 1e-3, 1e-2});

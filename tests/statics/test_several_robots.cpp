@@ -134,7 +134,7 @@ RobotSpec two_robots(const StackedBlocks& blocks) {
 const Reaction& reaction_named(const Model& model, const std::vector<Reaction>& all, const std::string& name) {
   const auto found = std::find_if(model.supports.begin(), model.supports.end(),
                                   [&](const Support& support) { return support.name == name; });
-  return all[static_cast<std::size_t>(found - model.supports.begin())];
+  return all[found - model.supports.begin()];
 }
 
 }  // namespace

@@ -82,9 +82,7 @@ PairForces pair_of(const Model& model, const Statics& statics, const Equilibrium
                    const std::string& b) {
   const ElementDeformation measured = statics.measured(found.state);
   for (const PairForces& pair : measured.contacts->pairs)
-    if (model.contact.parts[static_cast<std::size_t>(pair.a)].name == a &&
-        model.contact.parts[static_cast<std::size_t>(pair.b)].name == b)
-      return pair;
+    if (model.contact.parts[pair.a].name == a && model.contact.parts[pair.b].name == b) return pair;
   ADD_FAILURE() << a << " and " << b << " do not touch";
   return {};
 }
@@ -110,7 +108,8 @@ TEST(SheetContact, PlatesBearThePressureOfWhatLiesOnThem) {
     EXPECT_NEAR(above.force.z(), -above.normal_N, 1e-9 * above.normal_N);
     EXPECT_NEAR(below.normal_N, above.normal_N, 1e-4 * above.normal_N);
     EXPECT_NEAR(above.pressure_kPa, pressure_kPa, 0.02 * pressure_kPa);
-    EXPECT_NEAR(enclosed_volume(found.state.positions, model.actuators[0].cavity), known.volume, 0.03 * known.volume);
+    EXPECT_NEAR(enclosed_volume(found.state.positions, model.actuators[0].as<ChamberDrive>()->cavity), known.volume,
+                0.03 * known.volume);
     EXPECT_GT(above.gap_mm, 0);
   }
 }
@@ -125,7 +124,7 @@ TEST(SheetContact, WhatIsPressedFollowsTheRateOfForceWithThePlate) {
   const Equilibrium found = statics.solve(commands, before.state, {}, {});
   ASSERT_EQ(found.report.status, Status::converged);
   const auto volume = [&](const Equilibrium& at) {
-    return enclosed_volume(at.state.positions, model.actuators[0].cavity);
+    return enclosed_volume(at.state.positions, model.actuators[0].as<ChamberDrive>()->cavity);
   };
   // film that hardly stretches keeps no energy: what the plate does, the gas gets
   const double mean = (pair_of(model, statics, before, "robot", "above").normal_N +
@@ -191,9 +190,9 @@ TEST(SheetContact, PillowsThatPressEachOtherAreFlatAsOnAPlate) {
   EXPECT_GT(on_plate.normal_N, 5);
   EXPECT_NEAR(between.normal_N, on_plate.normal_N, 0.01 * on_plate.normal_N);
   for (std::size_t a = 0; a < 2; ++a)
-    EXPECT_NEAR(enclosed_volume(found.state.positions, model.actuators[a].cavity),
-                enclosed_volume(like.state.positions, alone.actuators[0].cavity),
-                0.002 * enclosed_volume(like.state.positions, alone.actuators[0].cavity));
+    EXPECT_NEAR(enclosed_volume(found.state.positions, model.actuators[a].as<ChamberDrive>()->cavity),
+                enclosed_volume(like.state.positions, alone.actuators[0].as<ChamberDrive>()->cavity),
+                0.002 * enclosed_volume(like.state.positions, alone.actuators[0].as<ChamberDrive>()->cavity));
 }
 
 TEST(SheetContact, AFilmOnABodyLiftsWhatLiesOnIt) {

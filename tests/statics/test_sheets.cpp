@@ -44,19 +44,19 @@ TEST(Sheets, DiscsBecomeMylarBalloons) {
   EXPECT_NEAR(known.height, 0.9139, 1e-4);
   const Pillow made = pillow(disc(radius, 10));
   const Model model = compile(film_robot(made));
-  ASSERT_TRUE(model.actuators[0].flat);
+  ASSERT_TRUE(flat_at_rest(model.actuators[0]));
   const Statics statics(model);
   const Equilibrium found = settled(statics, Actuation::Constant(1, 1.0));
   EXPECT_EQ(found.report.unstable_modes, 0);
   EXPECT_NEAR(across(made, found.state.positions), known.height * radius, 0.02 * known.height * radius);
-  const double volume = enclosed_volume(found.state.positions, model.actuators[0].cavity);
+  const double volume = enclosed_volume(found.state.positions, model.actuators[0].as<ChamberDrive>()->cavity);
   EXPECT_NEAR(volume, known.volume * std::pow(radius, 3), 0.02 * volume);
   EXPECT_NEAR(achieved_ratio(model, model.actuators[0], found.state.positions), volume / 1000, 1e-9 * volume);  // mL
   // the pressure does work: more of it is nearly the same shape, found from there
   const Equilibrium more = statics.solve(Actuation::Constant(1, 2.0), found.state, {}, {});
   EXPECT_EQ(more.report.status, Status::converged);
   EXPECT_LT(more.report.iterations, 30);
-  EXPECT_GT(enclosed_volume(more.state.positions, model.actuators[0].cavity), volume);
+  EXPECT_GT(enclosed_volume(more.state.positions, model.actuators[0].as<ChamberDrive>()->cavity), volume);
 }
 
 TEST(Sheets, WithoutLoadsTheyLieAsTheyWereCut) {
@@ -71,7 +71,7 @@ TEST(Sheets, GasOfABagFollowsBoyle) {
   const Model model = compile(film_robot(made, Control::filling, 2000));
   constexpr double amount_mL = 1300, atmosphere_kPa = 101.325;
   const Equilibrium found = settled(Statics(model), Actuation::Constant(1, amount_mL));
-  const double volume_mL = enclosed_volume(found.state.positions, model.actuators[0].cavity) / 1000;
+  const double volume_mL = enclosed_volume(found.state.positions, model.actuators[0].as<ChamberDrive>()->cavity) / 1000;
   EXPECT_GT(found.state.multipliers[0], 1);
   EXPECT_NEAR((found.state.multipliers[0] + atmosphere_kPa) * volume_mL, atmosphere_kPa * amount_mL,
               1e-6 * atmosphere_kPa * amount_mL);

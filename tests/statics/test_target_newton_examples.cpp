@@ -74,7 +74,7 @@ TEST_P(NewtonExample, FromRestToEveryCornerOfTheRangesInOneCall) {
   for (unsigned corner = 0; corner < 1u << count; ++corner) {
     Actuation actuation(static_cast<Index>(count));
     for (std::size_t a = 0; a < count; ++a)
-      actuation[static_cast<Index>(a)] = corner >> a & 1 ? model_.actuators[a].high : model_.actuators[a].low;
+      actuation[a] = corner >> a & 1 ? model_.actuators[a].high : model_.actuators[a].low;
     expect_solved(actuation);
   }
 }
@@ -84,8 +84,7 @@ TEST_P(NewtonExample, FromRestToValuesInside) {
   for (int round = 0; round < 4; ++round) {
     Actuation actuation = model_.rest_actuation();
     for (std::size_t a = 0; a < model_.actuators.size(); ++a)
-      actuation[static_cast<Index>(a)] =
-          std::uniform_real_distribution<double>(model_.actuators[a].low, model_.actuators[a].high)(engine);
+      actuation[a] = std::uniform_real_distribution<double>(model_.actuators[a].low, model_.actuators[a].high)(engine);
     const Equilibrium found = expect_solved(actuation);
     if (round > 0) continue;
     StaticsOptions options;

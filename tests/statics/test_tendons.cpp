@@ -48,7 +48,7 @@ double wrapped(const std::vector<Vec3>& points) {
 
 double wrapped(const Actuator& actuator, const Points& positions) {
   std::vector<Vec3> points;
-  for (const EmbeddedPoint& point : actuator.points) points.push_back(point.at(positions));
+  for (const EmbeddedPoint& point : actuator.as<CableDrive>()->points) points.push_back(point.at(positions));
   return wrapped(points);
 }
 

@@ -270,7 +270,7 @@ void expect_derivatives(const RobotSpec& spec, double shake, const Vec3& move, d
       const double part = 1e-5 * std::max(1e-2, std::abs(more.actuation[a]));
       more.actuation[a] += part;
       less.actuation[a] -= part;
-      const bool moves = sample.model.actuators[a].kind == ActuatorKind::motion;
+      const bool moves = sample.model.actuators[a].is<MotionCommand>();
       if (!moves)
         expect_near(slope, (sample.gradient(t, more) - sample.gradient(t, less)) / (2 * part), 1e-5,
                     what + ": by " + sample.model.actuators[a].name);

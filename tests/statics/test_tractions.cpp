@@ -136,7 +136,7 @@ TEST(Tractions, TheSupportBearsThem) {
   for (const LoadedFace& loaded : model.tractions[0].faces) {
     TriangleNodes nodes;
     const std::vector<Index> of = nodes_of(loaded.face);
-    for (int i = 0; i < 6; ++i) nodes.row(i) = found.state.positions.row(of[static_cast<std::size_t>(i)]);
+    for (int i = 0; i < 6; ++i) nodes.row(i) = found.state.positions.row(of[i]);
     for (const TrianglePoint& p : triangle_rule())
       expected -= 5e-5 * p.weight * Vec3(nodes.transpose() * p.along_u).cross(Vec3(nodes.transpose() * p.along_v));
   }

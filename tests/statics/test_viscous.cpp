@@ -25,7 +25,7 @@ RobotSpec stretched_cube(double stretch, bool held_sides, const ElasticSpec& law
   spec.materials[0].viscosity = branches;
   const auto hold = [&](const char* face, int axis, double move) {
     FixedSpec fixed{{std::string(face), {}}, {false, false, false}, Vec3::Zero()};
-    fixed.axes[static_cast<std::size_t>(axis)] = true;
+    fixed.axes[axis] = true;
     fixed.displacement[axis] = move;
     return fixed;
   };

@@ -40,7 +40,7 @@ void refine(std::vector<Vec3>& points, std::vector<Triangle>& triangles, bool in
     points.push_back(p);
     return static_cast<Index>(points.size()) - 1;
   };
-  const auto at = [&](Index v) { return points[static_cast<std::size_t>(v)]; };
+  const auto at = [&](Index v) { return points[v]; };
   const auto middle = [&](Index a, Index b) {
     const std::pair edge = std::minmax(a, b);
     if (!middles.contains(edge)) middles[edge] = add((at(a) + at(b)) / 2);

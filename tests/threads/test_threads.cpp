@@ -24,7 +24,7 @@ TEST(Threads, TeamsSideBySideDoEveryPieceOnce) {
       Team team(3);
       for (int round = 0; round < 50; ++round) {
         std::vector<int> done(100, 0);  // not atomic: two threads at one index would be a race
-        team.each(static_cast<Index>(done.size()), [&](Index i) { ++done[static_cast<std::size_t>(i)]; });
+        team.each(static_cast<Index>(done.size()), [&](Index i) { ++done[i]; });
         for (const int count : done) ASSERT_EQ(count, 1);
       }
     });
@@ -36,9 +36,7 @@ TEST(Threads, ATeamOfOneIsSharedByThreads) {
   Team alone(1), several(4);
   for (int round = 0; round < 200; ++round) {
     std::vector<std::vector<int>> done(8, std::vector<int>(50, 0));
-    several.each(8, [&](Index piece) {
-      alone.each(50, [&](Index i) { ++done[static_cast<std::size_t>(piece)][static_cast<std::size_t>(i)]; });
-    });
+    several.each(8, [&](Index piece) { alone.each(50, [&](Index i) { ++done[piece][i]; }); });
     for (const auto& each : done)
       for (const int count : each) ASSERT_EQ(count, 1);
   }
@@ -56,7 +54,7 @@ TEST(Threads, OneStaticsSolvesForSeveralAtOnce) {
   std::vector<Points> alone, together(6);
   for (int i = 0; i < 6; ++i) alone.push_back(solve(i));
   std::vector<std::thread> threads;
-  for (int i = 0; i < 6; ++i) threads.emplace_back([&, i] { together[static_cast<std::size_t>(i)] = solve(i); });
+  for (int i = 0; i < 6; ++i) threads.emplace_back([&, i] { together[i] = solve(i); });
   for (std::thread& thread : threads) thread.join();
   for (std::size_t i = 0; i < alone.size(); ++i) EXPECT_EQ(together[i], alone[i]) << i;
 }

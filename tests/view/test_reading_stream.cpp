@@ -221,15 +221,14 @@ TEST(ReadingStream, TellsThePushAndPagesFollow) {
   for (const Eigen::Vector3d& push : pushes) {
     const Eigen::VectorXd read = read_at(told.model, push);
     nlohmann::json line{{"t_s", time_s += 1}, {"air_kPa", push[0]}};
-    for (std::size_t c = 0; c < 6; ++c) line[told.estimator.columns()[c].name] = read[static_cast<Index>(c)];
+    for (std::size_t c = 0; c < 6; ++c) line[told.estimator.columns()[c].name] = read[c];
     writer.send(line.dump() + "\n");
     const nlohmann::json answer = line_of(writer);
     ASSERT_EQ(answer.at("status"), "converged") << answer;
     EXPECT_EQ(answer.at("t_s"), time_s);
     for (std::size_t n = 0; n < 2; ++n) {
       const nlohmann::json& number = answer.at("numbers").at(n);
-      EXPECT_NEAR(number.at("value").get<double>(), push[static_cast<Index>(n + 1)],
-                  number.at("deviation").get<double>() / 100 + 1e-6);
+      EXPECT_NEAR(number.at("value").get<double>(), push[n + 1], number.at("deviation").get<double>() / 100 + 1e-6);
     }
     std::optional<LiveFrame> shape;
     while ((shape = page.shape(0)) && !shape->head.contains("estimate")) {

@@ -48,7 +48,7 @@ double local_fit(const Samples& samples, double x, double width) {
   Eigen::MatrixXd a(static_cast<Eigen::Index>(inside.size()), terms);
   Eigen::VectorXd b(a.rows());
   for (Eigen::Index row = 0; row < a.rows(); ++row) {
-    const auto& [input, ratio] = samples[inside[static_cast<std::size_t>(row)]];
+    const auto& [input, ratio] = samples[inside[row]];
     const double u = (input - x) / window, bump = 1 - std::abs(u * u * u), weight = std::sqrt(bump * bump * bump);
     for (Eigen::Index term = 0; term < terms; ++term) a(row, term) = weight * std::pow(u, static_cast<double>(term));
     b[row] = weight * ratio;

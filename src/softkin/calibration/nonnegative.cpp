@@ -38,7 +38,7 @@ Eigen::VectorXd solve_over(const Compressed& problem, const Passive& passive) {
   Eigen::VectorXd x = Eigen::VectorXd::Zero(problem.matrix.cols());
   if (passive.empty()) return x;
   const Eigen::VectorXd some = least_squares(columns, problem.right).solution;
-  for (std::size_t i = 0; i < passive.size(); ++i) x[passive[i]] = some[static_cast<Eigen::Index>(i)];
+  for (std::size_t i = 0; i < passive.size(); ++i) x[passive[i]] = some[i];
   return x;
 }
 

@@ -21,7 +21,7 @@ constexpr double negligible = 1e-9;  // relative, of places and starts
 Vec3 masked(const Vec3& point, const std::array<bool, 3>& axes) {
   Vec3 result = point;
   for (std::size_t a = 0; a < 3; ++a)
-    if (!axes[a]) result[static_cast<Index>(a)] = 0;
+    if (!axes[a]) result[a] = 0;
   return result;
 }
 
@@ -179,8 +179,7 @@ std::string place_text(const Track& track, std::size_t waypoint) {
   std::string text;
   for (std::size_t a = 0; a < 3; ++a)
     text +=
-        (a > 0 ? " " : "") +
-        (track.axes[a] ? decimal(track.points[waypoint][static_cast<Index>(a)], length_decimals) : std::string("-"));
+        (a > 0 ? " " : "") + (track.axes[a] ? decimal(track.points[waypoint][a], length_decimals) : std::string("-"));
   return text;
 }
 

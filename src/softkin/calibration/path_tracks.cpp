@@ -58,15 +58,14 @@ Track track_of(const ReportedPath& path, const std::string& marker, const PathRe
 Track in_plane(const Track& track, const TrackPlane& plane) {
   std::vector<Index> known;
   for (Index a = 0; a < 3; ++a)
-    if (track.axes[static_cast<std::size_t>(a)]) known.push_back(a);
+    if (track.axes[a]) known.push_back(a);
   if (known.size() != 2) return track;
   Track result = track;
   result.axes = {false, false, false};
-  for (int c = 0; c < 2; ++c) result.axes[static_cast<std::size_t>(plane.axes[c])] = true;
+  for (int c = 0; c < 2; ++c) result.axes[plane.axes[c]] = true;
   for (std::size_t i = 0; i < track.points.size(); ++i) {
     result.points[i].setZero();
-    for (int c = 0; c < 2; ++c)
-      result.points[i][plane.axes[c]] = plane.signs[c] * track.points[i][known[static_cast<std::size_t>(c)]];
+    for (int c = 0; c < 2; ++c) result.points[i][plane.axes[c]] = plane.signs[c] * track.points[i][known[c]];
   }
   return result;
 }

@@ -52,9 +52,8 @@ void add_check(Branch branch, const MonotoneCurve& curve, PressureComparison& co
 std::vector<std::optional<double>> predicted_pressures(const Model& model, Index actuator,
                                                        const std::vector<double>& ratios, int threads,
                                                        const ProgressCallback& progress) {
-  const Actuator& chamber = model.actuators.at(static_cast<std::size_t>(actuator));
-  if (model.formulation != Formulation::physical || chamber.kind != ActuatorKind::pneumatic ||
-      chamber.control != Control::ratio)
+  const Actuator& chamber = model.actuators.at(actuator);
+  if (model.formulation != Formulation::physical || !chamber.is<ChamberDrive>() || chamber.control != Control::ratio)
     throw InvalidInput("actuator '" + chamber.name +
                        "': pressures are predicted for a chamber of the physical "
                        "formulation whose volume is controlled");

@@ -108,8 +108,7 @@ class Starts {
     all << linear.columns, columns;
     const VectorXd found = nonnegative_least_squares(all, linear.right, linear.signless);
     Start start{constants, {}};
-    for (std::size_t i = 0; i < linear.constants.size(); ++i)
-      start.constants[linear.constants[i]] = found[static_cast<Eigen::Index>(i)];
+    for (std::size_t i = 0; i < linear.constants.size(); ++i) start.constants[linear.constants[i]] = found[i];
     for (std::size_t i = 0; i < times.size(); ++i)
       start.branches.push_back({found[linear.columns.cols() + static_cast<Eigen::Index>(i)], times[i]});
     return {start, (all * found - linear.right).squaredNorm()};

@@ -33,8 +33,8 @@ struct NormalEquations {
     Eigen::MatrixXd some(slopes.rows(), count);
     scale.resize(count);
     for (Eigen::Index i = 0; i < count; ++i) {
-      scale[i] = 1 / slopes.col(moving[static_cast<std::size_t>(i)]).norm();
-      some.col(i) = scale[i] * slopes.col(moving[static_cast<std::size_t>(i)]);
+      scale[i] = 1 / slopes.col(moving[i]).norm();
+      some.col(i) = scale[i] * slopes.col(moving[i]);
     }
     matrix = some.transpose() * some;
     right = some.transpose() * residuals;
@@ -48,7 +48,7 @@ struct NormalEquations {
   /// Of every unknown by what these are of those that move; rest: the others.
   [[nodiscard]] VectorXd spread(const VectorXd& some, double rest) const {
     VectorXd all = VectorXd::Constant(size, rest);
-    for (std::size_t i = 0; i < moving.size(); ++i) all[moving[i]] = some[static_cast<Eigen::Index>(i)];
+    for (std::size_t i = 0; i < moving.size(); ++i) all[moving[i]] = some[i];
     return all;
   }
   /// Unknowns that take part in a combination that the rows do not tell have none.

@@ -94,7 +94,7 @@ RelaxationProblem::RelaxationProblem(std::vector<RelaxationRun> runs, Law law,
     const auto found = std::find(names_.begin(), names_.end(), name);
     if (found == names_.end())
       throw InvalidInput("there is no constant '" + name + "' of " + law_name(law) + ": " + listed(names_));
-    held_[static_cast<std::size_t>(found - names_.begin())] = value;
+    held_[found - names_.begin()] = value;
   }
   for (const auto& value : held_) free_constants_ += value ? 0 : 1;
   for (const RelaxationRun& run : runs_) {
@@ -177,8 +177,7 @@ std::optional<VectorXd> RelaxationProblem::residuals(const VectorXd& unknowns) c
 VectorXd RelaxationProblem::law_stress(const RelaxationRun& run, const std::vector<double>& constants) const {
   const IncompressibleLaw law = law_of_constants(law_, constants);
   VectorXd stress(static_cast<Eigen::Index>(run.stretch.size()));
-  for (Eigen::Index i = 0; i < stress.size(); ++i)
-    stress[i] = uniaxial_stress(law, run.stretch[static_cast<std::size_t>(i)] - 1);
+  for (Eigen::Index i = 0; i < stress.size(); ++i) stress[i] = uniaxial_stress(law, run.stretch[i] - 1);
   return stress;
 }
 
@@ -214,7 +213,7 @@ bool RelaxationProblem::tells_constants(const std::vector<double>& constants) co
 
 void RelaxationProblem::fill_stress_slopes(const RelaxationRun& run, const VectorXd& unknowns, Part part) const {
   for (Eigen::Index i = 0; i < part.rows(); ++i)
-    part.row(i).head(free_constants_) = law_slopes(unknowns, run.stretch[static_cast<std::size_t>(i)]).transpose();
+    part.row(i).head(free_constants_) = law_slopes(unknowns, run.stretch[i]).transpose();
   const std::vector<ViscousBranch> branches = element(unknowns).branches;
   for (std::size_t b = 0; b < branches.size(); ++b) {
     const UnitBranch unit = unit_branch(imposed_in(run), branches[b].time_s);

@@ -165,7 +165,7 @@ void add_run(PlotPanel& panel, const RelaxationRun& run, const Eigen::VectorXd& 
     measured.x.push_back(x);
     fitted.x.push_back(x);
     measured.y.push_back(run.load_imposed ? run.stretch[i] : run.stress_MPa[i]);
-    fitted.y.push_back(answer[static_cast<Eigen::Index>(i)]);
+    fitted.y.push_back(answer[i]);
   }
   panel.series.push_back(std::move(measured));
   panel.series.push_back(std::move(fitted));
@@ -276,7 +276,7 @@ Table relaxation_table(const RelaxationResults& results) {
   for (std::size_t r = 0; r < results.runs.size(); ++r) {
     const RelaxationRun& run = results.runs[r];
     for (std::size_t i = 0; i < run.time_s.size(); ++i) {
-      const double fitted = results.answers[r][static_cast<Eigen::Index>(i)];
+      const double fitted = results.answers[r][i];
       const double measured = run.load_imposed ? run.stretch[i] : run.stress_MPa[i];
       const Cell cell = ten_digits(fitted), none;
       table.rows.push_back({count_cell(r + 1), count_cell(run.lines[i]), ten_digits(run.time_s[i]),

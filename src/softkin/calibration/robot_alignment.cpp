@@ -16,7 +16,7 @@ constexpr double known_within = 3;            // deviations of a prior
 Eigen::VectorXd allowed(const NumberedRobot& robot, Eigen::VectorXd values) {
   for (std::size_t i = 0; i < robot.numbers().size(); ++i) {
     const FittedNumber& number = robot.numbers()[i];
-    double& value = values[static_cast<Index>(i)];
+    double& value = values[i];
     if (number.deviation && robot.of_frame(i))
       value = std::clamp(value, *number.start - known_within * *number.deviation,
                          *number.start + known_within * *number.deviation);
@@ -64,15 +64,14 @@ RobotProblem::MarkerMisses RobotProblem::marker_misses(const RobotPoint& point,
   MarkerMisses misses;
   for (Index pose = 0; pose < static_cast<Index>(poses_.commands.size()); ++pose)
     for (Index c = 0; c < static_cast<Index>(poses_.columns.size()); ++c) {
-      const PoseColumn& column = poses_.columns[static_cast<std::size_t>(c)];
-      const Equilibrium& found = point.equilibria[static_cast<std::size_t>(pose)];
+      const PoseColumn& column = poses_.columns[c];
+      const Equilibrium& found = point.equilibria[pose];
       if (column.marker < 0 || !fits(pose) || !read(pose, c) || found.report.status != Status::converged) continue;
-      const Vec3 place = point.model->markers[static_cast<std::size_t>(column.marker)].at(found.state.positions);
+      const Vec3 place = point.model->markers[column.marker].at(found.state.positions);
       Eigen::RowVectorXd slope(static_cast<Index>(numbers.size()));
       for (std::size_t i = 0; i < numbers.size(); ++i)
-        slope[static_cast<Index>(i)] =
-            ((more[i].rotation - less[i].rotation) * place + more[i].place - less[i].place)[column.axis] /
-            (2 * frame_step);
+        slope[i] = ((more[i].rotation - less[i].rotation) * place + more[i].place - less[i].place)[column.axis] /
+                   (2 * frame_step);
       misses.off.push_back(point.computed(pose, c) - poses_.values(pose, c));
       misses.slopes.push_back(slope);
     }
@@ -85,10 +84,10 @@ void RobotProblem::put(RobotPoint& point, const Eigen::VectorXd& values) const {
   point.frame = robot_.frame(values);
   for (Index pose = 0; pose < static_cast<Index>(poses_.commands.size()); ++pose)
     for (Index c = 0; c < static_cast<Index>(poses_.columns.size()); ++c) {
-      const PoseColumn& column = poses_.columns[static_cast<std::size_t>(c)];
-      const Equilibrium& found = point.equilibria[static_cast<std::size_t>(pose)];
+      const PoseColumn& column = poses_.columns[c];
+      const Equilibrium& found = point.equilibria[pose];
       if (column.marker < 0 || found.report.status != Status::converged) continue;
-      const Vec3 place = point.model->markers[static_cast<std::size_t>(column.marker)].at(found.state.positions);
+      const Vec3 place = point.model->markers[column.marker].at(found.state.positions);
       point.computed(pose, c) = (point.frame.rotation * place + point.frame.place)[column.axis];
     }
 }
@@ -108,7 +107,7 @@ Eigen::VectorXd RobotProblem::aligned(const RobotPoint& start) {
     for (; !moved && damping < most_alignment_damping; damping *= 8) {
       Eigen::VectorXd values = point.values;
       const Eigen::VectorXd step = misses.step(damping);
-      for (std::size_t k = 0; k < numbers.size(); ++k) values[numbers[k]] += step[static_cast<Index>(k)];
+      for (std::size_t k = 0; k < numbers.size(); ++k) values[numbers[k]] += step[k];
       RobotPoint next = point;
       put(next, allowed(robot_, values));
       if (!(marker_misses(next, {}).sum() < (1 - gained_by_alignment) * misses.sum())) continue;

@@ -34,7 +34,7 @@ struct RobotProblem::Changes {
     for (Index i = 0; i < count; ++i) {
       const double half = perturbed_by * robot.size(static_cast<std::size_t>(i));
       Eigen::VectorXd above = point.values, below = point.values;
-      const FittedNumber& number = robot.numbers()[static_cast<std::size_t>(i)];
+      const FittedNumber& number = robot.numbers()[i];
       above[i] = std::min(number.high, above[i] + half);
       below[i] = std::max(number.low, below[i] - half);
       differences.push_back(above[i] - below[i]);

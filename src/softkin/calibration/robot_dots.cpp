@@ -82,10 +82,10 @@ DotMatcher::Costs DotMatcher::costs(const Eigen::MatrixXd& computed, Index pose)
   for (std::size_t d = 0; d < costs.dots.size(); ++d)
     for (std::size_t m = 0; m < costs.markers.size(); ++m)
       for (Index axis = 0; axis < axes; ++axis)
-        costs.squares(static_cast<Index>(d), static_cast<Index>(m)) += std::pow(
-            seen_.dots.places(pose, static_cast<Index>(costs.dots[d]) * axes + axis) -
-                computed(pose, columns_[static_cast<std::size_t>(costs.markers[m])][static_cast<std::size_t>(axis)]),
-            2);
+        costs.squares(static_cast<Index>(d), static_cast<Index>(m)) +=
+            std::pow(seen_.dots.places(pose, static_cast<Index>(costs.dots[d]) * axes + axis) -
+                         computed(pose, columns_[costs.markers[m]][axis]),
+                     2);
   return costs;
 }
 
@@ -121,14 +121,14 @@ void DotMatcher::name(Index pose, const Costs& costs, const std::vector<Index>& 
   const auto axes = static_cast<Index>(seen_.dots.axes.size());
   named_.values.row(pose).setConstant(dot_nan);
   named_.values.row(pose).head(seen_.values.cols()) = seen_.values.row(pose);
-  std::vector<Index>& markers = markers_[static_cast<std::size_t>(pose)];
+  std::vector<Index>& markers = markers_[pose];
   std::fill(markers.begin(), markers.end(), -1);
   for (std::size_t row = 0; row < columns.size(); ++row) {
     if (columns[row] < 0) continue;
     const std::size_t dot = costs.dots[row];
-    markers[dot] = costs.markers[static_cast<std::size_t>(columns[row])];
+    markers[dot] = costs.markers[columns[row]];
     for (Index axis = 0; axis < axes; ++axis)
-      named_.values(pose, columns_[static_cast<std::size_t>(markers[dot])][static_cast<std::size_t>(axis)]) =
+      named_.values(pose, columns_[markers[dot]][axis]) =
           seen_.dots.places(pose, static_cast<Index>(dot) * axes + axis);
   }
 }
@@ -138,11 +138,11 @@ std::optional<Index> DotMatcher::rival(const Costs& costs, Eigen::Index row, dou
   const double alone = within_mm_ * within_mm_;
   const std::vector<Index> best = least_assignment(costs.squares, alone);
   Costs other = costs;
-  other.squares(row, best[static_cast<std::size_t>(row)]) = std::numeric_limits<double>::infinity();
+  other.squares(row, best[row]) = std::numeric_limits<double>::infinity();
   const std::vector<Index> second = least_assignment(other.squares, alone);
   if (costs.sum(second, alone) - costs.sum(best, alone) >= std::pow(doubtful * deviation_mm, 2)) return std::nullopt;
-  const Index column = second[static_cast<std::size_t>(row)];
-  return column < 0 ? -1 : costs.markers[static_cast<std::size_t>(column)];
+  const Index column = second[row];
+  return column < 0 ? -1 : costs.markers[column];
 }
 
 DotMatches DotMatcher::matches(const Eigen::MatrixXd& computed, double deviation_mm) const {
@@ -162,7 +162,7 @@ DotMatches DotMatcher::matches(const Eigen::MatrixXd& computed, double deviation
         square = of.squares(row, column);
         match.rival = rival(of, row, deviation_mm);
       }
-      match.nearest = of.markers[static_cast<std::size_t>(column)];
+      match.nearest = of.markers[column];
       match.distance_mm = std::sqrt(square);
     }
   }

@@ -20,7 +20,7 @@ constexpr double least_damping = 1e-10, most_damping = 1e8;
 
 VectorXd within_bounds(const NumberedRobot& robot, VectorXd values) {
   for (std::size_t i = 0; i < robot.numbers().size(); ++i) {
-    double& value = values[static_cast<Index>(i)];
+    double& value = values[i];
     value = std::clamp(value, robot.numbers()[i].low, robot.numbers()[i].high);
   }
   return values;
@@ -30,8 +30,7 @@ VectorXd within_bounds(const NumberedRobot& robot, VectorXd values) {
 VectorXd limited(const NumberedRobot& robot, const VectorXd& step) {
   double longest = 0;
   for (std::size_t i = 0; i < robot.numbers().size(); ++i)
-    if (*robot.numbers()[i].start != 0)
-      longest = std::max(longest, std::abs(step[static_cast<Index>(i)]) / robot.size(i));
+    if (*robot.numbers()[i].start != 0) longest = std::max(longest, std::abs(step[i]) / robot.size(i));
   return longest > most_step ? VectorXd(most_step / longest * step) : step;
 }
 
@@ -47,14 +46,13 @@ struct RobotEquations {
     for (Index u = 0; u < static_cast<Index>(size); ++u) scales[u] = robot.size(static_cast<std::size_t>(u));
     const VectorXd effects = scales.cwiseProduct(at.slopes.colwise().norm().transpose());
     for (Index u = 0; u < static_cast<Index>(size); ++u) {
-      const int bound = side(robot.numbers()[static_cast<std::size_t>(u)], values[u]);
+      const int bound = side(robot.numbers()[u], values[u]);
       const bool held = bound != 0 && bound * gradient[u] < 0;
       if (!held && effects[u] > no_effect * effects.maxCoeff()) moving.push_back(u);
     }
     const auto count = static_cast<Index>(moving.size());
     Eigen::MatrixXd some(at.slopes.rows(), count);
-    for (Index i = 0; i < count; ++i)
-      some.col(i) = scales[moving[static_cast<std::size_t>(i)]] * at.slopes.col(moving[static_cast<std::size_t>(i)]);
+    for (Index i = 0; i < count; ++i) some.col(i) = scales[moving[i]] * at.slopes.col(moving[i]);
     matrix = some.transpose() * some;
     right = some.transpose() * at.residuals;
   }
@@ -64,7 +62,7 @@ struct RobotEquations {
     damped.diagonal() *= 1 + damping;
     const VectorXd some = -solve_symmetric(damped, right);
     VectorXd all = VectorXd::Zero(size);
-    for (std::size_t i = 0; i < moving.size(); ++i) all[moving[i]] = scales[moving[i]] * some[static_cast<Index>(i)];
+    for (std::size_t i = 0; i < moving.size(); ++i) all[moving[i]] = scales[moving[i]] * some[i];
     return all;
   }
 
@@ -92,15 +90,14 @@ void tell_deviations(const RobotEquations& equations, RobotFit& fit) {
       continue;
     }
     for (Index i = 0; i < count; ++i)
-      if (std::abs(eigen.vectors(i, k)) > part) told[static_cast<std::size_t>(i)] = false;
+      if (std::abs(eigen.vectors(i, k)) > part) told[i] = false;
   }
   for (Index i = 0; i < count; ++i) {
-    const Index u = equations.moving[static_cast<std::size_t>(i)];
-    if (told[static_cast<std::size_t>(i)])
-      fit.deviations[u] = equations.scales[u] * root[i] * std::sqrt(covariance(i, i));
+    const Index u = equations.moving[i];
+    if (told[i]) fit.deviations[u] = equations.scales[u] * root[i] * std::sqrt(covariance(i, i));
     for (Index j = 0; j < i; ++j) {
-      if (!told[static_cast<std::size_t>(i)] || !told[static_cast<std::size_t>(j)]) continue;
-      const Index v = equations.moving[static_cast<std::size_t>(j)];
+      if (!told[i] || !told[j]) continue;
+      const Index v = equations.moving[j];
       fit.correlations(u, v) = fit.correlations(v, u) =
           covariance(i, j) / std::sqrt(covariance(i, i) * covariance(j, j));
     }
@@ -167,7 +164,7 @@ void conclude(const NumberedRobot& robot, const RobotPoint& point, const RobotFi
   finish(problem, point, fit);
   tell_deviations(RobotEquations(robot, point.values, problem.linearised(point)), fit);
   for (std::size_t i = 0; i < robot.numbers().size(); ++i)
-    fit.at_bound.push_back(side(robot.numbers()[i], point.values[static_cast<Index>(i)]));
+    fit.at_bound.push_back(side(robot.numbers()[i], point.values[i]));
   if (fit.status == Status::converged && problem.matched_readings() < free_numbers(robot)) {
     fit.status = Status::not_converged;
     fit.remark = "no more than " + counted(problem.matched_readings(), "reading") +

@@ -123,7 +123,7 @@ std::vector<OutlineMiss> RobotOutlines::misses(Index pose, const Points& positio
   if (points(pose) == 0) return misses;
   const Points seen = seen_by(positions, frame);
   const SeenOutline outline(*surface_, seen);
-  for (const OutlinePoint& point : points_[static_cast<std::size_t>(pose)])
+  for (const OutlinePoint& point : points_[pose])
     misses.push_back(miss_of(point, outline.nearest(point.place, point.outward)));
   return misses;
 }
@@ -156,7 +156,7 @@ std::vector<OutlineReading> RobotOutlines::readings(Index pose, const std::vecto
   std::vector<OutlineReading> all;
   for (std::size_t k = 0; k < points(pose); ++k) {
     OutlineReading& reading = all.emplace_back();
-    reading.measured = points_[static_cast<std::size_t>(pose)][k].place;
+    reading.measured = points_[pose][k].place;
     if (misses.empty()) continue;  // no equilibrium
     reading.nearest = misses[k].nearest.place;
     reading.off_mm = misses[k].off_mm;
@@ -179,7 +179,7 @@ Eigen::VectorXd outline_slopes(const std::vector<OutlineMiss>& misses, const Poi
     };
     Vec3 moved = turns * at(positions) + shifts;
     if (moves) moved += frame.rotation * at(*moves);
-    slopes[static_cast<Index>(k)] = -misses[k].way.dot(moved.head<2>());
+    slopes[k] = -misses[k].way.dot(moved.head<2>());
   }
   return slopes;
 }

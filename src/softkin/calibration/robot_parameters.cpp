@@ -49,7 +49,7 @@ struct NumberedRobot::Six {
 NumberedRobot::Six NumberedRobot::six_of(const Eigen::VectorXd& values, const std::string& frame) const {
   Six six;
   for (std::size_t i = 0; i < numbers_.size(); ++i)
-    if (const auto part = frame_part(numbers_[i].name, frame)) six.set(*part, values[static_cast<Index>(i)]);
+    if (const auto part = frame_part(numbers_[i].name, frame)) six.set(*part, values[i]);
   for (const GivenNumber& given : given_)
     if (const auto part = frame_part(given.name, frame)) six.set(*part, given.value);
   return six;
@@ -153,7 +153,7 @@ void NumberedRobot::check_names() const {
 
 Eigen::VectorXd NumberedRobot::start() const {
   Eigen::VectorXd values(static_cast<Index>(numbers_.size()));
-  for (std::size_t i = 0; i < numbers_.size(); ++i) values[static_cast<Index>(i)] = *numbers_[i].start;
+  for (std::size_t i = 0; i < numbers_.size(); ++i) values[i] = *numbers_[i].start;
   return values;
 }
 
@@ -161,8 +161,7 @@ RobotSpec NumberedRobot::spec(const Eigen::VectorXd& values) const {
   std::shared_ptr<const scene::Node> root = root_;
   for (std::size_t i = 0; i < numbers_.size(); ++i)
     if (!is_of_frame(numbers_[i].name))
-      root =
-          scene::changed(root, numbers_[i].option, numbers_[i].name + "=" + exact(values[static_cast<Index>(i)]), "");
+      root = scene::changed(root, numbers_[i].option, numbers_[i].name + "=" + exact(values[i]), "");
   RobotSpec spec = parse_scene(*root, file_, files_->kept(true));
   change(spec, asked_);
   spec.gravity = turned(six_of(values, "base").degrees).transpose() * spec.gravity;

@@ -38,7 +38,7 @@ std::vector<PlotSeries> seen_along(const RobotFitReport& r, int across, int up) 
   for (Index pose = 0; pose < static_cast<Index>(r.poses.commands.size()); ++pose)
     for (std::size_t d = 0; d < r.poses.dots.names.size(); ++d) {
       const Vec3 place = dot_place(r, pose, d);
-      const bool is_none = r.fit.dots[static_cast<std::size_t>(pose)][d].marker < 0;
+      const bool is_none = r.fit.dots[pose][d].marker < 0;
       if (is_none && std::isfinite(place[across] + place[up])) add(none, place);
     }
   if (computed.x.empty()) return {};

@@ -29,7 +29,7 @@ RobotProblem::RobotProblem(const NumberedRobot& robot, const MeasuredPoses& pose
       outlines_(poses, *first_model_, options.outlines),
       poses_(dots_.poses()) {
   for (Index c = 0; c < static_cast<Index>(poses_.columns.size()); ++c) {
-    const PoseColumn& column = poses_.columns[static_cast<std::size_t>(c)];
+    const PoseColumn& column = poses_.columns[c];
     const auto same = std::find_if(groups_.begin(), groups_.end(), [&](const Group& group) {
       return column.marker >= 0 && group.marker == column.marker;
     });
@@ -134,8 +134,7 @@ double RobotProblem::scale_of(std::vector<double> distances, double squares, std
 
 Scales RobotProblem::scales(const RobotPoint& point) const {
   Scales scales{};
-  for (int kind = 0; kind < softkin::readings; ++kind)
-    scales[static_cast<std::size_t>(kind)] = scale(point, static_cast<Reading>(kind));
+  for (int kind = 0; kind < softkin::readings; ++kind) scales[kind] = scale(point, static_cast<Reading>(kind));
   return scales;
 }
 
@@ -153,7 +152,7 @@ Eigen::VectorXd RobotProblem::residuals(const RobotPoint& point, const Eigen::Ve
   each_outline_point([&](Index pose, std::size_t k, Index row) { all[row] = off_outline(point, pose, k); });
   auto rows = static_cast<Index>(reading_rows_ + outline_rows_);
   for (std::size_t i = 0; i < robot_.numbers().size(); ++i)
-    if (robot_.numbers()[i].deviation) all[rows++] = point.values[static_cast<Index>(i)] - *robot_.numbers()[i].start;
+    if (robot_.numbers()[i].deviation) all[rows++] = point.values[i] - *robot_.numbers()[i].start;
   for (Index i = 0; i < static_cast<Index>(all.size()); ++i)
     if (!std::isfinite(all[i])) all[i] = 0;  // of a pose without equilibrium, which is told apart
   return weights.cwiseSqrt().cwiseProduct(all);
@@ -174,7 +173,7 @@ Linearised RobotProblem::linearised(const RobotPoint& point) const {
     for (const Index c : group.columns) {
       if (!read(pose, c)) continue;
       linear.weights[r] = known ? weight : 0;
-      if (known) linear.slopes.row(r) = point.slopes[static_cast<std::size_t>(pose)].row(c);
+      if (known) linear.slopes.row(r) = point.slopes[pose].row(c);
       ++r;
     }
   });
@@ -226,7 +225,7 @@ std::size_t RobotProblem::outline_points_that_count() const {
 
 /// NaN: the pose has no equilibrium.
 double RobotProblem::off_outline(const RobotPoint& point, Index pose, std::size_t k) const {
-  const std::vector<OutlineMiss>& misses = point.outline_misses[static_cast<std::size_t>(pose)];
+  const std::vector<OutlineMiss>& misses = point.outline_misses[pose];
   return misses.empty() ? std::nan("") : misses[k].off_mm;
 }
 
@@ -252,7 +251,7 @@ void RobotProblem::linearise_outlines(const RobotPoint& point, Linearised& linea
     const double off = off_outline(point, pose, k);
     if (!outlines_.counts(pose, k) || !std::isfinite(off)) return;
     linear.weights[row] = share_by_loss(std::abs(off) / scale) / (scale * scale);
-    linear.slopes.row(row) = point.outline_slopes[static_cast<std::size_t>(pose)].row(static_cast<Index>(k));
+    linear.slopes.row(row) = point.outline_slopes[pose].row(static_cast<Index>(k));
   });
 }
 

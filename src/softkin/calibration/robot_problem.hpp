@@ -82,9 +82,7 @@ class RobotProblem {
     Reading kind;
   };
 
-  [[nodiscard]] bool fits(Index pose) const {
-    return options_.kept.empty() || !options_.kept[static_cast<std::size_t>(pose)];
-  }
+  [[nodiscard]] bool fits(Index pose) const { return options_.kept.empty() || !options_.kept[pose]; }
   [[nodiscard]] bool read(Index pose, Index column) const;
   [[nodiscard]] bool reads_forces() const;
   /// Of a pose's readings together, what the robot does less what was read.

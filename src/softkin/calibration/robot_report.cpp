@@ -20,7 +20,7 @@ double marker_error(const RobotFitReport& r, Index pose, Index marker) {
   bool any = false;
   for (Index c = 0; c < static_cast<Index>(r.fit.named.columns.size()); ++c) {
     const double measured = r.fit.named.values(pose, c);
-    if (r.fit.named.columns[static_cast<std::size_t>(c)].marker != marker || std::isnan(measured)) continue;
+    if (r.fit.named.columns[c].marker != marker || std::isnan(measured)) continue;
     squares += std::pow(r.fit.computed.values(pose, c) - measured, 2);
     any = true;
   }
@@ -68,9 +68,8 @@ std::string numbers_text(const RobotFitReport& r) {
   for (Index i = 0; i < static_cast<Index>(r.fit.correlations.rows()); ++i)
     for (Index j = 0; j < i; ++j)
       if (std::abs(r.fit.correlations(i, j)) > alike)
-        text += "not told apart: " + r.robot.numbers()[static_cast<std::size_t>(j)].name + " and " +
-                r.robot.numbers()[static_cast<std::size_t>(i)].name + " (correlation " +
-                decimal(r.fit.correlations(i, j), 3) + ")\n";
+        text += "not told apart: " + r.robot.numbers()[j].name + " and " + r.robot.numbers()[i].name +
+                " (correlation " + decimal(r.fit.correlations(i, j), 3) + ")\n";
   return text;
 }
 
@@ -123,8 +122,7 @@ std::string errors_text(const RobotFitReport& r) {
 std::string scene_text(const RobotFitReport& r) {
   std::string text;
   for (std::size_t i = 0; i < r.robot.numbers().size(); ++i)
-    if (!r.robot.of_frame(i))
-      text += "  " + r.robot.numbers()[i].name + "=" + number(r.fit.values[static_cast<Index>(i)], 6) + "\n";
+    if (!r.robot.of_frame(i)) text += "  " + r.robot.numbers()[i].name + "=" + number(r.fit.values[i], 6) + "\n";
   return text.empty() ? "" : "for the scene, by path:\n" + text;
 }
 
@@ -167,7 +165,7 @@ Json poses_json(const RobotFitReport& r) {
     Json errors = Json::object(), commands = Json::object();
     for (const Index m : markers_of(r)) errors[marker_name(r, m)] = finite(marker_error(r, pose, m));
     for (std::size_t a = 0; a < r.model.actuators.size(); ++a)
-      commands[r.model.actuators[a].name] = r.poses.commands[p][static_cast<Index>(a)];
+      commands[r.model.actuators[a].name] = r.poses.commands[p][a];
     poses.push_back({{"line", r.poses.lines[p]},
                      {"commands", commands},
                      {"status", name_of(r.fit.computed.equilibria[p].report.status)},
@@ -183,15 +181,14 @@ Json poses_json(const RobotFitReport& r) {
 Row& add_reading(const RobotFitReport& r, Index pose, Table& table, const std::string& column, double measured,
                  double computed) {
   const bool found = std::isfinite(computed);
-  return table.rows.emplace_back(Row{static_cast<std::int64_t>(pose + 1),
-                                     count_cell(r.poses.lines[static_cast<std::size_t>(pose)]), column,
+  return table.rows.emplace_back(Row{static_cast<std::int64_t>(pose + 1), count_cell(r.poses.lines[pose]), column,
                                      ten_digits(measured), found ? ten_digits(computed) : Cell(),
                                      found ? ten_digits(computed - measured) : Cell(), std::int64_t{kept(r, pose)}});
 }
 
 void add_columns_of(const RobotFitReport& r, Index pose, Table& table) {
   for (Index c = 0; c < static_cast<Index>(r.poses.columns.size()); ++c) {
-    const PoseColumn& column = r.poses.columns[static_cast<std::size_t>(c)];
+    const PoseColumn& column = r.poses.columns[c];
     if (std::isnan(r.poses.values(pose, c))) continue;
     Row& row = add_reading(r, pose, table, column.name, r.poses.values(pose, c), r.fit.computed.values(pose, c));
     if (has_dots(r)) row.emplace_back(column.marker >= 0 ? Cell(marker_name(r, column.marker)) : Cell());
@@ -200,7 +197,7 @@ void add_columns_of(const RobotFitReport& r, Index pose, Table& table) {
 
 void add_dots_of(const RobotFitReport& r, Index pose, Table& table) {
   for (std::size_t d = 0; d < r.poses.dots.names.size(); ++d) {
-    const DotMatch& match = r.fit.dots[static_cast<std::size_t>(pose)][d];
+    const DotMatch& match = r.fit.dots[pose][d];
     const Vec3 seen = dot_place(r, pose, d);
     const Vec3 computed =
         match.marker < 0 ? Vec3(Vec3::Constant(std::nan(""))) : places_of(r, pose, match.marker).second;

@@ -17,13 +17,13 @@ bool has_dots(const RobotFitReport& r) {
 }
 
 const std::string& marker_name(const RobotFitReport& r, Index marker) {
-  return r.model.markers[static_cast<std::size_t>(marker)].name;
+  return r.model.markers[marker].name;
 }
 
 std::pair<Vec3, Vec3> places_of(const RobotFitReport& r, Index pose, Index marker) {
   Vec3 there = Vec3::Constant(std::nan("")), here = there;
   for (Index c = 0; c < static_cast<Index>(r.fit.named.columns.size()); ++c) {
-    const PoseColumn& column = r.fit.named.columns[static_cast<std::size_t>(c)];
+    const PoseColumn& column = r.fit.named.columns[c];
     if (column.marker != marker) continue;
     there[column.axis] = r.fit.named.values(pose, c);
     here[column.axis] = r.fit.computed.values(pose, c);
@@ -40,7 +40,7 @@ Vec3 dot_place(const RobotFitReport& r, Index pose, std::size_t dot) {
 }
 
 bool kept(const RobotFitReport& r, Index pose) {
-  return !r.options.kept.empty() && r.options.kept[static_cast<std::size_t>(pose)];
+  return !r.options.kept.empty() && r.options.kept[pose];
 }
 
 }  // namespace softkin::calibration

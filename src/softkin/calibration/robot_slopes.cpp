@@ -19,14 +19,14 @@ bool points_along(const PoseColumn& column) {
 
 /// The direction, in the frame of the scene.
 Vec3 direction_of(const Model& model, const PoseColumn& column, const Points& positions) {
-  const Sensor& sensor = *model.sensors[static_cast<std::size_t>(column.sensor)];
+  const Sensor& sensor = *model.sensors[column.sensor];
   return {sensor.at(positions, 0), sensor.at(positions, 1), sensor.at(positions, 2)};
 }
 
 /// By a number of the robots, and by its moves.
 Vec3 direction_slope(const Perturbed& number, const Model& model, const PoseColumn& column, const Points& positions,
                      const Points& moves) {
-  const Sensor& sensor = *model.sensors[static_cast<std::size_t>(column.sensor)];
+  const Sensor& sensor = *model.sensors[column.sensor];
   const Vec3 own =
       (direction_of(number.more, column, positions) - direction_of(number.less, column, positions)) / number.difference;
   return own + Vec3(sensor.velocity(positions, moves, 0), sensor.velocity(positions, moves, 1),
@@ -42,7 +42,7 @@ bool measures(const PoseColumn& column) {
 Vec3 force_of(const Model& model, const PoseColumn& column, const Points& positions, const Points& at_vertices) {
   ElementDeformation deformation;
   deformation.reactions = at_vertices;
-  return reactions(model, positions, deformation)[static_cast<std::size_t>(column.support)].force;
+  return reactions(model, positions, deformation)[column.support].force;
 }
 
 /// Is it a component of a vector, which turns with the frame: of a marker's place, a direction, a support's force?
@@ -52,7 +52,7 @@ bool turns(const PoseColumn& column) {
 
 /// That vector, in the frame of the scene.
 Vec3 vector_of(const Model& model, const PoseColumn& column, const Points& positions, const Points& at_vertices) {
-  if (column.marker >= 0) return model.markers[static_cast<std::size_t>(column.marker)].at(positions);
+  if (column.marker >= 0) return model.markers[column.marker].at(positions);
   return points_along(column) ? direction_of(model, column, positions)
                               : force_of(model, column, positions, at_vertices);
 }
@@ -65,11 +65,11 @@ double measure_of(const Model& model, const PoseColumn& column, const State& sta
 
 /// What was read, as the robot does it.
 void RobotProblem::compute(RobotPoint& point, const Changes* changes, Index pose) const {
-  const Equilibrium& found = point.equilibria[static_cast<std::size_t>(pose)];
+  const Equilibrium& found = point.equilibria[pose];
   ElementDeformation reactions;
   if (reads_forces() && found.report.status == Status::converged) reactions = point.statics->measured(found.state);
   for (Index c = 0; c < static_cast<Index>(poses_.columns.size()); ++c) {
-    const PoseColumn& column = poses_.columns[static_cast<std::size_t>(c)];
+    const PoseColumn& column = poses_.columns[c];
     double& value = point.computed(pose, c);
     if (found.report.status != Status::converged)
       value = std::nan("");
@@ -82,7 +82,7 @@ void RobotProblem::compute(RobotPoint& point, const Changes* changes, Index pose
       value = found.state.multipliers[column.actuator];
   }
   if (found.report.status != Status::converged) return;
-  point.outline_misses[static_cast<std::size_t>(pose)] = outlines_.misses(pose, found.state.positions, point.frame);
+  point.outline_misses[pose] = outlines_.misses(pose, found.state.positions, point.frame);
   if (changes) add_slopes(point, *changes, pose, reactions.reactions);
 }
 
@@ -113,12 +113,12 @@ void RobotProblem::add_changes_of_acting(ParameterSensitivity& found, const Robo
 /// By the measuring frame's part of each number; vectors turn with it, places are moved, too.
 void RobotProblem::add_slopes_of_frame(RobotPoint& point, const Changes& changes, Index pose,
                                        const Points& reactions) const {
-  const State& state = point.equilibria[static_cast<std::size_t>(pose)].state;
+  const State& state = point.equilibria[pose].state;
   const auto count = static_cast<Index>(robot_.numbers().size());
-  Eigen::MatrixXd& slopes = point.slopes[static_cast<std::size_t>(pose)];
+  Eigen::MatrixXd& slopes = point.slopes[pose];
   slopes.setZero(static_cast<Index>(poses_.columns.size()), count);
   for (Index c = 0; c < static_cast<Index>(slopes.rows()); ++c) {
-    const PoseColumn& column = poses_.columns[static_cast<std::size_t>(c)];
+    const PoseColumn& column = poses_.columns[c];
     if (!turns(column)) continue;
     const bool marker = column.marker >= 0;
     const Vec3 place = vector_of(*point.model, column, state.positions, reactions);
@@ -143,25 +143,25 @@ void RobotProblem::add_outline_slopes(RobotPoint& point, const Changes& changes,
     const auto k = static_cast<std::size_t>(i);
     point.outline_slopes[p].col(i) = calibration::outline_slopes(
         misses, point.equilibria[p].state.positions, point.frame, changes.turn(k), changes.shift(k),
-        moves ? &found.positions[static_cast<std::size_t>(own - changes.numbers.begin())] : nullptr);
+        moves ? &found.positions[own - changes.numbers.begin()] : nullptr);
   }
 }
 
 void RobotProblem::add_slopes(RobotPoint& point, const Changes& changes, Index pose, const Points& reactions) const {
-  const State& state = point.equilibria[static_cast<std::size_t>(pose)].state;
+  const State& state = point.equilibria[pose].state;
   StaticsOptions solver = options_.solver;
   solver.threads = 1;
   ParameterSensitivity found = changes.perturbations->at(state, solver, slopes_accuracy, reads_forces());
   if (found.regular) add_changes_of_acting(found, point, changes, pose);
   add_slopes_of_frame(point, changes, pose, reactions);
   add_outline_slopes(point, changes, pose, found);
-  Eigen::MatrixXd& slopes = point.slopes[static_cast<std::size_t>(pose)];
+  Eigen::MatrixXd& slopes = point.slopes[pose];
   if (!found.regular) return;
   for (std::size_t k = 0; k < changes.numbers.size(); ++k) {
     const Index i = changes.numbers[k];
     const auto p = static_cast<Index>(k);
     for (Index c = 0; c < static_cast<Index>(slopes.rows()); ++c) {
-      const PoseColumn& column = poses_.columns[static_cast<std::size_t>(c)];
+      const PoseColumn& column = poses_.columns[c];
       if (measures(column)) {
         const Perturbed& number = changes.perturbed[k];
         const double own =

@@ -61,7 +61,7 @@ void SeenOutline::find_folds() {
 }
 
 std::size_t SeenOutline::cell(double place, int axis) const {
-  const auto count = static_cast<double>(cells_[static_cast<std::size_t>(axis)]);
+  const auto count = static_cast<double>(cells_[axis]);
   const double share = (place - low_[axis]) / (high_[axis] - low_[axis]);
   return static_cast<std::size_t>(std::clamp(std::floor(share * count), 0.0, count - 1));
 }
@@ -77,7 +77,7 @@ void SeenOutline::fill_grid() {
   const double side = std::sqrt(size.prod() * triangles_a_cell / static_cast<double>(triangles.size()));
   const auto most = static_cast<double>(triangles.size());
   for (std::size_t axis = 0; axis < 2; ++axis)
-    cells_[axis] = static_cast<std::size_t>(std::clamp(size[static_cast<Index>(axis)] / side, 1.0, most));
+    cells_[axis] = static_cast<std::size_t>(std::clamp(size[axis] / side, 1.0, most));
   grid_.resize(cells_[0] * cells_[1]);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     const Vector2d a = at(triangles[t][0]), b = at(triangles[t][1]), c = at(triangles[t][2]);
@@ -92,7 +92,7 @@ bool SeenOutline::covered(const Vector2d& point) const {
   if ((point.array() < low_.array()).any() || (point.array() > high_.array()).any() || grid_.empty()) return false;
   const std::vector<Index>& near = grid_[cell(point.x(), 0) * cells_[1] + cell(point.y(), 1)];
   return std::any_of(near.begin(), near.end(), [&](Index number) {
-    const Triangle& t = surface_.triangles()[static_cast<std::size_t>(number)];
+    const Triangle& t = surface_.triangles()[number];
     const Vector2d a = at(t[0]) - point, b = at(t[1]) - point, c = at(t[2]) - point;
     const double ab = cross(a, b), bc = cross(b, c), ca = cross(c, a);
     return (ab >= 0 && bc >= 0 && ca >= 0) || (ab <= 0 && bc <= 0 && ca <= 0);
@@ -105,7 +105,7 @@ void SeenOutline::find_outside() {
   square_ = (high_ - low_).maxCoeff() / squares_along;
   ground_low_ = low_ - Vector2d::Constant(square_);
   for (std::size_t axis = 0; axis < 2; ++axis)
-    squares_[axis] = static_cast<int>(std::ceil((high_ - low_)[static_cast<Index>(axis)] / square_)) + 2;
+    squares_[axis] = static_cast<int>(std::ceil((high_ - low_)[axis] / square_)) + 2;
   for (int j = 0; j < squares_[1]; ++j)
     for (int i = 0; i < squares_[0]; ++i)
       ground_.push_back(covered(ground_low_ + square_ * Vector2d(i + 0.5, j + 0.5)) ? Ground::surface
@@ -115,7 +115,7 @@ void SeenOutline::find_outside() {
     const auto [i, j] = next.back();
     next.pop_back();
     if (i < 0 || j < 0 || i >= squares_[0] || j >= squares_[1]) continue;
-    Ground& ground = ground_[static_cast<std::size_t>(j * squares_[0] + i)];
+    Ground& ground = ground_[j * squares_[0] + i];
     if (ground != Ground::enclosed) continue;
     ground = Ground::outside;
     next.insert(next.end(), {{i - 1, j}, {i + 1, j}, {i, j - 1}, {i, j + 1}});
@@ -124,7 +124,7 @@ void SeenOutline::find_outside() {
 
 SeenOutline::Ground SeenOutline::ground_at(const std::array<int, 2>& square) const {
   if (square[0] < 0 || square[1] < 0 || square[0] >= squares_[0] || square[1] >= squares_[1]) return Ground::outside;
-  return ground_[static_cast<std::size_t>(square[1] * squares_[0] + square[0])];
+  return ground_[square[1] * squares_[0] + square[0]];
 }
 
 bool SeenOutline::enclosed(const Vector2d& point, const Vector2d& outward) const {
@@ -175,7 +175,7 @@ std::optional<OutlinePlace> SeenOutline::nearest(const Vector2d& point, const Ve
   for (const Candidate& each : candidates) {
     const Fold& fold = folds_[each.fold];
     if (!is_open(fold, each.share)) continue;
-    return OutlinePlace{surface_.edges()[static_cast<std::size_t>(fold.edge)].vertices, each.share,
+    return OutlinePlace{surface_.edges()[fold.edge].vertices, each.share,
                         fold.begin + each.share * (fold.end - fold.begin), fold.outward};
   }
   return std::nullopt;

@@ -73,8 +73,7 @@ Eigen::MatrixXd columns_of(Law law, const Eigen::VectorXd& strain) {
   if (law == Law::yeoh) units.insert(units.end(), {{law, 0, 0, 1, 0}, {law, 0, 0, 0, 1}});
   Eigen::MatrixXd columns(strain.size(), static_cast<Index>(units.size()));
   for (Index c = 0; c < columns.cols(); ++c)
-    for (Index i = 0; i < strain.size(); ++i)
-      columns(i, c) = uniaxial_stress(units[static_cast<std::size_t>(c)], strain[i]);
+    for (Index i = 0; i < strain.size(); ++i) columns(i, c) = uniaxial_stress(units[c], strain[i]);
   return columns;
 }
 

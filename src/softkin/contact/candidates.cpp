@@ -33,7 +33,7 @@ template <class Items>
 auto boxes_of(const Items& items, const Points& from, const Points& to) {
   return [&](Index item) {
     MovingBox box;
-    for (const Index v : vertices_of(items[static_cast<std::size_t>(item)])) {
+    for (const Index v : vertices_of(items[item])) {
       const Vec3 x = from.row(v).transpose();
       box.at.extend(x);
       box.move.extend(Vec3(to.row(v).transpose() - x));
@@ -53,8 +53,8 @@ MovingBox enlarged(MovingBox box, double reach) {
 Lists neighbours_of(const Surface& surface, Index rows, int edges) {
   std::vector<std::vector<Index>> next(static_cast<std::size_t>(rows));
   for (const auto& [a, b] : surface.edges) {
-    next[static_cast<std::size_t>(a)].push_back(b);
-    next[static_cast<std::size_t>(b)].push_back(a);
+    next[a].push_back(b);
+    next[b].push_back(a);
   }
   Lists lists;
   lists.begin.assign(1, 0);
@@ -63,7 +63,7 @@ Lists neighbours_of(const Surface& surface, Index rows, int edges) {
     for (int ring = 0; ring < edges; ++ring) {
       const std::vector<Index> before = reached;
       for (const Index v : before) {
-        const auto& around = next[static_cast<std::size_t>(v)];
+        const auto& around = next[v];
         reached.insert(reached.end(), around.begin(), around.end());
       }
       std::sort(reached.begin(), reached.end());
@@ -80,9 +80,8 @@ template <class Items>
 BroadPhase::Features<vertices>::Features(const Items& items, const Points& rest)
     : tree(centres_of(items, rest)), nodes(static_cast<std::size_t>(tree.groups())) {
   for (Index place = 0; place < tree.size(); ++place) {
-    const auto& of_item = vertices_of(items[static_cast<std::size_t>(tree.item(place / 8, place % 8))]);
-    for (std::size_t k = 0; k < vertices; ++k)
-      nodes[static_cast<std::size_t>(place / 8)].node[k][place % 8] = of_item[k];
+    const auto& of_item = vertices_of(items[tree.item(place / 8, place % 8)]);
+    for (std::size_t k = 0; k < vertices; ++k) nodes[place / 8].node[k][place % 8] = of_item[k];
   }
 }
 
@@ -96,13 +95,12 @@ BroadPhase::BroadPhase(const Surface& surface, const Points& rest, Exclusions ex
 bool BroadPhase::neighbours(Index a, Index b) const {
   const auto* items = exclusions_.neighbours.items.data();
   const auto& begin = exclusions_.neighbours.begin;
-  return std::binary_search(items + begin[static_cast<std::size_t>(a)], items + begin[static_cast<std::size_t>(a) + 1],
-                            b);
+  return std::binary_search(items + begin[a], items + begin[static_cast<std::size_t>(a) + 1], b);
 }
 
 bool BroadPhase::left_out(const Index* a, int of_a, const Index* b, int of_b) const {
   if (!exclusions_.group.empty()) {
-    const auto group = [&](Index v) { return exclusions_.group[static_cast<std::size_t>(v)]; };
+    const auto group = [&](Index v) { return exclusions_.group[v]; };
     const auto same = [&](Index v) { return group(v) == group(a[0]); };
     if (group(a[0]) >= 0 && std::all_of(a, a + of_a, same) && std::all_of(b, b + of_b, same)) return true;
   }
@@ -135,18 +133,17 @@ void BroadPhase::pair_up(const Features<of_query>& queries, const Features<of_ot
         if (keep(pair)) found.push_back(pair);
       }
     };
-    const Askers askers{boxes, &queries.nodes[static_cast<std::size_t>(group)], lanes, same ? group : 0,
-                        same ? group : -1};
+    const Askers askers{boxes, &queries.nodes[group], lanes, same ? group : 0, same ? group : -1};
     run_meet<of_query, of_other>(askers, levels, met);
   };
   team.each(pieces, [&](Index piece) {
-    std::vector<Pair>& found = found_[static_cast<std::size_t>(piece)];
+    std::vector<Pair>& found = found_[piece];
     found.clear();
     const Index end = std::min(query_tree.groups(), (piece + 1) * groups_a_piece);
     for (Index group = piece * groups_a_piece; group < end; ++group) pair_group(group, found);
   });
   for (Index piece = 0; piece < pieces; ++piece) {
-    const std::vector<Pair>& found = found_[static_cast<std::size_t>(piece)];
+    const std::vector<Pair>& found = found_[piece];
     out.insert(out.end(), found.begin(), found.end());
   }
 }

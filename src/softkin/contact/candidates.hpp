@@ -21,18 +21,17 @@ struct Candidates {
 /// The vertices of a pair in the order of FourPoints.
 using Nodes = std::array<Index, 4>;
 [[nodiscard]] inline Nodes nodes_of_vertex_triangle(const Surface& surface, const Pair& pair) {
-  const Corners& t = surface.triangles[static_cast<std::size_t>(pair.second)];
-  return {surface.vertices[static_cast<std::size_t>(pair.first)], t[0], t[1], t[2]};
+  const Corners& t = surface.triangles[pair.second];
+  return {surface.vertices[pair.first], t[0], t[1], t[2]};
 }
 [[nodiscard]] inline Nodes nodes_of_edge_edge(const Surface& surface, const Pair& pair) {
-  const Ends &a = surface.edges[static_cast<std::size_t>(pair.first)],
-             &b = surface.edges[static_cast<std::size_t>(pair.second)];
+  const Ends &a = surface.edges[pair.first], &b = surface.edges[pair.second];
   return {a[0], a[1], b[0], b[1]};
 }
 
 [[nodiscard]] inline FourPoints points_of(const Points& positions, const Nodes& nodes) {
   FourPoints x;
-  for (int i = 0; i < 4; ++i) x.col(i) = positions.row(nodes[static_cast<std::size_t>(i)]).transpose();
+  for (int i = 0; i < 4; ++i) x.col(i) = positions.row(nodes[i]).transpose();
   return x;
 }
 

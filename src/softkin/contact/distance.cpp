@@ -114,7 +114,7 @@ Separation vertex_triangle(const FourPoints& x) {
 }
 
 Separation vertex_side(const FourPoints& x, int side) {
-  return closest_side(x, std::array<Side, 1>{triangle_sides[static_cast<std::size_t>(side)]});
+  return closest_side(x, std::array<Side, 1>{triangle_sides[side]});
 }
 
 Separation vertex_corner(const FourPoints& x, int corner) {

@@ -34,16 +34,14 @@ Lists triangles_of(const std::vector<std::array<Index, 3>>& named, std::size_t c
   lists.items.resize(3 * named.size());
   std::vector<Index> next(lists.begin);
   for (std::size_t t = 0; t < named.size(); ++t)
-    for (const Index i : named[t])
-      lists.items[static_cast<std::size_t>(next[static_cast<std::size_t>(i)]++)] = static_cast<Index>(t);
+    for (const Index i : named[t]) lists.items[next[i]++] = static_cast<Index>(t);
   return lists;
 }
 
 std::vector<double> thirds(const Lists& triangles, const std::vector<double>& area) {
   std::vector<double> sums(triangles.begin.size() - 1, 0);
   for (std::size_t i = 0; i < sums.size(); ++i)
-    for (Index k = triangles.begin[i]; k < triangles.begin[i + 1]; ++k)
-      sums[i] += area[static_cast<std::size_t>(triangles.items[static_cast<std::size_t>(k)])] / 3;
+    for (Index k = triangles.begin[i]; k < triangles.begin[i + 1]; ++k) sums[i] += area[triangles.items[k]] / 3;
   return sums;
 }
 

@@ -22,7 +22,7 @@ void WideTree::sort(const Points& centres, Index begin, Index end) {
   while (unit < (count + 7) / 8) unit *= 8;
   const Index middle = begin + ((count + unit - 1) / unit + 1) / 2 * unit;
   Box box;
-  for (Index i = begin; i < end; ++i) box.extend(Vec3(centres.row(items_[static_cast<std::size_t>(i)]).transpose()));
+  for (Index i = begin; i < end; ++i) box.extend(Vec3(centres.row(items_[i]).transpose()));
   Eigen::Index axis;
   box.sizes().maxCoeff(&axis);
   std::nth_element(items_.begin() + begin, items_.begin() + middle, items_.begin() + end, [&](Index a, Index b) {

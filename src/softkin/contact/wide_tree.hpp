@@ -62,8 +62,8 @@ class WideTree {
   /// Groups of eight items that stand together.
   [[nodiscard]] Index groups() const { return static_cast<Index>(levels_[0].size()); }
   /// Item in a lane of a group; only lanes of items.
-  [[nodiscard]] Index item(Index group, int lane) const { return items_[static_cast<std::size_t>(8 * group + lane)]; }
-  [[nodiscard]] const EightBoxes& boxes(Index group) const { return levels_[0][static_cast<std::size_t>(group)]; }
+  [[nodiscard]] Index item(Index group, int lane) const { return items_[8 * group + lane]; }
+  [[nodiscard]] const EightBoxes& boxes(Index group) const { return levels_[0][group]; }
   /// Around them all.
   [[nodiscard]] static MovingBox joint(const EightBoxes& boxes);
   [[nodiscard]] MovingBox box(Index group) const {
@@ -103,10 +103,10 @@ template <class BoxOf>
 void WideTree::refit(const BoxOf& box_of, Team& team) {
   team.pieces(groups(), [&](Index begin, Index end) {
     for (Index group = begin; group < end; ++group) {
-      EightBoxes& boxes = levels_[0][static_cast<std::size_t>(group)];
+      EightBoxes& boxes = levels_[0][group];
       const int lanes = static_cast<int>(std::min<Index>(8, size() - 8 * group));
       for (int lane = 0; lane < lanes; ++lane) boxes.set(lane, box_of(item(group, lane)));
-      if (levels_.size() > 1) levels_[1][static_cast<std::size_t>(group / 8)].set(group % 8, joint(boxes));
+      if (levels_.size() > 1) levels_[1][group / 8].set(group % 8, joint(boxes));
     }
   });
   for (std::size_t level = 2; level < levels_.size(); ++level) refit_upper(level);

@@ -101,7 +101,7 @@ SyringeSetup air_of(const SyringeSpec& spec, const Actuator& actuator, double at
 /// What a syringe has pushed is commanded: its own air is that of the scene.
 void check_air(const SyringeSpec& spec, const Actuator& actuator, const std::optional<double>& atmosphere_kPa) {
   constexpr double same = 1e-6, kPa_per_MPa = 1000;
-  const Filling& filling = *actuator.filling;
+  const Filling& filling = *filling_of(actuator);
   const auto agree = [&](const std::optional<double>& given, double scene, const char* key, const char* unit) {
     if (!given || std::abs(*given - scene) <= same * std::max(*given, scene)) return;
     throw InvalidInput(spec.origin, "syringe '" + spec.actuator + "': " + key + " is " + number(*given) + " " + unit +
@@ -122,11 +122,11 @@ Syringe syringe_of(const SyringeSpec& spec, const Actuator& actuator, Index inde
   Defaults take("syringe '" + spec.actuator + "'");
   Syringe syringe;
   name_motor(spec, index, syringe);
-  syringe.by_pushed_mL = actuator.filling.has_value();
-  if (syringe.by_pushed_mL) {
+  const Filling* filling = filling_of(actuator);
+  syringe.by_pushed_mL = filling != nullptr;
+  if (filling) {
     check_air(spec, actuator, atmosphere_kPa);
-    const Filling& filling = *actuator.filling;
-    syringe.air = {filling.chamber_mm3, filling.dead_mm3, filling.syringe_mm3, 1000 * filling.atmosphere_MPa};
+    syringe.air = {filling->chamber_mm3, filling->dead_mm3, filling->syringe_mm3, 1000 * filling->atmosphere_MPa};
   } else {
     syringe.air = air_of(spec, actuator, machine.atmosphere_kpa, take);
   }
@@ -159,13 +159,14 @@ Chamber chamber_of(const ChamberSpec& spec, Index index, Machine& machine) {
   return chamber;
 }
 
-std::size_t find(const Model& model, const std::string& name, const Origin& origin, ActuatorKind kind, const char* list,
+template <class Kind>
+std::size_t find(const Model& model, const std::string& name, const Origin& origin, const char* list,
                  const char* what) {
   std::vector<std::string> names;
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     names.push_back(model.actuators[a].name);
     if (names.back() != name) continue;
-    if (model.actuators[a].kind != kind)
+    if (!model.actuators[a].is<Kind>())
       throw InvalidInput(origin, "actuator '" + name + "' stands in '" + list + "' but is no " + what);
     return a;
   }
@@ -173,17 +174,17 @@ std::size_t find(const Model& model, const std::string& name, const Origin& orig
 }
 
 void check_drivable(const Actuator& actuator, bool pressure_known, bool on_syringe, const std::string& file) {
-  if (actuator.kind == ActuatorKind::dea)
+  if (actuator.is<DeaDrive>())
     throw InvalidInput(
         {file}, "actuator '" + actuator.name +
                     "' is a dielectric elastomer: drive moves steppers and schedules pressures, and sets no voltages");
-  if (actuator.kind == ActuatorKind::cable && actuator.control == Control::load)
+  if (actuator.is<CableDrive>() && actuator.control == Control::load)
     throw InvalidInput({file},
                        "cable '" + actuator.name +
                            "' is commanded by its tension, and a stepper sets lengths: give it 'control: length' in "
                            "the scene and command ratios, such as those that fk reports as achieved");
-  if (actuator.kind != ActuatorKind::pneumatic) return;
-  if (actuator.filling && !(on_syringe && actuator.filling->pushed))
+  if (!actuator.is<ChamberDrive>()) return;
+  if (const Filling* filling = filling_of(actuator); filling && !(on_syringe && filling->pushed))
     throw InvalidInput(
         {file}, "chamber '" + actuator.name + "' is commanded by its " + control_name(actuator) + ", and " +
                     (on_syringe ? "a plunger sets what it has pushed: give it 'source: {syringe_mL: ...}' in the scene"
@@ -208,9 +209,9 @@ void check_described(const Actuator& actuator, const Machine& machine, const std
       std::any_of(machine.syringes.begin(), machine.syringes.end(), is_this) ||
       std::any_of(machine.chambers.begin(), machine.chambers.end(), is_this))
     return;
-  throw InvalidInput({machine.file},
-                     "actuator '" + actuator.name + "', which " + commands + " commands, has no entry in " +
-                         (actuator.kind == ActuatorKind::cable ? "'tendons'" : "'chambers' or 'syringes'"));
+  throw InvalidInput({machine.file}, "actuator '" + actuator.name + "', which " + commands +
+                                         " commands, has no entry in " +
+                                         (actuator.is<CableDrive>() ? "'tendons'" : "'chambers' or 'syringes'"));
 }
 
 bool stands_on_syringe(const HardwareSpec& hardware, const Actuator& actuator) {
@@ -226,7 +227,7 @@ void assemble_board(const Model& model, const HardwareSpec& hardware, Machine& m
   take.add_to(machine.defaults);
   const bool any_air = std::any_of(hardware.syringes.begin(), hardware.syringes.end(), [&](const SyringeSpec& spec) {
     const auto actuator = find_actuator(model, spec.actuator);
-    return !actuator || !model.actuators[static_cast<std::size_t>(*actuator)].filling;
+    return !actuator || !filling_of(model.actuators[*actuator]);
   });
   if (!any_air) return;
   Defaults take_air("air");
@@ -254,18 +255,18 @@ Machine assemble(const Model& model, const HardwareSpec& hardware, const Command
       check_drivable(actuators[a], commands.pressure_known[a], stands_on_syringe(hardware, actuators[a]),
                      commands.file);
   for (const TendonSpec& spec : hardware.tendons) {
-    const std::size_t a = find(model, spec.actuator, spec.origin, ActuatorKind::cable, "tendons", "cable");
+    const std::size_t a = find<CableDrive>(model, spec.actuator, spec.origin, "tendons", "cable");
     if (actuators[a].control == Control::ratio)
       machine.tendons.push_back(tendon_of(spec, actuators[a], static_cast<Index>(a), machine));
   }
   for (const SyringeSpec& spec : hardware.syringes) {
-    const std::size_t a = find(model, spec.actuator, spec.origin, ActuatorKind::pneumatic, "syringes", "chamber");
+    const std::size_t a = find<ChamberDrive>(model, spec.actuator, spec.origin, "syringes", "chamber");
     if (is_driven(a))
       machine.syringes.push_back(
           syringe_of(spec, actuators[a], static_cast<Index>(a), hardware.atmosphere_kPa, machine));
   }
   for (const ChamberSpec& spec : hardware.chambers) {
-    const std::size_t a = find(model, spec.actuator, spec.origin, ActuatorKind::pneumatic, "chambers", "chamber");
+    const std::size_t a = find<ChamberDrive>(model, spec.actuator, spec.origin, "chambers", "chamber");
     if (is_driven(a)) machine.chambers.push_back(chamber_of(spec, static_cast<Index>(a), machine));
   }
   for (std::size_t a = 0; a < actuators.size(); ++a)

@@ -160,7 +160,7 @@ PressureSchedule plan_pressures(const Machine& machine, const Commands& commands
   for (const CommandRow& row : commands.rows) {
     PressureSchedule::Row out{*row.time_s, {}};
     for (const Chamber& chamber : machine.chambers) {
-      const bool known = commands.pressure_known[static_cast<std::size_t>(chamber.actuator)];
+      const bool known = commands.pressure_known[chamber.actuator];
       const double kpa = known ? row.pressures_kpa[chamber.actuator] : row.actuation[chamber.actuator];
       const bool low = kpa < chamber.low_kpa;
       if (low || kpa > chamber.high_kpa)

@@ -10,9 +10,9 @@ Vector3Of<Number> column(const Shape& shape, int number, int first) {
   Vector3Of<Number> out;
   for (int i = 0; i < 3; ++i) {
     if constexpr (std::is_same_v<Number, double>)
-      out[static_cast<std::size_t>(i)] = shape(i, number);
+      out[i] = shape(i, number);
     else
-      out[static_cast<std::size_t>(i)] = Number::variable(shape(i, number), 3 * (first + number) + i);
+      out[i] = Number::variable(shape(i, number), 3 * (first + number) + i);
   }
   return out;
 }
@@ -27,12 +27,10 @@ std::array<Number, 3> curvature(const SheetShape& shape) {
 template <class Number>
 Number place_energy(const BendingPlace& place, const SheetShape& shape) {
   std::array<Number, 3> bent = curvature<Number>(shape);
-  for (int i = 0; i < 3; ++i) bent[static_cast<std::size_t>(i)] = bent[static_cast<std::size_t>(i)] - place.rest[i];
+  for (int i = 0; i < 3; ++i) bent[i] = bent[i] - place.rest[i];
   Number energy = 0.0;
   for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      energy = energy +
-               (place.stiffness(i, j) / 2) * (bent[static_cast<std::size_t>(i)] * bent[static_cast<std::size_t>(j)]);
+    for (int j = 0; j < 3; ++j) energy = energy + (place.stiffness(i, j) / 2) * (bent[i] * bent[j]);
   return energy;
 }
 

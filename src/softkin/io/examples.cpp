@@ -79,8 +79,7 @@ Example read_example(const fs::path& folder, const std::string& name) {
 std::vector<ExampleActuator> actuators_of(const fs::path& scene) {
   std::vector<ExampleActuator> actuators;
   for (const Actuator& each : compile(read_scene(scene)).actuators)
-    if (each.kind < ActuatorKind::motion)  // of the robot, not of what is around it
-      actuators.push_back({each.name, kind_name(each), command_unit(each), each.low, each.high});
+    if (drives(each)) actuators.push_back({each.name, kind_name(each), command_unit(each), each.low, each.high});
   return actuators;
 }
 

@@ -38,7 +38,7 @@ StaticsOptions exact_enough(StaticsOptions options, const std::vector<PoseColumn
   double least = std::numeric_limits<double>::infinity();
   for (std::size_t r = 0; r < columns.size(); ++r) {
     markers_alone = markers_alone && columns[r].kind == Reading::coordinate;
-    least = std::min(least, deviations[static_cast<Index>(r)]);
+    least = std::min(least, deviations[r]);
   }
   if (markers_alone) options.step_tolerance_mm = exact * least;
   return options;
@@ -192,7 +192,7 @@ Estimator::Estimator(const Model& model, const std::vector<EstimatedUnknown>& un
   if (columns.empty()) throw InvalidInput("there is no reading");
   if (deviations.size() != static_cast<Index>(columns.size())) throw InvalidInput("each reading needs a deviation");
   for (std::size_t r = 0; r < columns.size(); ++r)
-    if (const double d = deviations[static_cast<Index>(r)]; !(d > 0 && std::isfinite(d)))
+    if (const double d = deviations[r]; !(d > 0 && std::isfinite(d)))
       throw InvalidInput("reading '" + columns[r].name + "' needs a deviation above 0, not " + number(d));
   parts_ = std::make_unique<Parts>(model, unknowns, std::move(columns), std::move(deviations), std::move(options));
 }
@@ -253,13 +253,11 @@ std::vector<Index> Estimator::told_actuators() const {
 std::vector<ReadingGroup> reading_groups(const Model& model, const std::vector<PoseColumn>& columns) {
   std::vector<ReadingGroup> groups;
   for (Index c = 0; c < static_cast<Index>(columns.size()); ++c) {
-    const PoseColumn& column = columns[static_cast<std::size_t>(c)];
-    std::string name = column.marker >= 0 ? "marker " + model.markers[static_cast<std::size_t>(column.marker)].name
-                       : column.support >= 0
-                           ? "force of " + model.supports[static_cast<std::size_t>(column.support)].name
-                       : column.kind == Reading::direction
-                           ? "direction " + model.sensors[static_cast<std::size_t>(column.sensor)]->name
-                           : column.name;
+    const PoseColumn& column = columns[c];
+    std::string name = column.marker >= 0                  ? "marker " + model.markers[column.marker].name
+                       : column.support >= 0               ? "force of " + model.supports[column.support].name
+                       : column.kind == Reading::direction ? "direction " + model.sensors[column.sensor]->name
+                                                           : column.name;
     const auto same = std::find_if(groups.begin(), groups.end(), [&](const ReadingGroup& g) { return g.name == name; });
     if (same == groups.end())
       groups.push_back({std::move(name), {c}});

@@ -36,8 +36,7 @@ Vec3 on_support(const Model& model, Index support, const Points& reactions) {
   Vec3 sum = Vec3::Zero();
   for (Index v = 0; v < reactions.rows(); ++v)
     for (int axis = 0; axis < 3; ++axis)
-      if (model.support_of[static_cast<std::size_t>(v)][static_cast<std::size_t>(axis)] == support)
-        sum[axis] -= reactions(v, axis);
+      if (model.support_of[v][axis] == support) sum[axis] -= reactions(v, axis);
   return sum;
 }
 
@@ -74,7 +73,7 @@ double usual_mm_per_N(const ForceGoal& goal, double tolerance_mm, std::optional<
   constexpr double share = 1e-3, least_N = 1e-3;
   Vec3 asked = goal.force;
   for (int axis = 0; axis < 3; ++axis)
-    if (!goal.axes[static_cast<std::size_t>(axis)]) asked[axis] = 0;
+    if (!goal.axes[axis]) asked[axis] = 0;
   const double size = asked.stableNorm();
   const double tolerance = tolerance_N.value_or(size > 0 ? share * size : least_N);
   const double lever = tolerance_mm / tolerance;
@@ -85,7 +84,7 @@ double usual_mm_per_N(const ForceGoal& goal, double tolerance_mm, std::optional<
 
 Vec3 exerted_force(const ForceGoal& goal, const std::vector<Reaction>& reactions,
                    const std::optional<std::vector<PairForces>>& contacts) {
-  if (!is_part(goal)) return -reactions.at(static_cast<std::size_t>(goal.index)).force;
+  if (!is_part(goal)) return -reactions.at(goal.index).force;
   Vec3 force = Vec3::Zero();
   if (!contacts) return force;
   for (const PairForces& pair : *contacts) {
@@ -148,8 +147,7 @@ std::vector<ExertionSlopes> inverse::exertion_slopes(const Model& model, const S
     if (is_part(*force) && pressed.empty()) pressed = statics.pressing_changes(at, sensitivity.positions);
     for (Index a = 0; a < m; ++a) {
       const auto by = static_cast<std::size_t>(a);
-      slope.force.col(a) = is_part(*force) ? pressed[by][static_cast<std::size_t>(force->index)]
-                                           : on_support(model, force->index, held[by]);
+      slope.force.col(a) = is_part(*force) ? pressed[by][force->index] : on_support(model, force->index, held[by]);
       if (exertions[i].gap) slope.gap[a] = change_of(*exertions[i].gap, model, sensitivity.positions[by]);
     }
   }

@@ -20,26 +20,26 @@ template <class... Cases>
 Overloaded(Cases...) -> Overloaded<Cases...>;
 
 Vec3 marker_at(const Model& model, Index marker, const Points& positions) {
-  return model.markers[static_cast<std::size_t>(marker)].at(positions);
+  return model.markers[marker].at(positions);
 }
 
 /// How a marker moves where the vertices do.
 Vec3 marker_move(const Model& model, Index marker, const Points& positions, const Points& moves) {
-  return model.markers[static_cast<std::size_t>(marker)].velocity(positions, moves);
+  return model.markers[marker].velocity(positions, moves);
 }
 
 /// The coordinates that count.
 Eigen::VectorXd counted(const auto& goal, const Vec3& vector) {
   Eigen::VectorXd terms(std::count(goal.axes.begin(), goal.axes.end(), true));
   for (Index axis = 0, row = 0; axis < 3; ++axis)
-    if (goal.axes[static_cast<std::size_t>(axis)]) terms[row++] = vector[axis];
+    if (goal.axes[axis]) terms[row++] = vector[axis];
   return terms;
 }
 
 /// The same with zero for those that do not.
 Vec3 masked(const ForceGoal& goal, Vec3 vector) {
   for (int axis = 0; axis < 3; ++axis)
-    if (!goal.axes[static_cast<std::size_t>(axis)]) vector[axis] = 0;
+    if (!goal.axes[axis]) vector[axis] = 0;
   return vector;
 }
 
@@ -181,7 +181,7 @@ double distance_from_rest(const Model& model, const PositionGoal& goal, double u
   const Vec3 rest = marker_at(model, goal.marker, model.rest);
   Vec3 away = Vec3::Zero();
   for (int axis = 0; axis < 3; ++axis)
-    if (goal.axes[static_cast<std::size_t>(axis)]) away[axis] = unit_mm * goal.target[axis] - rest[axis];
+    if (goal.axes[axis]) away[axis] = unit_mm * goal.target[axis] - rest[axis];
   return away.stableNorm();
 }
 
@@ -211,9 +211,9 @@ std::vector<std::string> doubts_about(const Model& model, const std::vector<Goal
     const bool far = given > large * model.diagonal_mm;
     const bool small = metres < 0.5 * given && goal->target.cwiseAbs().maxCoeff() * large < model.diagonal_mm;
     if (!far && !small) continue;
-    const std::string away = "target of '" + model.markers[static_cast<std::size_t>(goal->marker)].name +
-                             "': " + number(given) + " mm away from the marker at rest, but the robot is " +
-                             number(model.diagonal_mm) + " mm across";
+    const std::string away = "target of '" + model.markers[goal->marker].name + "': " + number(given) +
+                             " mm away from the marker at rest, but the robot is " + number(model.diagonal_mm) +
+                             " mm across";
     doubts.push_back(away + (far ? ": are the coordinates in another unit than mm?"
                                  : "; it would be " + number(metres, 3) +
                                        " mm away if the coordinates were in metres: are they? They are taken as mm"));
@@ -230,7 +230,7 @@ Eigen::VectorXd inverse::errors_of(const Model& model, const std::vector<Goal>& 
   Eigen::VectorXd errors(static_cast<Index>(goals.size()));
   for (std::size_t i = 0; i < goals.size(); ++i) {
     const Exertion found{exertions.empty() ? Vec3(Vec3::Zero()) : exertions[i].force, std::nullopt};
-    errors[static_cast<Index>(i)] = terms_of(model, goals[i], positions, found).stableNorm();
+    errors[i] = terms_of(model, goals[i], positions, found).stableNorm();
   }
   return errors;
 }

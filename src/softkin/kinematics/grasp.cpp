@@ -18,7 +18,7 @@ constexpr double nearly = 0.9;        // of the friction that there can be: wher
 const FreeBody& body_at(const Model& model, Index body) {
   if (body < 0 || body >= static_cast<Index>(model.bodies.size()))
     throw InvalidInput("the robot has no body " + std::to_string(body) + " (from 0)");
-  return model.bodies[static_cast<std::size_t>(body)];
+  return model.bodies[body];
 }
 
 ProgressCallback told(const GraspProgress& progress, const std::string& doing) {
@@ -57,7 +57,7 @@ Pressed pressed(const Model& model, Index body, const ElementDeformation& shape)
   const std::string& name = body_at(model, body).name;
   Pressed sum;
   if (!shape.contacts) return sum;
-  const auto is_body = [&](Index part) { return model.contact.parts[static_cast<std::size_t>(part)].name == name; };
+  const auto is_body = [&](Index part) { return model.contact.parts[part].name == name; };
   double slipping = 0;
   bool rubs = false;
   for (const PairForces& pair : shape.contacts->pairs) {
@@ -105,9 +105,9 @@ Actuation pulled(const Model& model, Actuation actuation, Index body, const Vec3
   (void)body_at(model, body);
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const Actuator& command = model.actuators[a];
-    if (command.other != body) continue;
-    if (command.kind == ActuatorKind::hold) actuation[static_cast<Index>(a)] = 0;
-    if (command.kind == ActuatorKind::force) actuation[static_cast<Index>(a)] = force_N * direction[command.axis];
+    if (const auto* hold = command.as<HoldCommand>(); hold && hold->body == body) actuation[a] = 0;
+    if (const auto* force = command.as<ForceCommand>(); force && force->body == body)
+      actuation[a] = force_N * direction[force->axis];
   }
   return actuation;
 }
@@ -115,7 +115,7 @@ Actuation pulled(const Model& model, Actuation actuation, Index body, const Vec3
 double most_pull(const Model& model, Index body) {
   (void)body_at(model, body);
   for (const Actuator& command : model.actuators)
-    if (command.kind == ActuatorKind::force && command.other == body) return command.high;
+    if (const auto* force = command.as<ForceCommand>(); force && force->body == body) return command.high;
   return 0;
 }
 
@@ -195,13 +195,11 @@ class Pulling {
   /// What rubs on the body, along the surfaces, over what friction can hold at most [-]; 0 without friction.
   [[nodiscard]] double friction_used() const {
     const ElementDeformation shape = statics_.measured(pull_.last.state);
-    const std::string& name = model_.bodies[static_cast<std::size_t>(body_)].name;
+    const std::string& name = model_.bodies[body_].name;
     double used = 0, most = 0;
     if (!shape.contacts) return 0;
     for (const PairForces& pair : shape.contacts->pairs) {
-      const auto is_body = [&](Index part) {
-        return model_.contact.parts[static_cast<std::size_t>(part)].name == name;
-      };
+      const auto is_body = [&](Index part) { return model_.contact.parts[part].name == name; };
       if (!is_body(pair.a) && !is_body(pair.b)) continue;
       used += std::sqrt(std::max(0.0, pair.force.squaredNorm() - pair.normal_N * pair.normal_N));
       most += model_.contact.pair(pair.a, pair.b).friction * pair.normal_N;

@@ -232,7 +232,7 @@ class Inverse {
                 : Eigen::VectorXd(found.slopes.terms.transpose() * pose.terms / pose.terms.norm());
     const double least = reached ? options_.preferred_tolerance : 1e-9 * found.slopes.terms.norm();
     for (Index i = 0; i < pose.shares.size(); ++i) {
-      int& active = result_.active[static_cast<std::size_t>(response_.free()[static_cast<std::size_t>(i)])];
+      int& active = result_.active[response_.free()[i]];
       if (pose.shares[i] <= at_the_end && slope[i] > least) active = -1;
       if (pose.shares[i] >= 1 - at_the_end && slope[i] < -least) active = 1;
     }
@@ -244,7 +244,7 @@ class Inverse {
     const Actuation preferred = response_.actuation_of(settings.preferred, state.actuation);
     for (Index i = 0; i < pose.idle.size(); ++i) {
       if (!(pose.idle[i] > 0)) continue;
-      const Index a = response_.free()[static_cast<std::size_t>(i)];
+      const Index a = response_.free()[i];
       state.actuation[a] = std::max(state.actuation[a], preferred[a]);
     }
   }
@@ -263,9 +263,8 @@ class Inverse {
     const std::vector<inverse::Exertion>& exertions = response_.exertions_at(state);
     for (std::size_t i = 0; i < exertions.size(); ++i)
       if (exertions[i].gap)
-        text += "; nothing touches '" +
-                model_.contact.parts[static_cast<std::size_t>(std::get<ForceGoal>(goals_[i].what).index)].name +
-                "' there";
+        text +=
+            "; nothing touches '" + model_.contact.parts[std::get<ForceGoal>(goals_[i].what).index].name + "' there";
     return text;
   }
 

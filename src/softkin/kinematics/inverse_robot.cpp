@@ -34,20 +34,20 @@ RobotResponse::RobotResponse(const Model& model, const Statics& statics, const s
 }
 
 bool RobotResponse::pulls(Index actuator) const {
-  const Actuator& a = model_.actuators[static_cast<std::size_t>(actuator)];
-  return model_.formulation == Formulation::physical && a.kind == ActuatorKind::cable && a.control == Control::ratio;
+  const Actuator& a = model_.actuators[actuator];
+  return model_.formulation == Formulation::physical && a.is<CableDrive>() && a.control == Control::ratio;
 }
 
 double RobotResponse::width(Index actuator) const {
-  const Actuator& a = model_.actuators[static_cast<std::size_t>(actuator)];
+  const Actuator& a = model_.actuators[actuator];
   return a.high - a.low;
 }
 
 Eigen::VectorXd RobotResponse::shares_of(const Actuation& actuation) const {
   Eigen::VectorXd shares(static_cast<Index>(free_.size()));
   for (Index i = 0; i < shares.size(); ++i) {
-    const Index a = free_[static_cast<std::size_t>(i)];
-    shares[i] = (actuation[a] - model_.actuators[static_cast<std::size_t>(a)].low) / width(a);
+    const Index a = free_[i];
+    shares[i] = (actuation[a] - model_.actuators[a].low) / width(a);
   }
   return shares.cwiseMax(0).cwiseMin(1);
 }
@@ -55,8 +55,8 @@ Eigen::VectorXd RobotResponse::shares_of(const Actuation& actuation) const {
 Actuation RobotResponse::actuation_of(const Eigen::VectorXd& shares, const Actuation& others) const {
   Actuation actuation = others;
   for (Index i = 0; i < shares.size(); ++i) {
-    const Index a = free_[static_cast<std::size_t>(i)];
-    const Actuator& actuator = model_.actuators[static_cast<std::size_t>(a)];
+    const Index a = free_[i];
+    const Actuator& actuator = model_.actuators[a];
     const double value = shares[i] < 1 ? actuator.low + shares[i] * width(a) : actuator.high;
     actuation[a] = std::clamp(value, actuator.low, actuator.high);
   }
@@ -92,9 +92,9 @@ Pose RobotResponse::pose_of(Equilibrium equilibrium, bool taut) const {
 void RobotResponse::tauten(Pose& pose) const {
   State& state = pose.equilibrium.state;
   for (std::size_t i = 0; i < cables_.size(); ++i) {
-    const Index a = free_[static_cast<std::size_t>(cables_[i])];
-    const Actuator& cable = model_.actuators[static_cast<std::size_t>(a)];
-    pose.tensions[static_cast<Index>(i)] = std::max(0.0, state.multipliers[a]);
+    const Index a = free_[cables_[i]];
+    const Actuator& cable = model_.actuators[a];
+    pose.tensions[i] = std::max(0.0, state.multipliers[a]);
     if (state.multipliers[a] > 0) continue;
     const double path = achieved_ratio(model_, cable, state.positions);
     if (path < cable.low) continue;
@@ -124,8 +124,8 @@ bool RobotResponse::release(Pose& pose, const Slopes& slopes, const Eigen::Vecto
   const Actuation longer = actuation_of(preferred, state.actuation);
   Actuation released = state.actuation;
   for (std::size_t k = 0; k < cables_.size(); ++k) {
-    const Index i = cables_[k], a = free_[static_cast<std::size_t>(i)];
-    const double tension = pose.tensions[static_cast<Index>(k)];
+    const Index i = cables_[k], a = free_[i];
+    const double tension = pose.tensions[k];
     const double rate = std::abs(slopes.tensions(static_cast<Index>(k), i));
     if (!(tension > 0) || !(longer[a] > state.actuation[a])) continue;
     if (tension * slopes.terms.col(i).norm() < resolution_mm * rate) released[a] = longer[a];
@@ -176,11 +176,10 @@ bool RobotResponse::slopes(const Pose& at, Slopes& slopes) {
   slopes.terms.resize(all.rows(), free);
   slopes.tensions.resize(static_cast<Index>(cables_.size()), free);
   for (Index i = 0; i < free; ++i) {
-    const Index a = free_[static_cast<std::size_t>(i)];
+    const Index a = free_[i];
     slopes.terms.col(i) = width(a) * all.col(a);
     for (std::size_t k = 0; k < cables_.size(); ++k)
-      slopes.tensions(static_cast<Index>(k), i) =
-          width(a) * slopes.sensitivity.multipliers(free_[static_cast<std::size_t>(cables_[k])], a);
+      slopes.tensions(static_cast<Index>(k), i) = width(a) * slopes.sensitivity.multipliers(free_[cables_[k]], a);
   }
   return slopes.terms.allFinite() && slopes.tensions.allFinite();
 }

@@ -137,7 +137,7 @@ class SmallProgram {
     const auto count = static_cast<Eigen::Index>(held_.size());
     if (count == 0) return relief.resize(0);
     Eigen::MatrixXd face(count, row.size());
-    for (Eigen::Index i = 0; i < count; ++i) face.row(i) = rows_.row(held_[static_cast<std::size_t>(i)]);
+    for (Eigen::Index i = 0; i < count; ++i) face.row(i) = rows_.row(held_[i]);
     const Eigen::MatrixXd response = factor_.solve(Eigen::MatrixXd(face.transpose()));
     relief = solve_symmetric(face * response, face * step);
     step -= response * relief;
@@ -154,7 +154,7 @@ class SmallProgram {
       double dual = HUGE_VAL;
       std::size_t leaving = 0;
       for (std::size_t i = 0; i < held_.size(); ++i) {
-        const double rate = relief[static_cast<Eigen::Index>(i)];
+        const double rate = relief[i];
         if (rate > rounding && multipliers_[i] / rate < dual) {
           dual = multipliers_[i] / rate;
           leaving = i;
@@ -166,7 +166,7 @@ class SmallProgram {
       const double length = std::min(dual, primal);
       if (!std::isfinite(length)) return false;
       if (moves) at_ += length * step;
-      for (std::size_t i = 0; i < held_.size(); ++i) multipliers_[i] -= length * relief[static_cast<Eigen::Index>(i)];
+      for (std::size_t i = 0; i < held_.size(); ++i) multipliers_[i] -= length * relief[i];
       multiplier += length;
       if (primal <= dual) break;
       held_.erase(held_.begin() + static_cast<std::ptrdiff_t>(leaving));

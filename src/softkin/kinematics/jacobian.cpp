@@ -9,7 +9,7 @@ Eigen::MatrixXd jacobian(const Model& model, const Points& positions, const Sens
   for (std::size_t p = 0; p < markers.size(); ++p) {
     if (markers[p] < 0 || markers[p] >= static_cast<Index>(model.markers.size()))
       throw InvalidInput("the robot has no marker number " + std::to_string(markers[p]));
-    const Marker& marker = model.markers[static_cast<std::size_t>(markers[p])];
+    const Marker& marker = model.markers[markers[p]];
     for (std::size_t a = 0; a < sensitivity.positions.size(); ++a)
       result.block<3, 1>(3 * static_cast<Index>(p), static_cast<Index>(a)) =
           marker.velocity(positions, sensitivity.positions[a]);

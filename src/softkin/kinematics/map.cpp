@@ -30,7 +30,7 @@ void check_tree(const MapPiece& piece) {
   check(!piece.tree.empty(), "a piece has no cells");
   const auto nodes = static_cast<Index>(piece.tree.size());
   for (Index n = 0; n < nodes; ++n) {
-    const MapNode& node = piece.tree[static_cast<std::size_t>(n)];
+    const MapNode& node = piece.tree[n];
     if (node.variable < 0) {
       check(node.cell >= -1 && node.cell < static_cast<Index>(piece.cells.size()), "a cell is missing");
       continue;
@@ -78,14 +78,14 @@ KinematicMap::KinematicMap(MapData data) : data_(std::move(data)) {
     for (const Index input : piece.inputs) check(in_range(input, data_.inputs.size()), "a piece has another input");
     check_tree(piece);
     for (const MapCell& cell : piece.cells) check_cell(data_, piece, cell);
-    pieces_[static_cast<std::size_t>(maps::bits_of(piece.taut))] = static_cast<Index>(p);
+    pieces_[maps::bits_of(piece.taut)] = static_cast<Index>(p);
   }
 }
 
 Index KinematicMap::cell_of(const MapPiece& piece, const double* commands) const {
   const MapNode* node = piece.tree.data();
   while (node->variable >= 0) {
-    const double command = commands[piece.inputs[static_cast<std::size_t>(node->variable)]];
+    const double command = commands[piece.inputs[node->variable]];
     node = piece.tree.data() + (command < node->at ? node->first : node->second);
   }
   return node->cell;
@@ -101,7 +101,7 @@ void KinematicMap::evaluate(const MapPiece& piece, const MapCell& cell, const do
   cell.outputs.evaluate(x.data(), values, slopes);
   for (Index input = inputs(), j = static_cast<Index>(variables); input-- > 0;) {
     double* row = slopes + input * size;
-    if (j == 0 || piece.inputs[static_cast<std::size_t>(j - 1)] != input) {
+    if (j == 0 || piece.inputs[j - 1] != input) {
       std::fill_n(row, size, 0.0);
       continue;
     }
@@ -114,11 +114,11 @@ void KinematicMap::evaluate(const MapPiece& piece, const MapCell& cell, const do
 
 KinematicMap::Place KinematicMap::evaluate_bits(Index taut, const double* commands, double* values,
                                                 double* slopes) const {
-  Place place{pieces_[static_cast<std::size_t>(taut)], -1};
+  Place place{pieces_[taut], -1};
   if (place.piece < 0) return place;
-  const MapPiece& piece = data_.pieces[static_cast<std::size_t>(place.piece)];
+  const MapPiece& piece = data_.pieces[place.piece];
   place.cell = cell_of(piece, commands);
-  if (place.cell >= 0) evaluate(piece, piece.cells[static_cast<std::size_t>(place.cell)], commands, values, slopes);
+  if (place.cell >= 0) evaluate(piece, piece.cells[place.cell], commands, values, slopes);
   return place;
 }
 
@@ -143,10 +143,9 @@ KinematicMap::Place KinematicMap::find(const double* commands, double* values, d
       const MapCable& cable = data_.cables[c];
       const bool holds = (taut >> c) & 1;
       const double command = cable.input < 0 ? cable.command : commands[cable.input];
-      const bool ends = pieces_[static_cast<std::size_t>(taut ^ (Index{1} << c))] < 0;
-      const double by =
-          (holds ? -values[cable.tension] : values[cable.ratio] - command * (1 + 1e-12)) -
-          (circles || ends ? data_.outputs[static_cast<std::size_t>(holds ? cable.tension : cable.ratio)].accuracy : 0);
+      const bool ends = pieces_[taut ^ (Index{1} << c)] < 0;
+      const double by = (holds ? -values[cable.tension] : values[cable.ratio] - command * (1 + 1e-12)) -
+                        (circles || ends ? data_.outputs[holds ? cable.tension : cable.ratio].accuracy : 0);
       // pushing ones first: those that are too long may then be so no more
       if (!(by > 0) || (pushes && !holds) || (pushes == holds && by <= worst)) continue;
       wrong = c;
@@ -163,7 +162,7 @@ KinematicMap::Place KinematicMap::find(const double* commands, double* values, d
 std::optional<KinematicMap::Place> KinematicMap::evaluate(const double* commands, double* values,
                                                           double* slopes) const {
   for (Index i = 0; i < inputs(); ++i) {
-    const MapInput& input = data_.inputs[static_cast<std::size_t>(i)];
+    const MapInput& input = data_.inputs[i];
     if (!(commands[i] >= input.low && commands[i] <= input.high)) return std::nullopt;
   }
   Index taut = 0;
@@ -204,8 +203,8 @@ Points KinematicMap::sum_of_modes(const Eigen::VectorXd& amplitudes) const {
 
 Points KinematicMap::shape(const double* commands, const Place& place) const {
   if (!data_.shape) throw InvalidInput("the map was made without the robot's shape");
-  const MapPiece& piece = data_.pieces[static_cast<std::size_t>(place.piece)];
-  const MapCell& cell = piece.cells[static_cast<std::size_t>(place.cell)];
+  const MapPiece& piece = data_.pieces[place.piece];
+  const MapCell& cell = piece.cells[place.cell];
   Eigen::VectorXd amplitudes(data_.shape->units.size());
   cell.modes.evaluate(scaled(piece, cell, commands).data(), amplitudes.data());
   return rows_of(data_.shape->mean) + sum_of_modes(amplitudes);
@@ -213,15 +212,14 @@ Points KinematicMap::shape(const double* commands, const Place& place) const {
 
 std::vector<Points> KinematicMap::shape_slopes(const double* commands, const Place& place) const {
   if (!data_.shape) throw InvalidInput("the map was made without the robot's shape");
-  const MapPiece& piece = data_.pieces[static_cast<std::size_t>(place.piece)];
-  const MapCell& cell = piece.cells[static_cast<std::size_t>(place.cell)];
+  const MapPiece& piece = data_.pieces[place.piece];
+  const MapCell& cell = piece.cells[place.cell];
   Eigen::VectorXd amplitudes(data_.shape->units.size());
   maps::RowMatrix slopes(static_cast<Index>(piece.inputs.size()), amplitudes.size());
   cell.modes.evaluate(scaled(piece, cell, commands).data(), amplitudes.data(), slopes.data());
   std::vector<Points> all(data_.inputs.size(), Points::Zero(data_.shape->mean.size() / 3, 3));
   for (Index j = 0; j < static_cast<Index>(slopes.rows()); ++j)
-    all[static_cast<std::size_t>(piece.inputs[static_cast<std::size_t>(j)])] =
-        sum_of_modes(2 / (cell.high[j] - cell.low[j]) * slopes.row(j).transpose());
+    all[piece.inputs[j]] = sum_of_modes(2 / (cell.high[j] - cell.low[j]) * slopes.row(j).transpose());
   return all;
 }
 
@@ -232,7 +230,7 @@ Eigen::VectorXd KinematicMap::commands(const Actuation& actuation) const {
   Eigen::VectorXd commands(inputs());
   Actuation others = actuation;
   for (Index i = 0; i < inputs(); ++i) {
-    const Index actuator = data_.inputs[static_cast<std::size_t>(i)].actuator;
+    const Index actuator = data_.inputs[i].actuator;
     commands[i] = actuation[actuator];
     others[actuator] = data_.actuation[actuator];
   }

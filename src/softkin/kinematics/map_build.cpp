@@ -33,7 +33,7 @@ std::vector<Index> spread_vertices(const Model& model, Index count) {
   std::vector<Index> chosen;
   Eigen::VectorXd away = Eigen::VectorXd::Constant(model.robot_vertices(), std::numeric_limits<double>::infinity());
   for (Index v = 0; v < model.robot_vertices(); ++v)
-    if (!model.used[static_cast<std::size_t>(v)]) away[v] = -1;
+    if (!model.used[v]) away[v] = -1;
   while (static_cast<Index>(chosen.size()) < count) {
     Index farthest = 0;
     if (!(away.maxCoeff(&farthest) > 0)) break;
@@ -77,9 +77,7 @@ class Builder {
   [[nodiscard]] std::string doing(const MapPiece& piece) const {
     std::string slack;
     for (std::size_t c = 0; c < piece.taut.size(); ++c)
-      if (!piece.taut[c])
-        slack += (slack.empty() ? "" : ", ") +
-                 model_.actuators[static_cast<std::size_t>(result_.data.cables[c].actuator)].name;
+      if (!piece.taut[c]) slack += (slack.empty() ? "" : ", ") + model_.actuators[result_.data.cables[c].actuator].name;
     return slack.empty() ? (piece.taut.empty() ? "sampling" : "all cables taut") : slack + " slack";
   }
 
@@ -100,7 +98,7 @@ class Builder {
     piece.made.taut = taut;
     std::vector<bool> slack(data().inputs.size(), false);
     for (std::size_t c = 0; c < taut.size(); ++c)
-      if (!taut[c] && data().cables[c].input >= 0) slack[static_cast<std::size_t>(data().cables[c].input)] = true;
+      if (!taut[c] && data().cables[c].input >= 0) slack[data().cables[c].input] = true;
     for (std::size_t i = 0; i < slack.size(); ++i)
       if (!slack[i]) piece.made.inputs.push_back(static_cast<Index>(i));
     piece.solver = std::make_unique<PieceSolver>(model_, data(), piece.made);
@@ -129,9 +127,9 @@ class Builder {
     double largest = 0;
     for (std::size_t q = 0; q < data().outputs.size(); ++q) {
       if (data().outputs[q].unit != "kPa" && data().outputs[q].unit != "N") continue;
-      double load = std::abs(first.values[static_cast<Index>(q)]);
+      double load = std::abs(first.values[q]);
       for (std::size_t j = 0; j < piece.made.inputs.size(); ++j) {
-        const MapInput& input = data().inputs[static_cast<std::size_t>(piece.made.inputs[j])];
+        const MapInput& input = data().inputs[piece.made.inputs[j]];
         load += 0.5 * (input.high - input.low) * std::abs(first.slopes(static_cast<Index>(j), static_cast<Index>(q)));
       }
       largest = std::max(largest, load);
@@ -142,7 +140,7 @@ class Builder {
       output.accuracy = output.unit == "mm"   ? options_.accuracy_mm
                         : output.unit.empty() ? options_.ratio_accuracy
                                               : loads;
-      wanted_.accuracy[static_cast<Index>(q)] = strictness_ * output.accuracy;
+      wanted_.accuracy[q] = strictness_ * output.accuracy;
     }
     wanted_.shape_mm = strictness_ * options_.shape_accuracy_mm;
     wanted_of_ = strictness_;
@@ -153,7 +151,7 @@ class Builder {
                                                    const Eigen::VectorXd& commands) const {
     const auto found = earlier_.find(taut);
     if (found == earlier_.end() || number >= static_cast<Index>(found->second.size())) return std::nullopt;
-    const Sample& sample = found->second[static_cast<std::size_t>(number)];
+    const Sample& sample = found->second[number];
     return sample.commands == commands ? std::optional(sample) : std::nullopt;
   }
 
@@ -170,7 +168,7 @@ class Builder {
           return piece.solver->solve(at, piece.fit->nearest(at), options_.statics, crew_.patience());
         });
       if (!sample) return false;
-      found[static_cast<std::size_t>(i)] = std::move(*sample);
+      found[i] = std::move(*sample);
       return true;
     };
     const MapProgress from{equilibria_, 0, piece.fit->error(), doing(piece.made)};
@@ -220,9 +218,9 @@ class Builder {
 
   /// The nearest equilibrium of the piece that the commands lead to.
   [[nodiscard]] State start_of(const KinematicMap::Place& place, const Eigen::VectorXd& commands) const {
-    const Piece& piece = *pieces_[static_cast<std::size_t>(place.piece)];
+    const Piece& piece = *pieces_[place.piece];
     Eigen::VectorXd own(static_cast<Index>(piece.made.inputs.size()));
-    for (Index j = 0; j < own.size(); ++j) own[j] = commands[piece.made.inputs[static_cast<std::size_t>(j)]];
+    for (Index j = 0; j < own.size(); ++j) own[j] = commands[piece.made.inputs[j]];
     const Sample* nearest = piece.fit->nearest(own);
     return nearest ? of_robot(nearest->state, piece.made.taut) : statics_.rest();
   }
@@ -232,7 +230,7 @@ class Builder {
   [[nodiscard]] State of_robot(State state, const std::vector<bool>& taut) const {
     for (std::size_t c = 0; c < taut.size(); ++c) {
       const Index a = result_.data.cables[c].actuator;
-      const Actuator& cable = model_.actuators[static_cast<std::size_t>(a)];
+      const Actuator& cable = model_.actuators[a];
       if (!taut[c]) state.actuation[a] = achieved_ratio(model_, cable, state.positions);
       const bool is_one =
           state.multipliers[a] >= 0 && state.actuation[a] >= cable.low && state.actuation[a] <= cable.high;

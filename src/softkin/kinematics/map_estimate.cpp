@@ -25,15 +25,14 @@ void check_estimate(const KinematicMap& map, const std::vector<MapUnknown>& unkn
                        " numbers each, one for each output");
   for (Index q = 0; q < values.size(); ++q)
     if (!std::isnan(values[q]) && !(deviations[q] > 0 && std::isfinite(deviations[q])))
-      throw InvalidInput("the reading of '" + map.data().outputs[static_cast<std::size_t>(q)].name +
-                         "' needs a deviation above 0, not " + number(deviations[q]));
+      throw InvalidInput("the reading of '" + map.data().outputs[q].name + "' needs a deviation above 0, not " +
+                         number(deviations[q]));
   std::set<Index> seen;
   for (const MapUnknown& unknown : unknowns) {
     if (unknown.input < 0 || unknown.input >= map.inputs() || !seen.insert(unknown.input).second)
       throw InvalidInput("an unknown is no input of the map, or is given twice");
     if (!std::isfinite(unknown.mean) || !(unknown.deviation > 0 && std::isfinite(unknown.deviation)))
-      throw InvalidInput("'" + map.data().inputs[static_cast<std::size_t>(unknown.input)].name +
-                         "' needs a mean and a deviation above 0");
+      throw InvalidInput("'" + map.data().inputs[unknown.input].name + "' needs a mean and a deviation above 0");
   }
 }
 
@@ -80,7 +79,7 @@ class MapProblem {
     rows << Eigen::MatrixXd::Identity(n, n), -Eigen::MatrixXd::Identity(n, n);
     Eigen::VectorXd bounds(2 * n);
     for (Index i = 0; i < n; ++i) {
-      const MapInput& input = map_.data().inputs[static_cast<std::size_t>(unknown(i).input)];
+      const MapInput& input = map_.data().inputs[unknown(i).input];
       const double command = at.commands[unknown(i).input];
       bounds[i] = std::min(0.0, (input.low - command) / unknown(i).deviation);
       bounds[n + i] = std::min(0.0, (command - input.high) / unknown(i).deviation);
@@ -90,7 +89,7 @@ class MapProblem {
 
   [[nodiscard]] Eigen::VectorXd moved(Eigen::VectorXd commands, const Eigen::VectorXd& step) const {
     for (Index i = 0; i < count(); ++i) {
-      const MapInput& input = map_.data().inputs[static_cast<std::size_t>(unknown(i).input)];
+      const MapInput& input = map_.data().inputs[unknown(i).input];
       double& command = commands[unknown(i).input];
       command = std::clamp(command + unknown(i).deviation * step[i], input.low, input.high);
     }
@@ -110,7 +109,7 @@ class MapProblem {
 
  private:
   [[nodiscard]] Index count() const { return static_cast<Index>(unknowns_.size()); }
-  [[nodiscard]] const MapUnknown& unknown(Index i) const { return unknowns_[static_cast<std::size_t>(i)]; }
+  [[nodiscard]] const MapUnknown& unknown(Index i) const { return unknowns_[i]; }
   [[nodiscard]] Eigen::VectorXd off(const Eigen::VectorXd& commands) const {
     Eigen::VectorXd off(count());
     for (Index i = 0; i < count(); ++i) off[i] = (commands[unknown(i).input] - unknown(i).mean) / unknown(i).deviation;

@@ -71,10 +71,10 @@ class OfMap : public GivenEquilibria {
     found.regular = true;
     add_moves(slopes, commands, *place, found);
     for (Index i = 0; i < map_.inputs(); ++i) {
-      const Index a = data.inputs[static_cast<std::size_t>(i)].actuator;
+      const Index a = data.inputs[i].actuator;
       for (std::size_t k = 0; k < loads_.size(); ++k)
         if (loads_[k] >= 0) found.multipliers(static_cast<Index>(k), a) = slopes(i, loads_[k]);
-      if (is_load(model_.actuators[static_cast<std::size_t>(a)])) found.multipliers(a, a) = 1;
+      if (is_load(model_.actuators[a])) found.multipliers(a, a) = 1;
     }
     return found;
   }
@@ -94,7 +94,7 @@ class OfMap : public GivenEquilibria {
   [[nodiscard]] bool is_taut(const MapCable& cable, const State& at) const {
     constexpr double verge = 1e-9;
     if (at.multipliers[cable.actuator] > 0) return true;
-    const Actuator& actuator = model_.actuators[static_cast<std::size_t>(cable.actuator)];
+    const Actuator& actuator = model_.actuators[cable.actuator];
     return achieved_ratio(model_, actuator, at.positions) >= (1 - verge) * at.actuation[cable.actuator];
   }
 
@@ -126,16 +126,17 @@ Model seen_by(const Model& model, const MapData& data) {
   const auto markers = static_cast<Index>(model.markers.size()), cables = static_cast<Index>(data.cables.size());
   seen.rest = Points::Zero(markers + 2 * cables, 3);
   for (Index p = 0; p < markers; ++p) {
-    Marker& marker = seen.markers[static_cast<std::size_t>(p)];
+    Marker& marker = seen.markers[p];
     seen.rest.row(p) = marker.at(model.rest);
     marker = {marker.name, {{p}, {1.0}}};
   }
   for (Index c = 0; c < cables; ++c) {
-    Actuator& cable = seen.actuators[static_cast<std::size_t>(data.cables[static_cast<std::size_t>(c)].actuator)];
+    Actuator& cable = seen.actuators[data.cables[c].actuator];
     const Index begin = markers + 2 * c;
     seen.rest(begin + 1, 0) = cable.rest_measure;
-    cable.points = {{{begin}, {1.0}}, {{begin + 1}, {1.0}}};
-    cable.gaps.clear();
+    auto& way = std::get<CableDrive>(cable.drive);
+    way.points = {{{begin}, {1.0}}, {{begin + 1}, {1.0}}};
+    way.gaps.clear();
   }
   seen.held = seen.rest;
   seen.dead_load = Points::Zero(seen.rest.rows(), 3);
@@ -157,7 +158,7 @@ class MarkersOfMap : public OfMap {
     for (Index p = 0; p < markers; ++p) positions.row(p) = values.segment<3>(3 * p).transpose();
     Index end = markers + 1;
     for (const MapCable& cable : map_.data().cables) {
-      positions(end, 0) = values[cable.ratio] * model_.actuators[static_cast<std::size_t>(cable.actuator)].rest_measure;
+      positions(end, 0) = values[cable.ratio] * model_.actuators[cable.actuator].rest_measure;
       end += 2;
     }
     return positions;
@@ -166,8 +167,7 @@ class MarkersOfMap : public OfMap {
   void add_moves(const maps::RowMatrix& slopes, const Eigen::VectorXd& commands, const KinematicMap::Place& place,
                  Sensitivity& found) const override {
     for (Index i = 0; i < map_.inputs(); ++i)
-      found.positions[static_cast<std::size_t>(map_.data().inputs[static_cast<std::size_t>(i)].actuator)] =
-          positions(slopes.row(i), commands, place);
+      found.positions[map_.data().inputs[i].actuator] = positions(slopes.row(i), commands, place);
   }
 };
 
@@ -191,10 +191,9 @@ class ShapesOfMap : public OfMap {
     std::vector<Points> moves = map_.shape_slopes(commands.data(), place);
     const Points at = map_.shape(commands.data(), place);
     for (Index i = 0; i < map_.inputs(); ++i) {
-      Points& move = moves[static_cast<std::size_t>(i)];
+      Points& move = moves[i];
       lead_markers(slopes.row(i), move, &at);
-      found.positions[static_cast<std::size_t>(map_.data().inputs[static_cast<std::size_t>(i)].actuator)] =
-          std::move(move);
+      found.positions[map_.data().inputs[i].actuator] = std::move(move);
     }
   }
 

@@ -74,7 +74,7 @@ Points targets_of(const Model& model, const std::vector<Goal>& goals) {
   for (const Goal& goal : goals) {
     const auto& position = std::get<PositionGoal>(goal.what);
     for (Index axis = 0; axis < 3; ++axis)
-      if (position.axes[static_cast<std::size_t>(axis)]) targets(position.marker, axis) = position.target[axis];
+      if (position.axes[axis]) targets(position.marker, axis) = position.target[axis];
   }
   return targets;
 }
@@ -83,8 +83,7 @@ double squared_error(const Goal& goal, const Points& markers) {
   if (const auto* position = std::get_if<PositionGoal>(&goal.what)) {
     double sum = 0;
     for (Index axis = 0; axis < 3; ++axis)
-      if (position->axes[static_cast<std::size_t>(axis)])
-        sum += std::pow(markers(position->marker, axis) - position->target[axis], 2);
+      if (position->axes[axis]) sum += std::pow(markers(position->marker, axis) - position->target[axis], 2);
     return sum;
   }
   if (const auto* plane = std::get_if<PlaneGoal>(&goal.what)) {
@@ -143,7 +142,7 @@ std::vector<Index> NearestSamples::find(const std::vector<Goal>& goals, Index co
   std::iota(best.begin(), best.end(), 0);
   const auto most = std::min<std::ptrdiff_t>(count, static_cast<std::ptrdiff_t>(best.size()));
   std::partial_sort(best.begin(), best.begin() + most, best.end(), [&](Index a, Index b) {
-    const double left = errors[static_cast<std::size_t>(a)], right = errors[static_cast<std::size_t>(b)];
+    const double left = errors[a], right = errors[b];
     return left < right || (left == right && a < b);
   });
   best.resize(static_cast<std::size_t>(most));

@@ -48,10 +48,10 @@ class Candidates {
     for (Index m = 0; m < static_cast<Index>(model.markers.size()); ++m) {
       std::vector<PoseColumn> columns;
       for (int axis = 0; axis < 3; ++axis) columns.push_back({"", m, axis});
-      add(model.markers[static_cast<std::size_t>(m)].name, std::move(columns));
+      add(model.markers[m].name, std::move(columns));
     }
     for (Index s = 0; s < static_cast<Index>(model.sensors.size()); ++s) {
-      const Sensor& sensor = *model.sensors[static_cast<std::size_t>(s)];
+      const Sensor& sensor = *model.sensors[s];
       std::vector<PoseColumn> columns;
       if (sensor.kind == SensorKind::direction)
         for (int axis = 0; axis < 3; ++axis) columns.push_back({"", -1, axis, -1, Reading::direction, -1, s});
@@ -66,10 +66,10 @@ class Candidates {
  private:
   /// Of what is told by the shape alone.
   void add_measure(Index actuator) {
-    const Actuator& of = model_.actuators[static_cast<std::size_t>(actuator)];
+    const Actuator& of = model_.actuators[actuator];
     if (of.control != Control::load) return;
-    if (of.kind == ActuatorKind::pneumatic) add(of.name, {{"", -1, -1, actuator, Reading::volume}});
-    if (of.kind == ActuatorKind::cable) add(of.name, {{"", -1, -1, actuator, Reading::length}});
+    if (of.is<ChamberDrive>()) add(of.name, {{"", -1, -1, actuator, Reading::volume}});
+    if (of.is<CableDrive>()) add(of.name, {{"", -1, -1, actuator, Reading::length}});
   }
   void add(const std::string& name, std::vector<PoseColumn> columns) {
     std::erase_if(columns, [&](const PoseColumn& column) { return is_read(options_.read, column); });
@@ -95,11 +95,10 @@ Eigen::MatrixXd slopes_of(const Model& model, const Candidate& candidate, const 
   const Eigen::VectorXd none = Eigen::VectorXd::Zero(static_cast<Index>(model.actuators.size()));
   const Points nothing;
   for (Index c = 0; c < columns; ++c) {
-    const Points& moves = at.moves[static_cast<std::size_t>(c)];
+    const Points& moves = at.moves[c];
     if (vertex) slopes.col(c) = vertex_at(moves, candidate.vertex);
     for (Index r = 0; !vertex && r < static_cast<Index>(slopes.rows()); ++r)
-      slopes(r, c) = estimate::reading_change(model, candidate.columns[static_cast<std::size_t>(r)], state,
-                                              {moves, none, nothing});
+      slopes(r, c) = estimate::reading_change(model, candidate.columns[r], state, {moves, none, nothing});
   }
   return slopes / candidate.deviation;
 }
@@ -183,7 +182,7 @@ class Plan {
     if (chosen.vertex >= 0)
       planned.at_rest = vertex_at(model_.rest, chosen.vertex);
     else if (const Index marker = chosen.columns.front().marker; marker >= 0)
-      planned.at_rest = model_.markers[static_cast<std::size_t>(marker)].at(model_.rest);
+      planned.at_rest = model_.markers[marker].at(model_.rest);
     return planned;
   }
 

@@ -45,7 +45,7 @@ Directions directions_of(std::size_t dimension) {
   const Recurrence& rule = recurrences[dimension - 1];
   for (int k = 0; k < sobol_bits; ++k) {
     if (k < rule.degree) {
-      v[k] = rule.initial[static_cast<std::size_t>(k)] << (sobol_bits - 1 - k);
+      v[k] = rule.initial[k] << (sobol_bits - 1 - k);
       continue;
     }
     v[k] = v[k - rule.degree] ^ (v[k - rule.degree] >> rule.degree);
@@ -66,7 +66,7 @@ Shares sobol_shares(Index samples, std::size_t dimensions) {
     std::uint32_t x = 0;
     for (Index i = 0; i < samples; ++i) {
       shares(i, static_cast<Index>(d)) = std::ldexp(static_cast<double>(x), -sobol_bits);
-      x ^= v[static_cast<std::size_t>(std::countr_one(static_cast<std::uint32_t>(i)))];
+      x ^= v[std::countr_one(static_cast<std::uint32_t>(i))];
     }
   }
   return shares;
@@ -138,7 +138,7 @@ std::vector<std::uint64_t> hilbert_places(const Model& model, const Actuations& 
   std::vector<std::uint32_t> x(varied.size());
   for (Index i = 0; i < actuations.rows(); ++i) {
     for (std::size_t d = 0; d < varied.size(); ++d) {
-      const Actuator& actuator = model.actuators[static_cast<std::size_t>(varied[d])];
+      const Actuator& actuator = model.actuators[varied[d]];
       const double share = (actuations(i, varied[d]) - actuator.low) / (actuator.high - actuator.low);
       x[d] = static_cast<std::uint32_t>(std::min(std::ldexp(share, bits), std::ldexp(1.0, bits) - 1));
     }
@@ -182,7 +182,7 @@ Actuations sample_actuations(const Model& model, const SamplingOptions& options)
   Actuations actuations(options.samples, static_cast<Index>(model.actuators.size()));
   Index d = 0;
   for (Index a = 0; a < actuations.cols(); ++a) {
-    const Actuator& actuator = model.actuators[static_cast<std::size_t>(a)];
+    const Actuator& actuator = model.actuators[a];
     if (!varies(actuator)) {
       actuations.col(a).setConstant(drives(actuator) ? actuator.low : actuator.rest);
       continue;
@@ -204,9 +204,7 @@ std::vector<Index> order_of_neighbours(const Model& model, const Actuations& act
   std::vector<Index> order(static_cast<std::size_t>(actuations.rows()));
   std::iota(order.begin(), order.end(), 0);
   const std::vector<std::uint64_t> places = hilbert_places(model, actuations);
-  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) {
-    return places[static_cast<std::size_t>(a)] < places[static_cast<std::size_t>(b)];
-  });
+  std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return places[a] < places[b]; });
   return order;
 }
 

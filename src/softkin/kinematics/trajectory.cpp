@@ -20,7 +20,7 @@ constexpr double least_move = 1e-6;    // shares, over which a change of slopes 
 Eigen::VectorXd widths(const Model& model) {
   Eigen::VectorXd widths(static_cast<Index>(model.actuators.size()));
   for (Index a = 0; a < widths.size(); ++a) {
-    const Actuator& actuator = model.actuators[static_cast<std::size_t>(a)];
+    const Actuator& actuator = model.actuators[a];
     widths[a] = drives(actuator) ? actuator.high - actuator.low : 0;
   }
   return widths;
@@ -111,7 +111,7 @@ PathFollower::PathFollower(const Model& model, const Statics& statics, const Mar
 Eigen::VectorXd PathFollower::shares_of(const Actuation& actuation) const {
   Eigen::VectorXd shares = Eigen::VectorXd::Zero(actuation.size());
   for (Index a = 0; a < shares.size(); ++a) {
-    const Actuator& actuator = model_.actuators[static_cast<std::size_t>(a)];
+    const Actuator& actuator = model_.actuators[a];
     if (varies(actuator)) shares[a] = (actuation[a] - actuator.low) / (actuator.high - actuator.low);
   }
   return shares;
@@ -120,7 +120,7 @@ Eigen::VectorXd PathFollower::shares_of(const Actuation& actuation) const {
 Actuation PathFollower::actuation_of(const Eigen::VectorXd& shares) const {
   Actuation actuation(shares.size());
   for (Index a = 0; a < shares.size(); ++a) {
-    const Actuator& actuator = model_.actuators[static_cast<std::size_t>(a)];
+    const Actuator& actuator = model_.actuators[a];
     if (!drives(actuator))
       actuation[a] = state_.actuation.size() > 0 ? state_.actuation[a] : actuator.rest;
     else

@@ -18,7 +18,7 @@ class SampleDesk : public GroupDesk {
   [[nodiscard]] std::optional<GroupTask> take() override {
     const std::lock_guard lock(mutex_);
     if (next_ == static_cast<Index>(plan_.groups.size())) return std::nullopt;
-    const std::size_t size = plan_.groups[static_cast<std::size_t>(next_)].size();
+    const std::size_t size = plan_.groups[next_].size();
     return GroupTask{next_++, std::vector<std::optional<Status>>(size)};
   }
   void keep(const WorkspaceSample& sample) override {
@@ -87,7 +87,7 @@ InverseResult PathFollower::advance_nearest(const ProgressCallback& progress) {
     return found;
   };
   if (!sample(found, progress)) return stop();
-  const WorkspaceSample& nearest = samples_->samples()[static_cast<std::size_t>(samples_->find(goals).front())];
+  const WorkspaceSample& nearest = samples_->samples()[samples_->find(goals).front()];
   clock_.set(waypoint.time, options_.inverse.statics);
   const auto solve = [&](const State& from) {
     found.equilibrium = statics_.solve(nearest.actuation, from, options_.inverse.statics, told(progress));

@@ -30,7 +30,7 @@ FootForces forces_of(const Foot& rear, const Foot& front) {
 }
 
 const EmbeddedPoint& point_of(const Model& model, const Foot& foot) {
-  return model.markers[static_cast<std::size_t>(foot.marker)].point;
+  return model.markers[foot.marker].point;
 }
 
 Vec3 direction_of(const Model& model) {
@@ -58,7 +58,7 @@ void check_holds(const Model& model, const Vec3& direction) {
     if (!model.used[v]) continue;
     bool held = false;
     for (Index axis = 0; axis < 3; ++axis)
-      held = held || (model.fixed[v][static_cast<std::size_t>(axis)] && std::abs(direction[axis]) > straight);
+      held = held || (model.fixed[v][axis] && std::abs(direction[axis]) > straight);
     if (!held) continue;
     const bool near_front = direction.dot(model.rest.row(static_cast<Index>(v))) > (rear + front) / 2;
     (near_front ? at_front : at_rear) = true;
@@ -103,13 +103,14 @@ Model linked(const Model& model, const FootForces& limits) {
   Model robot = model;
   Actuator link;
   link.name = "friction";
-  link.kind = ActuatorKind::cable;
   link.control = Control::load;
   link.low = -limits.shortening;
   link.high = limits.lengthening;
   link.rest = 0;
-  for (const Foot& foot : model.feet) link.points.push_back(point_of(model, foot));
-  link.rest_measure = (link.points[1].at(model.rest) - link.points[0].at(model.rest)).norm();
+  CableDrive cable;
+  for (const Foot& foot : model.feet) cable.points.push_back(point_of(model, foot));
+  link.rest_measure = (cable.points[1].at(model.rest) - cable.points[0].at(model.rest)).norm();
+  link.drive = std::move(cable);
   robot.actuators.push_back(std::move(link));
   return robot;
 }

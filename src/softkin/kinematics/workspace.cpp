@@ -18,7 +18,7 @@ void begin_with_the_middle(const Model& model, const Actuations& actuations, std
   const std::vector<Index> varied = varied_actuators(model);
   Eigen::MatrixXd shares(static_cast<Index>(varied.size()), static_cast<Index>(group.size()));
   for (std::size_t d = 0; d < varied.size(); ++d) {
-    const Actuator& actuator = model.actuators[static_cast<std::size_t>(varied[d])];
+    const Actuator& actuator = model.actuators[varied[d]];
     for (std::size_t i = 0; i < group.size(); ++i)
       shares(static_cast<Index>(d), static_cast<Index>(i)) =
           (actuations(group[i], varied[d]) - actuator.low) / (actuator.high - actuator.low);
@@ -119,7 +119,7 @@ WorkspacePlan plan_workspace(const Model& model, const SamplingOptions& options)
 bool solve_group(const Model& model, const Statics& statics, const WorkspacePlan& plan, const StaticsOptions& options,
                  const GroupTask& task, const std::function<void(const WorkspaceSample&)>& give,
                  const ProgressCallback& progress) {
-  const std::vector<Index>& samples = plan.groups.at(static_cast<std::size_t>(task.group));
+  const std::vector<Index>& samples = plan.groups.at(task.group);
   const auto is_missing = [](const std::optional<Status>& known) { return !known; };
   auto missing = std::count_if(task.known.begin(), task.known.end(), is_missing);
   Group group(model, statics, plan, options, progress);

@@ -76,9 +76,9 @@ class GridCell {
     Eigen::VectorXd result(t.size());
     for (std::size_t k = 0; k < low_.size(); ++k) {
       const double low = curves_.pressures_kPa[k][low_[k]], high = curves_.pressures_kPa[k][low_[k] + 1];
-      const double t_k = t[static_cast<Index>(k)];
+      const double t_k = t[k];
       // what is measured itself is found to the last digit
-      result[static_cast<Index>(k)] = t_k < inside_cell ? low : t_k > 1 - inside_cell ? high : low + t_k * (high - low);
+      result[k] = t_k < inside_cell ? low : t_k > 1 - inside_cell ? high : low + t_k * (high - low);
     }
     return result;
   }
@@ -105,7 +105,7 @@ bool next_cell(const CoupledCurves& curves, std::vector<std::size_t>& low) {
 bool is_new(const CoupledCurves& curves, const std::vector<Eigen::VectorXd>& found, const Eigen::VectorXd& answer) {
   return std::none_of(found.begin(), found.end(), [&](const Eigen::VectorXd& other) {
     for (Index k = 0; k < answer.size(); ++k) {
-      const std::vector<double>& axis = curves.pressures_kPa[static_cast<std::size_t>(k)];
+      const std::vector<double>& axis = curves.pressures_kPa[k];
       if (std::abs(answer[k] - other[k]) > same_answer * (axis.back() - axis.front())) return false;
     }
     return true;
@@ -125,13 +125,13 @@ Eigen::VectorXd CoupledCurves::ratios_at(const Eigen::VectorXd& kPa) const {
   Eigen::VectorXd t(kPa.size());
   for (std::size_t k = 0; k < pressures_kPa.size(); ++k) {
     const std::vector<double>& axis = pressures_kPa[k];
-    const double p = kPa[static_cast<Index>(k)];
+    const double p = kPa[k];
     if (!(p >= axis.front() && p <= axis.back()))
       throw InvalidInput({file}, "a pressure of " + number(p, 6) + " kPa is outside of what was measured, " +
                                      number(axis.front(), 6) + " to " + number(axis.back(), 6) + " kPa");
     const auto above = std::upper_bound(axis.begin(), axis.end() - 1, p) - axis.begin();
     low.push_back(static_cast<std::size_t>(std::max<std::ptrdiff_t>(above, 1)) - 1);
-    t[static_cast<Index>(k)] = (p - axis[low[k]]) / (axis[low[k] + 1] - axis[low[k]]);
+    t[k] = (p - axis[low[k]]) / (axis[low[k] + 1] - axis[low[k]]);
   }
   return GridCell(*this, low).value(t, nullptr);
 }

@@ -86,9 +86,8 @@ Growers growers_of(const Model& model) {
   growers.tetrahedra.assign(model.tetrahedra.size(), -1);
   growers.prisms.assign(model.prisms.size(), -1);
   for (std::size_t g = 0; g < model.growths.size(); ++g) {
-    for (const Index e : model.growths[g]->tetrahedra)
-      growers.tetrahedra[static_cast<std::size_t>(e)] = static_cast<Index>(g);
-    for (const Index e : model.growths[g]->prisms) growers.prisms[static_cast<std::size_t>(e)] = static_cast<Index>(g);
+    for (const Index e : model.growths[g]->tetrahedra) growers.tetrahedra[e] = static_cast<Index>(g);
+    for (const Index e : model.growths[g]->prisms) growers.prisms[e] = static_cast<Index>(g);
   }
   return growers;
 }

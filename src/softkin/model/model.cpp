@@ -26,6 +26,48 @@ bool holds(const std::vector<double>& ascending, double value) {
   return value >= ascending.front() && value <= ascending.back();
 }
 
+/// Of the table that a kind has its data in, and along which axis, or by which command of that; -1: none.
+std::pair<Index, int> place_of(const CableDrive&) {
+  return {-1, -1};
+}
+std::pair<Index, int> place_of(const ChamberDrive&) {
+  return {-1, -1};
+}
+std::pair<Index, int> place_of(const DeaDrive&) {
+  return {-1, -1};
+}
+std::pair<Index, int> place_of(const MagneticDrive& field) {
+  return {field.source, static_cast<int>(field.command)};
+}
+std::pair<Index, int> place_of(const GrowthDrive& growth) {
+  return {growth.growth, -1};
+}
+std::pair<Index, int> place_of(const MotionCommand& motion) {
+  return {motion.part, motion.axis};
+}
+std::pair<Index, int> place_of(const ForceCommand& force) {
+  return {force.body, force.axis};
+}
+std::pair<Index, int> place_of(const HoldCommand& hold) {
+  return {hold.body, -1};
+}
+std::pair<Index, int> place_of(const TurnCommand& turn) {
+  return {turn.turn, -1};
+}
+std::pair<Index, int> place_of(const MomentCommand& moment) {
+  return {moment.moment, moment.axis};
+}
+std::pair<Index, int> place_of(const PressureCommand& pressure) {
+  return {pressure.traction, -1};
+}
+
+template <class Kind>
+const Kind& as_or_empty(const Drive& drive) {
+  static const Kind empty;
+  const Kind* is = std::get_if<Kind>(&drive);
+  return is ? *is : empty;
+}
+
 class Hash {
  public:
   template <class... Values>
@@ -137,16 +179,28 @@ class Hash {
     if (g->temperature) put(*g->temperature);
   }
   void put(const ConnectedChamber& chamber) { add(chamber.region, chamber.end); }
+  // of every kind the same members in the same order, as in older versions, whatever it has of them
+  void put(const Drive& drive) {
+    const auto& cable = as_or_empty<CableDrive>(drive);
+    const auto& chamber = as_or_empty<ChamberDrive>(drive);
+    const auto& force = as_or_empty<ForceCommand>(drive);
+    std::vector<EmbeddedPoint> points = cable.points.empty() ? chamber.points : cable.points;
+    if (force.place) points = {*force.place};
+    add(chamber.tetrahedra, force.faces.empty() ? chamber.cavity : force.faces, as_or_empty<DeaDrive>(drive).prisms,
+        points, chamber.surface, cable.gaps);
+    const auto [index, axis] = std::visit([](const auto& of) { return place_of(of); }, drive);
+    add(index, axis);
+  }
   void put(const Actuator& a) {
-    add(a.name, a.kind, a.control, a.rest, a.weight, a.distribution == Distribution::least_norm, a.tetrahedra, a.cavity,
-        a.prisms, a.points, a.surface, a.gaps, a.other, a.axis, a.rest_measure);
+    add(a.name, a.drive.index(), a.control, a.rest, a.weight, a.distribution == Distribution::least_norm, a.drive,
+        a.rest_measure);
     if (a.factor != 1 || a.offset != 0) add(a.factor, a.offset);
     if (a.backlash != 0) add(a.backlash);
-    if (a.friction != 0 || a.sheath != 0) add(a.friction, a.sheath);
-    if (under_voltage(a)) add(a.shares, a.prestretch);
+    if (rubs(a)) add(a.as<CableDrive>()->friction, a.as<CableDrive>()->sheath);
+    if (under_voltage(a)) add(a.as<DeaDrive>()->shares, a.as<DeaDrive>()->prestretch);
     if (a.distribution == Distribution::proportional) add(a.distribution);
-    if (a.filling) put(*a.filling);
-    if (!a.connected.empty()) add(a.connected);
+    if (const Filling* filling = filling_of(a)) put(*filling);
+    if (!connected_chambers(a).empty()) add(connected_chambers(a));
   }
 
   std::uint64_t state_ = 0xcbf29ce484222325;
@@ -197,7 +251,7 @@ std::vector<bool> vertices_of_elements(const Model& model) {
   std::vector<bool> of_element(static_cast<std::size_t>(model.rest.rows()));
   const auto mark = [&](const auto& elements) {
     for (const auto& element : elements)
-      for (const Index v : element) of_element[static_cast<std::size_t>(v)] = true;
+      for (const Index v : element) of_element[v] = true;
   };
   mark(model.tetrahedra);
   mark(model.edge_nodes);
@@ -217,9 +271,11 @@ double enclosed_volume(const Points& positions, const std::vector<CavityFace>& f
 
 std::vector<double> connected_volumes(const Actuator& actuator, const Points& positions) {
   std::vector<double> volumes;
-  auto begin = actuator.cavity.begin();
-  for (const ConnectedChamber& chamber : actuator.connected) {
-    const auto end = actuator.cavity.begin() + chamber.end;
+  const auto* chambers = actuator.as<ChamberDrive>();
+  if (!chambers) return volumes;
+  auto begin = chambers->cavity.begin();
+  for (const ConnectedChamber& chamber : chambers->connected) {
+    const auto end = chambers->cavity.begin() + chamber.end;
     volumes.push_back(enclosed_volume(positions, std::vector<CavityFace>(begin, end)));
     begin = end;
   }
@@ -229,7 +285,7 @@ std::vector<double> connected_volumes(const Actuator& actuator, const Points& po
 Eigen::VectorXd Model::rest_actuation() const {
   Eigen::VectorXd ratios(static_cast<Eigen::Index>(actuators.size()));
   for (std::size_t i = 0; i < actuators.size(); ++i)
-    ratios[static_cast<Eigen::Index>(i)] = std::clamp(actuators[i].rest, actuators[i].low, actuators[i].high);
+    ratios[i] = std::clamp(actuators[i].rest, actuators[i].low, actuators[i].high);
   return ratios;
 }
 
@@ -263,19 +319,34 @@ std::array<Index, 2> Model::vertices_of_part(Index part) const {
   return range;
 }
 
+const Filling* filling_of(const Actuator& actuator) {
+  const auto* chamber = actuator.as<ChamberDrive>();
+  return chamber && chamber->filling ? &*chamber->filling : nullptr;
+}
+
+bool flat_at_rest(const Actuator& actuator) {
+  const auto* chamber = actuator.as<ChamberDrive>();
+  return chamber && chamber->flat;
+}
+
+const std::vector<ConnectedChamber>& connected_chambers(const Actuator& actuator) {
+  static const std::vector<ConnectedChamber> none;
+  const auto* chamber = actuator.as<ChamberDrive>();
+  return chamber ? chamber->connected : none;
+}
+
 bool drives(const Actuator& actuator) {
-  return actuator.kind == ActuatorKind::cable || actuator.kind == ActuatorKind::dea ||
-         actuator.kind == ActuatorKind::pneumatic || actuator.kind == ActuatorKind::magnetic ||
-         actuator.kind == ActuatorKind::growth;
+  return traits(actuator.drive).drives;
 }
 
 bool loads_robot(const Actuator& actuator) {
-  return actuator.kind == ActuatorKind::moment || actuator.kind == ActuatorKind::pressure ||
-         (actuator.kind == ActuatorKind::force && !actuator.points.empty());
+  const auto* force = actuator.as<ForceCommand>();
+  return actuator.is<MomentCommand>() || actuator.is<PressureCommand>() || (force && force->place);
 }
 
 bool rubs(const Actuator& actuator) {
-  return actuator.friction > 0 || actuator.sheath > 0;
+  const auto* cable = actuator.as<CableDrive>();
+  return cable && (cable->friction > 0 || cable->sheath > 0);
 }
 
 bool rubs(const Model& model) {
@@ -284,7 +355,7 @@ bool rubs(const Model& model) {
 }
 
 bool under_voltage(const Actuator& actuator) {
-  return actuator.kind == ActuatorKind::dea && actuator.control == Control::load;
+  return actuator.is<DeaDrive>() && actuator.control == Control::load;
 }
 
 bool varies(const Actuator& actuator) {

@@ -1,8 +1,7 @@
 #pragma once
 
 #include <softkin/model/contact_model.hpp>
-#include <softkin/model/filling.hpp>
-#include <softkin/model/marker.hpp>
+#include <softkin/model/drives.hpp>
 #include <softkin/model/robot_spec.hpp>
 #include <string>
 
@@ -28,12 +27,6 @@ struct Material {
   std::shared_ptr<const Families> families;  // physical; none: isotropic
 };
 
-/// A triangle of a cavity's boundary. Order 2: the nodes on its edges 01, 12, 20 too.
-struct CavityFace {
-  Triangle corners;                        // vertices: counterclockwise seen from where the normal points
-  std::array<Index, 3> edges{-1, -1, -1};  // nodes on the edges 01, 12, 20; -1: order 1
-};
-
 /// The nodes of a face: its corners, then those on its edges.
 [[nodiscard]] std::vector<Index> nodes_of(const CavityFace& face);
 
@@ -45,51 +38,31 @@ struct CavityFace {
 /// source     divergence theorem; the integrand is of degree 4 on a quadratic face, the rule is exact for degree 4
 [[nodiscard]] double enclosed_volume(const Points& positions, const std::vector<CavityFace>& faces);
 
-/// A piece of cable that runs free between two points of the body, and the body's point across it: the triangle
-/// (points[segment], points[segment + 1], apex) is the actuation element of Eq. (6).
-struct CableGap {
-  Index segment = 0;   // of the cable, from 0
-  EmbeddedPoint apex;  // the body's point across it
-};
-
-/// One of several chambers that share what fills them: faces of the actuator's cavity, to before `end`, from where the
-/// one before it ends.
-struct ConnectedChamber {
-  std::string region;  // as the description names it
-  Index end = 0;       // in Actuator::cavity
-};
-
 /// A compiled actuator, or what is done to a robot and is commanded as one. What does not apply is empty.
 struct Actuator {
-  std::string name;                             // for commands, messages and columns of tables
-  ActuatorKind kind = ActuatorKind::pneumatic;  // what it is
-  Control control = Control::ratio;             // what of it is commanded
+  std::string name;                  // for commands, messages and columns of tables
+  Drive drive;                       // what it is
+  Control control = Control::ratio;  // what of it is commanded
   double low = 0, high = 0, rest = 1,
          weight = 5;  // ends of the commands' range and command at rest, in its unit; w of Eq. (9)
   Distribution distribution = Distribution::least_norm;  // of what is commanded over its elements; target-shape
-  std::vector<Index> tetrahedra;                         // pneumatic, target-shape: elements of Model
-  std::vector<CavityFace> cavity;     // pneumatic with a region, physical: its boundary, normals out of the chamber
-  std::vector<Index> prisms;          // dea: elements of Model
-  std::vector<double> shares;         // dea under voltage: of it that each of them has [-]
-  double prestretch = 1;              // the same: area of the layer without force, over that in the mesh [-]
-  std::vector<EmbeddedPoint> points;  // cable; or the vertices of a pneumatic actuator's surface
-  std::vector<Triangle> surface;      // pneumatic with a surface: triangles over `points`
-  std::vector<CableGap> gaps;         // cable, target-shape
-  std::optional<Filling> filling;     // pneumatic, physical: of control filling
-  std::vector<ConnectedChamber> connected;  // the same: of several chambers
-  std::optional<ActuatorCurve> curve;       // ratio by pressure or voltage
-  Branch branch = Branch::loading;          // of the curve, where a command names none
-  Index other = -1;                         // motion: part of ContactModel; force, hold: index into Model::bodies;
-                                            // magnetic: index into Magnetism::sources; growth, turn, moment, pressure
-                                            // (of tractions): of Model
-  int axis = -1;                            // motion, force, moment; magnetic: which of the source's commands
-  bool pushes = false;                      // cable: held to its length whatever that takes, as a rod would be
-  double friction = 0, sheath = 0;  // cable, physical: where it turns; of its sheath, times the sheath's turns [-]
-  double factor = 1, offset = 0;    // load control: what acts is factor times the command plus offset [N, kPa]
-  double backlash = 0;              // the same: by how much a command falls before what acts does, see acting()
-  double rest_measure = 0;          // length [mm], mean area of top and bottom [mm^2] or volume [mm^3] at rest; at
-                                    // a dea's ratio 1; where a chamber is flat 1 mL
-  bool flat = false;                // pneumatic: encloses nothing at rest, as an empty bag does
+  std::optional<ActuatorCurve> curve;                    // ratio by pressure or voltage
+  Branch branch = Branch::loading;                       // of the curve, where a command names none
+  double factor = 1, offset = 0;  // load control: what acts is factor times the command plus offset [N, kPa]
+  double backlash = 0;            // the same: by how much a command falls before what acts does, see acting()
+  double rest_measure = 0;        // length [mm], mean area of top and bottom [mm^2] or volume [mm^3] at rest; at
+                                  // a dea's ratio 1; where a chamber is flat 1 mL
+
+  /// Is it of a kind.
+  template <class Kind>
+  [[nodiscard]] bool is() const {
+    return std::holds_alternative<Kind>(drive);
+  }
+  /// What it is as one of a kind; null: it is of another.
+  template <class Kind>
+  [[nodiscard]] const Kind* as() const {
+    return std::get_if<Kind>(&drive);
+  }
 };
 
 /// Stands on the floor and slides where friction lets it.
@@ -208,7 +181,7 @@ struct Model {
   std::vector<RegionMoment> moments;                   // on rigid regions
   std::vector<Fibre> fibres;                           // threads, in the order of the description
   std::vector<std::shared_ptr<const Layer>> layers;    // sheets, the same
-  std::vector<std::shared_ptr<const Growth>> growths;  // by Actuator::other
+  std::vector<std::shared_ptr<const Growth>> growths;  // by GrowthDrive::growth
   ContactModel contact;                                // what may touch what
   std::shared_ptr<const Magnetism> magnetism;          // physical; none: nothing is magnetic
   std::vector<bool> used;                              // per vertex: is it a vertex of an element
@@ -231,6 +204,13 @@ struct Model {
 
 /// Present volume of each of several chambers that are connected [mm^3]; none where they are not.
 [[nodiscard]] std::vector<double> connected_volumes(const Actuator& actuator, const Points& positions);
+
+/// What fills a chamber; null: it is not commanded by that.
+[[nodiscard]] const Filling* filling_of(const Actuator& actuator);
+/// A chamber that encloses nothing at rest.
+[[nodiscard]] bool flat_at_rest(const Actuator& actuator);
+/// Chambers that share what fills them; none: it is not of several.
+[[nodiscard]] const std::vector<ConnectedChamber>& connected_chambers(const Actuator& actuator);
 
 /// Is it of the robot: does inverse kinematics choose it, and a workspace vary it.
 [[nodiscard]] bool drives(const Actuator& actuator);

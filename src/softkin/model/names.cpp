@@ -11,8 +11,8 @@ struct Quantity {
 };
 
 /// What a command of a magnetic field is.
-Quantity field_quantity(const Actuator& actuator) {
-  const auto command = static_cast<FieldCommand>(actuator.axis);
+Quantity field_quantity(const MagneticDrive& field) {
+  const FieldCommand command = field.command;
   if (command == FieldCommand::current) return {"current", "A", "A"};
   if (places_dipole(command)) return {"position", "mm", "mm"};
   if (command >= FieldCommand::moment_x) return {"moment", "A m^2", "Am2"};
@@ -26,20 +26,15 @@ const char* filling_quantity(const Filling& filling) {
 }  // namespace
 
 const char* kind_name(const Actuator& actuator) {
-  constexpr const char* names[] = {
-      "cable", "dea",  "pneumatic", "magnetic", "growth",  "motion",
-      "force", "hold", "turn",      "moment",   "pressure"};  // in the order of ActuatorKind
-  return names[static_cast<std::size_t>(actuator.kind)];
-}
-
-bool has_measure(const Actuator& actuator) {
-  return actuator.kind == ActuatorKind::cable || actuator.kind == ActuatorKind::dea ||
-         actuator.kind == ActuatorKind::pneumatic;
+  return traits(actuator.drive).kind;
 }
 
 const char* measure_name(const Actuator& actuator) {
-  constexpr const char* measures[] = {"length", "area", "volume"};  // in the order of ActuatorKind
-  return has_measure(actuator) ? measures[static_cast<std::size_t>(actuator.kind)] : "";
+  return traits(actuator.drive).measure;
+}
+
+bool has_measure(const Actuator& actuator) {
+  return *measure_name(actuator) != '\0';
 }
 
 bool answers_with_measure(const Actuator& actuator) {
@@ -51,17 +46,15 @@ bool answers_with_load(const Actuator& actuator) {
 }
 
 bool shows_measure(const Actuator& actuator) {
-  return answers_with_measure(actuator) && actuator.control == Control::load && actuator.kind != ActuatorKind::cable;
+  return answers_with_measure(actuator) && actuator.control == Control::load && !actuator.is<CableDrive>();
 }
 
 const char* control_name(const Actuator& actuator) {
   if (!drives(actuator)) return kind_name(actuator);
-  if (actuator.kind == ActuatorKind::magnetic) return field_quantity(actuator).name;
-  if (actuator.kind == ActuatorKind::growth) return actuator.control == Control::load ? "temperature" : "stretch";
-  if (actuator.control == Control::ratio) return measure_name(actuator);
-  if (actuator.filling) return filling_quantity(*actuator.filling);
-  constexpr const char* loads[] = {"tension", "voltage", "pressure"};  // the same
-  return loads[static_cast<std::size_t>(actuator.kind)];
+  if (const auto* field = actuator.as<MagneticDrive>()) return field_quantity(*field).name;
+  if (actuator.control == Control::load) return traits(actuator.drive).load;
+  if (const Filling* filling = filling_of(actuator)) return filling_quantity(*filling);
+  return actuator.is<GrowthDrive>() ? "stretch" : measure_name(actuator);
 }
 
 const char* command_name(const Actuator& actuator) {
@@ -71,13 +64,8 @@ const char* command_name(const Actuator& actuator) {
 std::string command_unit(const Actuator& actuator) {
   if (actuator.control == Control::ratio) return "";
   if (actuator.control == Control::filling) return "mL";
-  if (actuator.kind == ActuatorKind::motion) return "mm";
-  if (actuator.kind == ActuatorKind::turn) return "deg";
-  if (actuator.kind == ActuatorKind::growth) return "degC";
-  if (actuator.kind == ActuatorKind::dea) return "kV";
-  if (actuator.kind == ActuatorKind::magnetic) return field_quantity(actuator).unit;
-  if (actuator.kind == ActuatorKind::moment) return "N mm";
-  return actuator.kind == ActuatorKind::pneumatic || actuator.kind == ActuatorKind::pressure ? "kPa" : "N";
+  if (const auto* field = actuator.as<MagneticDrive>()) return field_quantity(*field).unit;
+  return traits(actuator.drive).unit;
 }
 
 std::string bracketed_unit(const Actuator& actuator) {
@@ -86,16 +74,17 @@ std::string bracketed_unit(const Actuator& actuator) {
 }
 
 std::string command_column(const Actuator& actuator) {
-  const std::string unit = actuator.kind == ActuatorKind::magnetic ? field_quantity(actuator).column
-                           : actuator.kind == ActuatorKind::moment ? "Nmm"
-                                                                   : command_unit(actuator);
+  const auto* field = actuator.as<MagneticDrive>();
+  const std::string unit = field                          ? field_quantity(*field).column
+                           : actuator.is<MomentCommand>() ? "Nmm"
+                                                          : command_unit(actuator);
   return unit.empty() ? actuator.name : actuator.name + "_" + unit;
 }
 
 std::string multiplier_key(const Actuator& actuator) {
-  if (!has_measure(actuator)) return "";
-  if (actuator.kind == ActuatorKind::dea) return under_voltage(actuator) ? "voltage_kV" : "";
-  return actuator.kind == ActuatorKind::cable ? "tension_N" : "pressure_kPa";
+  const DriveTraits& of = traits(actuator.drive);
+  if (!has_measure(actuator) || (actuator.is<DeaDrive>() && !under_voltage(actuator))) return "";
+  return std::string(of.load) + "_" + of.unit;
 }
 
 std::string multiplier_title(const Actuator& actuator) {
@@ -143,7 +132,7 @@ const char* curve_key(const ActuatorCurve& curve) {
 }
 
 const std::string& foot_name(const Model& model, std::size_t foot) {
-  return model.markers[static_cast<std::size_t>(model.feet[foot].marker)].name;
+  return model.markers[model.feet[foot].marker].name;
 }
 
 std::optional<Index> find_actuator(const Model& model, const std::string& name) {

@@ -112,10 +112,8 @@ struct FixedSpec {
   std::optional<RotationSpec> rotation{};  // turned about an axis besides; none: not
 };
 
-/// The last four are no drives of the robot but what is done to it and its surroundings: the motion of an obstacle, a
-/// force on a body or at a place of the robot, how firmly a body is held, and the angle by which a support turns what
-/// it holds.
-enum class ActuatorKind { cable, dea, pneumatic, magnetic, growth, motion, force, hold, turn, moment, pressure };
+/// By what an actuator moves the robot.
+enum class ActuatorKind { cable, dea, pneumatic, magnetic, growth };
 
 /// What the user commands: length, area or volume over that at rest [-]; or the load, tension [N] or gauge pressure
 /// [kPa], voltage of a dea [kV], or what a magnetic field is commanded by; or what fills a sealed chamber [mL].

@@ -23,15 +23,13 @@ Vec3 tangent_at(const FibrePlace& place, const Points& positions) {
 
 Mat3 TurningSection::rotation(const Points& positions) const {
   Mat3 rotation;
-  for (int i = 0; i < 3; ++i)
-    rotation.col(i) = along[static_cast<std::size_t>(i)].at(positions) - along[0].point.at(positions);
+  for (int i = 0; i < 3; ++i) rotation.col(i) = along[i].at(positions) - along[0].point.at(positions);
   return rotation;
 }
 
 Mat3 TurningSection::velocity(const Points& positions, const Points& moves) const {
   Mat3 velocity;
-  for (int i = 0; i < 3; ++i)
-    velocity.col(i) = along[static_cast<std::size_t>(i)].velocity(positions, moves) - along[0].point.at(moves);
+  for (int i = 0; i < 3; ++i) velocity.col(i) = along[i].velocity(positions, moves) - along[0].point.at(moves);
   return velocity;
 }
 

@@ -21,7 +21,7 @@ bool parse_coordinates(const std::string& text, bool empty_too, Coordinates& fou
     double value = 0;
     if (!part.empty() || !empty_too) {
       if (!parse_real(part, value)) return false;
-      found[static_cast<std::size_t>(axis)] = value;
+      found[axis] = value;
     }
     begin = end + 1;
   }
@@ -33,7 +33,7 @@ Vec3 point_of(const Coordinates& coordinates) {
 }
 
 Vec3 at_rest(const Model& model, Index marker) {
-  return model.markers[static_cast<std::size_t>(marker)].at(model.rest);
+  return model.markers[marker].at(model.rest);
 }
 
 /// One argument of an option: NAME=VALUE.

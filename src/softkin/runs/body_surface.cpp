@@ -16,7 +16,7 @@ std::vector<Triangle> sheets_of(const Model& model) {
   for (const auto& layer : model.layers)
     for (const CavityFace& face : layer->faces) {
       const Triangle& t = face.corners;
-      if (std::all_of(t.begin(), t.end(), [&](Index v) { return of_element[static_cast<std::size_t>(v)]; })) continue;
+      if (std::all_of(t.begin(), t.end(), [&](Index v) { return of_element[v]; })) continue;
       Triangle key = t;
       std::sort(key.begin(), key.end());
       if (!known.insert(key).second) continue;
@@ -42,7 +42,7 @@ BodySurface body_surface(const Model& model) {
     numbers.push_back(static_cast<Index>(model.tetrahedra.size() + p));
   BodySurface surface;
   surface.triangles = boundary_triangles(tetrahedra, edge_nodes, model.prisms, &surface.elements);
-  for (Index& element : surface.elements) element = numbers[static_cast<std::size_t>(element)];
+  for (Index& element : surface.elements) element = numbers[element];
   for (const Triangle& sheet : sheets_of(model)) {
     surface.triangles.push_back(sheet);
     surface.elements.push_back(-1);

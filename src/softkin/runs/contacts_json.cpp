@@ -18,7 +18,7 @@ void each_measure(Pair& pair, const Visit& visit) {
 }
 
 const std::string& name_of_part(const Model& model, Index part) {
-  return model.contact.parts[static_cast<std::size_t>(part)].name;
+  return model.contact.parts[part].name;
 }
 
 }  // namespace
@@ -85,9 +85,9 @@ std::vector<Anchor> anchors_of(const Model& model, const Json& list) {
     if (each.size() != 7) throw std::out_of_range("an anchor of friction has seven numbers");
     Anchor anchor{below(each[0], contact.area.size()), below(each[1], contact.parts.size()),
                   below(each[2], contact.triangles.size())};
-    if (contact.part_of[static_cast<std::size_t>(anchor.triangle)] != anchor.part)
+    if (contact.part_of[anchor.triangle] != anchor.part)
       throw std::out_of_range("an anchor of friction is on another part");
-    for (int i = 0; i < 3; ++i) anchor.weights[i] = each[static_cast<std::size_t>(3 + i)].get<double>();
+    for (int i = 0; i < 3; ++i) anchor.weights[i] = each[3 + i].get<double>();
     anchor.slipped_mm = each[6].get<double>();
     if (!anchor.weights.allFinite() || !std::isfinite(anchor.slipped_mm))
       throw std::out_of_range("an anchor of friction is not finite");

@@ -10,8 +10,8 @@ namespace softkin::runs {
 std::vector<Index> marker_vertices(const Model& model) {
   std::set<Index> inside, outside;
   for (const Actuator& actuator : model.actuators)
-    if (actuator.kind == ActuatorKind::pneumatic)
-      for (const CavityFace& face : actuator.cavity)
+    if (const auto* chamber = actuator.as<ChamberDrive>())
+      for (const CavityFace& face : chamber->cavity)
         for (const Index v : nodes_of(face)) inside.insert(v);
   for (const Triangle& triangle : body_surface(model).triangles) {
     if (std::all_of(triangle.begin(), triangle.end(), [&](Index v) { return inside.contains(v); })) continue;
@@ -48,10 +48,10 @@ std::string plan_text(const EstimateReport& report) {
     }
     text += ": " + number(reading.bits, 3) + " bits;";
     for (std::size_t n = 0; n < told.numbers.size(); ++n)
-      text += " " + told.numbers[n].name + " +- " + number(reading.numbers[static_cast<Index>(n)], 2) +
+      text += " " + told.numbers[n].name + " +- " + number(reading.numbers[n], 2) +
               (told.numbers[n].unit.empty() ? "" : " ") + told.numbers[n].unit + ";";
     for (std::size_t p = 0; p < told.places.size(); ++p)
-      text += " place of " + told.places[p].force + " +- " + number(reading.places[static_cast<Index>(p)], 2) + " mm;";
+      text += " place of " + told.places[p].force + " +- " + number(reading.places[p], 2) + " mm;";
     text.back() = '\n';
   }
   return text;

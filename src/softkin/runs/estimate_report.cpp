@@ -42,10 +42,9 @@ Json plan_json(const EstimateReport& report) {
     if (reading.vertex >= 0 || reading.name.starts_with("marker")) json["at_rest_mm"] = json_of(reading.at_rest);
     const Estimate& told = report.told.front();
     for (std::size_t n = 0; n < told.numbers.size(); ++n)
-      json["deviations"][told.numbers[n].name + unit_key(told.numbers[n].unit)] =
-          reading.numbers[static_cast<Index>(n)];
+      json["deviations"][told.numbers[n].name + unit_key(told.numbers[n].unit)] = reading.numbers[n];
     for (std::size_t p = 0; p < told.places.size(); ++p)
-      json["place_deviations_mm"][told.places[p].force] = reading.places[static_cast<Index>(p)];
+      json["place_deviations_mm"][told.places[p].force] = reading.places[p];
     plan.push_back(std::move(json));
   }
   return plan;
@@ -86,7 +85,7 @@ Eigen::VectorXd AskedEstimates::deviations_of_columns() const {
     if (!(deviations[kind] > 0))
       throw InvalidInput({poses.file}, "column '" + poses.columns[c].name + "' needs the deviation of a " +
                                            reading_names[kind] + ": " + options[kind] + in_unit(poses.columns[c].kind));
-    all[static_cast<Index>(c)] = deviations[kind];
+    all[c] = deviations[kind];
   }
   return all;
 }
@@ -94,7 +93,7 @@ Eigen::VectorXd AskedEstimates::deviations_of_columns() const {
 void AskedEstimates::refuse_commanded(const std::vector<Index>& told) const {
   for (const Index a : poses.commanded)
     if (std::find(told.begin(), told.end(), a) != told.end())
-      throw InvalidInput({poses.file}, "a column commands '" + model.actuators[static_cast<std::size_t>(a)].name +
+      throw InvalidInput({poses.file}, "a column commands '" + model.actuators[a].name +
                                            "', which is to be told: leave out one of them");
 }
 

@@ -19,141 +19,134 @@ std::string slipping_text(double share) {
 
 constexpr const char* units_text = " (mm, MPa, kPa, kV, N, kg/m^3, m/s^2)";
 
-/// "(1.25, 0, -3)" of three numbers of a finding
-std::string place_text(const double* xyz) {
-  return softkin::point_text({xyz[0], xyz[1], xyz[2]}, 4, 1e-6);
+std::string place_text(const Vec3& place) {
+  return softkin::point_text(place, 4, 1e-6);
 }
 
-/// "air by its volume: 0 kPa at 1, 9.1 kPa at 2.4, ..."
-std::string branch_text(const Model& model, const Finding& finding) {
-  const auto is_it = [&](const Actuator& actuator) { return actuator.name == finding.name; };
-  const Actuator& actuator = *std::find_if(model.actuators.begin(), model.actuators.end(), is_it);
-  std::string text = finding.name + " by its " + (actuator.kind == ActuatorKind::cable ? "length" : "volume") + " [-]:";
-  for (std::size_t i = 0; i + 1 < finding.values.size(); i += 2)
-    text += (i > 0 ? ", " : " ") + number(finding.values[i + 1], 4) + " " + command_unit(actuator) + " at " +
-            number(finding.values[i], 4);
-  return text;
+/// "(1, 0, 0) N and (0, 0, 0) N mm about (0, 0, 0) mm" of a force and its moment about a centre
+template <class Forces>
+std::string wrench_text(const Forces& of) {
+  return place_text(of.force) + " N and " + place_text(of.moment) + " N mm about " + place_text(of.center) + " mm";
 }
 
-std::string strain_text(const std::vector<double>& v) {
-  return "principal strain of the body: " + percent(v[0]) + " to " + percent(v[1]) + ", 95 % of the volume within " +
-         percent(v[2]);
-}
+/// What is told of each.
+struct Telling {
+  const Model& model;
 
-std::string beyond_range_text(const Finding& finding) {
-  return percent(finding.values[0]) + " of region '" + finding.name + "' is strained beyond its linear range of " +
-         percent(finding.values[1]);
-}
-
-std::string slack_text(const Finding& finding) {
-  return "cable '" + finding.name + "' is slack: its path is " + number(finding.values[0], 5) +
-         " of its length at rest, the cable " + number(finding.values[1], 5);
-}
-
-std::string charged_text(const Finding& finding) {
-  const std::vector<double>& v = finding.values;
-  return "dea '" + finding.name + "' holds " + number(v[0], 4) + " nC, " + number(v[1], 4) +
-         " pF; the field in its layer is at most " + number(v[2], 4) + " kV/mm, where it is " + number(v[3], 4) +
-         " mm thick, at " + place_text(&v[4]) + " mm";
-}
-
-std::string rubbing_text(const Finding& finding) {
-  const std::vector<double>& v = finding.values;
-  return "cable '" + finding.name + "' rubs: of " + number(v[0], 4) + " N at the motor " + number(v[1], 4) +
-         " N are left at its far end; it sticks in " + percent(v[2]) + " of its friction";
-}
-
-std::string fibre_text(const Finding& finding) {
-  const std::vector<double>& v = finding.values;
-  return "fibre '" + finding.name + "' carries " + number(v[0], 4) + " N in the mean, " + number(v[2], 4) + " to " +
-         number(v[1], 4) + " N, the most at " + place_text(&v[3]) + " mm; it is " + number(v[6], 6) +
-         " times as long as at rest" + (v[7] > 0 ? ", and slack in " + percent(v[7]) + " of it" : "");
-}
-
-std::string layer_text(const Finding& finding) {
-  const std::vector<double>& v = finding.values;
-  return "layer '" + finding.name + "' carries " + number(v[1], 4) + " to " + number(v[0], 4) + " N/mm, the most at " +
-         place_text(&v[2]) + " mm; it is stretched by up to " + percent(v[5]) +
-         (v[6] > 0 ? ", wrinkled in " + percent(v[6]) + " of its area" : "") +
-         (v[7] > 0 ? ", slack in " + percent(v[7]) : "");
-}
-
-std::string accuracy_text(const std::vector<double>& v) {
-  return "last step of the iteration " + number(v[0], 2) + " mm; estimated distance from the equilibrium " +
-         number(v[1], 2) + " mm" +
-         (v.size() > 2 ? "; " + number(v[2], 2) + " N out of balance, elements pull with " + number(v[3], 3) + " N"
-                       : "");
-}
-
-std::string stress_text(const Finding& finding) {
-  const std::vector<double>& v = finding.values;
-  return "stress in the body: von Mises at most " + number(v[0], 4) + " MPa, at " + place_text(&v[1]) + " mm" +
-         (finding.name.empty() ? "" : " in region '" + finding.name + "'") + "; principal " + number(v[5], 4) + " to " +
-         number(v[4], 4) + " MPa";
-}
-
-/// "(1, 0, 0) N and (0, 0, 0) N mm" of a force and a moment
-std::string wrench_text(const double* xyz) {
-  return place_text(xyz) + " N and " + place_text(xyz + 3) + " N mm";
-}
-
-std::string reaction_text(const Finding& finding) {
-  const std::vector<double>& v = finding.values;
-  return "support '" + finding.name + "' exerts " + wrench_text(&v[0]) + " about " + place_text(&v[6]) + " mm";
-}
-
-std::string magnetic_text(const std::vector<double>& v) {
-  return "magnetic fields exert " + wrench_text(&v[0]) + " about " + place_text(&v[6]) + " mm";
-}
-
-std::string contact_text(const Finding& finding) {
-  const std::vector<double>& v = finding.values;
-  const bool itself = finding.other.empty();
-  return finding.name +
-         (itself ? " presses on itself with " + number(v[9], 4) + " N" : " exerts " + wrench_text(&v[0])) + " about " +
-         place_text(&v[6]) + " mm" + (itself ? "" : " on " + finding.other) + ", at most " + number(v[10], 4) +
-         " kPa over " + number(v[11], 4) + " mm^2; least gap " + number(v[12], 3) + " mm" +
-         (v.size() > 13 ? slipping_text(v[13]) : "");
-}
-
-std::string buckled_text(const std::vector<double>& v) {
-  return "the robot left " + counted(static_cast<std::size_t>(v[0]), "unstable equilibrium", "unstable equilibria") +
-         " for a stable one, moving by up to " + number(v[1], 3) + " mm";
-}
-
-std::string warning_text(const Model& model, const Finding& finding) {
-  using Kind = Finding::Kind;
-  const std::vector<double>& v = finding.values;
-  switch (finding.kind) {
-    case Kind::inverted:
-      return counted(static_cast<std::size_t>(v[0]), "element") + (v[0] == 1 ? " is" : " are") + " inverted";
-    case Kind::self_overlap:
-      return "the shape passes through itself: " + counted(static_cast<std::size_t>(v[0]), "point") +
-             " of its surface " + (v[0] == 1 ? "lies" : "lie") + " inside it, the deepest " +
-             depth_text(v[1], {v[2], v[3], v[4]}) + overlap_cause(model);
-    case Kind::motionless:
-      return "nothing moved: the largest displacement is " + number(v[0], 2) +
-             " mm; are what is asked for and the moduli in the right units?" + units_text;
-    case Kind::far_strained:
-      return "the body is strained by up to " + percent(v[0]) +
-             ", where most elastomers have broken; are the loads and the moduli in the right units?" + units_text;
-    case Kind::far_moved:
-      return "a point moved by " + number(v[0], 4) + " mm, and the robot is " + number(v[1], 4) +
-             " mm across; are the loads and the moduli in the right units?" + units_text;
-    case Kind::unstable:
-      return "this equilibrium is unstable in " + counted(static_cast<std::size_t>(v[0]), "way") +
-             ": the robot would buckle or snap away from it";
-    case Kind::snapped:
-      return "at " + percent(v[1]) + " of the way the shape jumps by " + number(v[0], 3) +
-             " mm: the robot snaps through, and what it does there depends on how fast it is moved";
-    case Kind::unstable_way:
-      return "from " + percent(v[0]) +
-             " of the way on equilibria were unstable: the robot would leave the way there, for a shape that may be "
-             "another one";
-    default:
-      return "the iteration diverged";
+  std::string operator()(const finding::Strain& of) const {
+    return "principal strain of the body: " + percent(of.least) + " to " + percent(of.greatest) +
+           ", 95 % of the volume within " + percent(of.percentile_95);
   }
-}
+  std::string operator()(const StrainHistogram::Beyond& of) const {
+    return percent(of.share) + " of region '" + of.region + "' is strained beyond its linear range of " +
+           percent(of.linear_range);
+  }
+  std::string operator()(const finding::Slack& of) const {
+    return "cable '" + of.cable + "' is slack: its path is " + number(of.path, 5) +
+           " of its length at rest, the cable " + number(of.length, 5);
+  }
+  std::string operator()(const finding::Charged& of) const {
+    const ElectricLayer& layer = of.layer;
+    return "dea '" + of.dea + "' holds " + number(layer.charge_nC, 4) + " nC, " + number(layer.capacitance_pF, 4) +
+           " pF; the field in its layer is at most " + number(layer.field_kV_mm, 4) + " kV/mm, where it is " +
+           number(layer.thickness_mm, 4) + " mm thick, at " + place_text(layer.at) + " mm";
+  }
+  std::string operator()(const finding::Rubbing& of) const {
+    return "cable '" + of.cable + "' rubs: of " + number(of.motor_N, 4) + " N at the motor " +
+           number(of.forces.end_N, 4) + " N are left at its far end; it sticks in " + percent(of.forces.sticks) +
+           " of its friction";
+  }
+  std::string operator()(const finding::Fibre& of) const {
+    const FibreForces& f = of.forces;
+    return "fibre '" + of.name + "' carries " + number(f.mean_N, 4) + " N in the mean, " + number(f.least_N, 4) +
+           " to " + number(f.largest_N, 4) + " N, the most at " + place_text(f.where) + " mm; it is " +
+           number(f.stretch, 6) + " times as long as at rest" +
+           (f.slack > 0 ? ", and slack in " + percent(f.slack) + " of it" : "");
+  }
+  std::string operator()(const finding::Layer& of) const {
+    const LayerForces& f = of.forces;
+    return "layer '" + of.name + "' carries " + number(f.least_N_mm, 4) + " to " + number(f.largest_N_mm, 4) +
+           " N/mm, the most at " + place_text(f.where) + " mm; it is stretched by up to " + percent(f.strain) +
+           (f.wrinkled > 0 ? ", wrinkled in " + percent(f.wrinkled) + " of its area" : "") +
+           (f.slack > 0 ? ", slack in " + percent(f.slack) : "");
+  }
+  std::string operator()(const finding::Accuracy& of) const {
+    return "last step of the iteration " + number(of.step_mm, 2) + " mm; estimated distance from the equilibrium " +
+           number(of.estimated_error_mm, 2) + " mm" +
+           (of.physical ? "; " + number(of.residual_N, 2) + " N out of balance, elements pull with " +
+                              number(of.pull_N, 3) + " N"
+                        : "");
+  }
+  std::string operator()(const StressExtremes& of) const {
+    const auto& [most, greatest, least] = of;
+    return "stress in the body: von Mises at most " + number(most.value, 4) + " MPa, at " + place_text(most.at) +
+           " mm" + (most.region.empty() ? "" : " in region '" + most.region + "'") + "; principal " +
+           number(least.value, 4) + " to " + number(greatest.value, 4) + " MPa";
+  }
+  std::string operator()(const finding::Support& of) const {
+    return "support '" + of.name + "' exerts " + wrench_text(of.exerts);
+  }
+  std::string operator()(const MagneticLoad& of) const { return "magnetic fields exert " + wrench_text(of); }
+  std::string operator()(const finding::Contact& of) const {
+    const PairForces& f = of.forces;
+    const bool itself = of.other.empty();
+    return of.part +
+           (itself ? " presses on itself with " + number(f.normal_N, 4) + " N about " + place_text(f.center) + " mm"
+                   : " exerts " + wrench_text(f) + " on " + of.other) +
+           ", at most " + number(f.pressure_kPa, 4) + " kPa over " + number(f.area_mm2, 4) + " mm^2; least gap " +
+           number(f.gap_mm, 3) + " mm" + (f.slipping ? slipping_text(*f.slipping) : "");
+  }
+  std::string operator()(const finding::Untouched&) const { return "nothing touches"; }
+  std::string operator()(const finding::Buckled& of) const {
+    return "the robot left " +
+           counted(static_cast<std::size_t>(of.times), "unstable equilibrium", "unstable equilibria") +
+           " for a stable one, moving by up to " + number(of.largest_mm, 3) + " mm";
+  }
+  /// "air by its volume [-]: 0 kPa at 1, 9.1 kPa at 2.4, ..."
+  std::string operator()(const LoadBranch& of) const {
+    const Actuator& actuator = model.actuators[of.actuator];
+    std::string text = actuator.name + " by its " + measure_name(actuator) + " [-]:";
+    for (std::size_t i = 0; i < of.points.size(); ++i)
+      text += (i > 0 ? ", " : " ") + number(of.points[i].load, 4) + " " + command_unit(actuator) + " at " +
+              number(of.points[i].measure, 4);
+    return text;
+  }
+
+  std::string operator()(const finding::Inverted& of) const {
+    return "warning: " + counted(of.elements, "element") + (of.elements == 1 ? " is" : " are") + " inverted";
+  }
+  std::string operator()(const SelfOverlap& of) const {
+    return "warning: the shape passes through itself: " + counted(of.points, "point") + " of its surface " +
+           (of.points == 1 ? "lies" : "lie") + " inside it, the deepest " + depth_text(of.deepest_mm, of.where) +
+           overlap_cause(model);
+  }
+  std::string operator()(const finding::Motionless& of) const {
+    return "warning: nothing moved: the largest displacement is " + number(of.largest_mm, 2) +
+           " mm; are what is asked for and the moduli in the right units?" + units_text;
+  }
+  std::string operator()(const finding::FarStrained& of) const {
+    return "warning: the body is strained by up to " + percent(of.greatest) +
+           ", where most elastomers have broken; are the loads and the moduli in the right units?" + units_text;
+  }
+  std::string operator()(const finding::FarMoved& of) const {
+    return "warning: a point moved by " + number(of.largest_mm, 4) + " mm, and the robot is " +
+           number(of.diagonal_mm, 4) + " mm across; are the loads and the moduli in the right units?" + units_text;
+  }
+  std::string operator()(const finding::Unstable& of) const {
+    return "warning: this equilibrium is unstable in " + counted(static_cast<std::size_t>(of.ways), "way") +
+           ": the robot would buckle or snap away from it";
+  }
+  std::string operator()(const finding::Snapped& of) const {
+    return "warning: at " + percent(of.from) + " of the way the shape jumps by " + number(of.largest_mm, 3) +
+           " mm: the robot snaps through, and what it does there depends on how fast it is moved";
+  }
+  std::string operator()(const finding::UnstableWay& of) const {
+    return "warning: from " + percent(of.from) +
+           " of the way on equilibria were unstable: the robot would leave the way there, for a shape that may be "
+           "another one";
+  }
+  std::string operator()(const finding::Diverged&) const { return "warning: the iteration diverged"; }
+};
 
 }  // namespace
 
@@ -171,50 +164,7 @@ std::string depth_text(double deepest_mm, const Vec3& where) {
 }
 
 std::string finding_text(const Model& model, const Finding& finding) {
-  using Kind = Finding::Kind;
-  switch (finding.kind) {
-    case Kind::strain:
-      return strain_text(finding.values);
-    case Kind::beyond_linear_range:
-      return beyond_range_text(finding);
-    case Kind::slack:
-      return slack_text(finding);
-    case Kind::charged:
-      return charged_text(finding);
-    case Kind::rubbing:
-      return rubbing_text(finding);
-    case Kind::fibre:
-      return fibre_text(finding);
-    case Kind::layer:
-      return layer_text(finding);
-    case Kind::accuracy:
-      return accuracy_text(finding.values);
-    case Kind::stress:
-      return stress_text(finding);
-    case Kind::reaction:
-      return reaction_text(finding);
-    case Kind::contact:
-      return contact_text(finding);
-    case Kind::magnetic:
-      return magnetic_text(finding.values);
-    case Kind::untouched:
-      return "nothing touches";
-    case Kind::buckled:
-      return buckled_text(finding.values);
-    case Kind::branch:
-      return branch_text(model, finding);
-    case Kind::inverted:
-    case Kind::self_overlap:
-    case Kind::motionless:
-    case Kind::far_strained:
-    case Kind::far_moved:
-    case Kind::unstable:
-    case Kind::snapped:
-    case Kind::unstable_way:
-    case Kind::diverged:
-      break;
-  }
-  return "warning: " + warning_text(model, finding);
+  return std::visit(Telling{model}, finding);
 }
 
 void OverlapTally::add(std::size_t number, const StepRecord& record) {

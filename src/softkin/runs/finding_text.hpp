@@ -1,7 +1,6 @@
 #pragma once
 
-#include <softkin/model/model.hpp>
-#include <softkin/runs/records.hpp>
+#include <softkin/runs/findings.hpp>
 #include <string>
 
 namespace softkin::runs {

@@ -21,8 +21,7 @@ std::array<Vec3, 2> axes_of(const Mat3& covariance) {
   if (!(most > 0)) return axes;
   const bool flat = eigen.values[1] <= least_share * most;
   for (Index k = 0; k < (flat ? 1 : 2); ++k)
-    axes[static_cast<std::size_t>(k)] =
-        (flat ? interval_90 : ellipse_90) * std::sqrt(eigen.values[2 - k]) * Vec3(eigen.vectors.col(2 - k));
+    axes[k] = (flat ? interval_90 : ellipse_90) * std::sqrt(eigen.values[2 - k]) * Vec3(eigen.vectors.col(2 - k));
   return axes;
 }
 
@@ -37,9 +36,10 @@ Mat3 across(const Mat3& covariance, const Vec3& direction) {
 /// The force that a number is a component of; "": of none.
 std::string force_of(const Model& model, const ToldNumber& number) {
   if (number.actuator < 0) return "";
-  const Actuator& actuator = model.actuators[static_cast<std::size_t>(number.actuator)];
-  if (actuator.kind != ActuatorKind::force || actuator.axis < 0) return "";
-  const std::string end = std::string("_f") + axis_names[actuator.axis];
+  const Actuator& actuator = model.actuators[number.actuator];
+  const auto* force = actuator.as<ForceCommand>();
+  if (!force) return "";
+  const std::string end = std::string("_f") + axis_names[force->axis];
   return actuator.name.ends_with(end) ? actuator.name.substr(0, actuator.name.size() - end.size()) : "";
 }
 
@@ -52,7 +52,7 @@ ForcePictures::ForcePictures(const Model& model)
 std::array<Vec3, 2> ForcePictures::place_axes(const ToldPlace& place, const Points& positions) const {
   Index number = -1;
   (void)surface_.nearest(place.at_rest, &number);
-  const Triangle& face = triangles_[static_cast<std::size_t>(number)];
+  const Triangle& face = triangles_[number];
   const auto edges = [&](const Points& of) {
     Eigen::MatrixXd sides(3, 2);
     sides << vertex_at(of, face[1]) - vertex_at(of, face[0]), vertex_at(of, face[2]) - vertex_at(of, face[0]);
@@ -65,6 +65,9 @@ std::array<Vec3, 2> ForcePictures::place_axes(const ToldPlace& place, const Poin
 
 std::vector<ForcePicture> ForcePictures::of(const Estimate& told) const {
   std::vector<ForcePicture> pictures;
+  const auto command_of = [&](const ToldNumber& number) -> const ForceCommand& {
+    return std::get<ForceCommand>(model_.actuators[number.actuator].drive);
+  };
   for (const ToldNumber& number : told.numbers) {
     const std::string name = force_of(model_, number);
     if (name.empty() ||
@@ -75,14 +78,13 @@ std::vector<ForcePicture> ForcePictures::of(const Estimate& told) const {
     std::array<Index, 3> rows{-1, -1, -1};  // of the covariance
     for (std::size_t n = 0; n < told.numbers.size(); ++n) {
       if (force_of(model_, told.numbers[n]) != name) continue;
-      const int axis = model_.actuators[static_cast<std::size_t>(told.numbers[n].actuator)].axis;
-      rows[static_cast<std::size_t>(axis)] = static_cast<Index>(n);
+      rows[command_of(told.numbers[n]).axis] = static_cast<Index>(n);
     }
     Mat3 covariance = Mat3::Zero();
     for (int i = 0; i < 3; ++i) {
       if (const auto a = find_actuator(model_, name + "_f" + axis_names[i])) picture.force[i] = told.actuation[*a];
       for (int j = 0; j < 3; ++j) {
-        const Index row = rows[static_cast<std::size_t>(i)], column = rows[static_cast<std::size_t>(j)];
+        const Index row = rows[i], column = rows[j];
         if (row >= 0 && column >= 0) covariance(i, j) = told.covariance(row, column);
       }
     }
@@ -95,9 +97,8 @@ std::vector<ForcePicture> ForcePictures::of(const Estimate& told) const {
       picture.at = place->present;
       picture.place = place_axes(*place, told.state.positions);
     } else {
-      const Actuator& actuator = model_.actuators[static_cast<std::size_t>(number.actuator)];
-      const EmbeddedPoint& point =
-          actuator.points.empty() ? model_.bodies[static_cast<std::size_t>(actuator.other)].center : actuator.points[0];
+      const ForceCommand& force = command_of(number);
+      const EmbeddedPoint& point = force.place ? *force.place : model_.bodies[force.body].center;
       picture.at = point.at(told.state.positions);
     }
   }

@@ -33,8 +33,7 @@ std::string coordinates_text(const Vec3& point, int decimals) {
 std::string counted_text(const Vec3& vector, const std::array<bool, 3>& axes, int decimals) {
   std::string text;
   for (int axis = 0; axis < 3; ++axis)
-    text += (axis > 0 ? " " : "") +
-            (axes[static_cast<std::size_t>(axis)] ? decimal(vector[axis], decimals) : std::string("any"));
+    text += (axis > 0 ? " " : "") + (axes[axis] ? decimal(vector[axis], decimals) : std::string("any"));
   return text;
 }
 
@@ -91,7 +90,7 @@ InverseTables inverse_tables(const Model& model, const std::vector<NamedGoal>& g
     (std::holds_alternative<ForceGoal>(goals[i].goal.what) ? exerted : reached)
         .rows.push_back({goals[i].name, asked_text(goals[i].goal),
                          found_text(model, goals[i].goal, found.equilibrium.state.positions, step),
-                         own_error(goals[i].goal, found.errors_mm[static_cast<Index>(i)])});
+                         own_error(goals[i].goal, found.errors_mm[i])});
   }
   return {std::move(actuators), std::move(reached), std::move(exerted)};
 }

@@ -65,7 +65,7 @@ std::string PathJob::mismatch(std::size_t number, const StepRecord& record) cons
   const std::string where = file_ + ":" + std::to_string(asked.line);
   for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
     const Actuator& actuator = model_.actuators[a];
-    const double before = record.actuation[static_cast<Index>(a)], now = asked.actuation[static_cast<Index>(a)];
+    const double before = record.actuation[a], now = asked.actuation[a];
     if (before != now)
       return step + " was solved for " + actuator.name + " = " + command_text(actuator, before, 12) + ", but " + where +
              " asks for " + command_text(actuator, now, 12) + "; the path has changed";
@@ -152,7 +152,7 @@ namespace {
 void check_closed(const Model& model, const std::string& file, const std::vector<ActuationStep>& gait) {
   if (gait.size() < 2) throw InvalidInput({file}, "a gait needs two rows or more, not " + std::to_string(gait.size()));
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
-    const auto value = [&](const ActuationStep& step) { return step.actuation[static_cast<Index>(a)]; };
+    const auto value = [&](const ActuationStep& step) { return step.actuation[a]; };
     const double first = value(gait.front()), last = value(gait.back());
     if (std::abs(first - last) > 1e-9 * std::max(1.0, std::abs(first)))
       throw InvalidInput({file, gait.back().line}, "a gait ends where it begins, but " + model.actuators[a].name +

@@ -32,7 +32,7 @@ void take_pressures(const Model& model, const KinematicMap& map, const std::stri
   for (CommandRow& row : commands.rows) {
     if (!map.evaluate(map.commands(row.actuation).data(), values.data()))
       throw InvalidInput({commands.file, row.line}, "this row is outside the map " + map_file);
-    for (std::size_t i = 0; i < told.size(); ++i) row.pressures_kpa[static_cast<Index>(told[i])] = values[outputs[i]];
+    for (std::size_t i = 0; i < told.size(); ++i) row.pressures_kpa[told[i]] = values[outputs[i]];
   }
 }
 

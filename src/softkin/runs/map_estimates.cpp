@@ -20,11 +20,10 @@ struct ReadOutput {
 
 /// "tip_x", "air_pressure", "air_ratio"
 std::string output_name(const Model& model, const PoseColumn& column) {
-  if (column.marker >= 0)
-    return model.markers[static_cast<std::size_t>(column.marker)].name + "_" + axis_names[column.axis];
+  if (column.marker >= 0) return model.markers[column.marker].name + "_" + axis_names[column.axis];
   if (column.actuator < 0) return "";
   const bool measure = column.kind == Reading::length || column.kind == Reading::volume;
-  return model.actuators[static_cast<std::size_t>(column.actuator)].name + "_" +
+  return model.actuators[column.actuator].name + "_" +
          (measure ? "ratio" : reading_names[static_cast<std::size_t>(column.kind)]);
 }
 
@@ -39,8 +38,8 @@ std::vector<ReadOutput> read_outputs(const KinematicMap& map, const Model& model
       throw InvalidInput({poses.file},
                          "column '" + column.name + "' is nothing that the map gives: the solver tells from it");
     const bool ratio = column.marker < 0 && name.ends_with("_ratio");
-    read.push_back({static_cast<Index>(found - outputs.begin()),
-                    ratio ? model.actuators[static_cast<std::size_t>(column.actuator)].rest_measure : 1});
+    read.push_back(
+        {static_cast<Index>(found - outputs.begin()), ratio ? model.actuators[column.actuator].rest_measure : 1});
   }
   return read;
 }
@@ -84,13 +83,12 @@ class MapRows {
     const auto begin = std::chrono::steady_clock::now();
     const Actuation& given = asked_.poses.commands[row];
     Eigen::VectorXd commands(map_.inputs()), values(map_.outputs()), spreads(map_.outputs());
-    for (Index i = 0; i < map_.inputs(); ++i)
-      commands[i] = given[map_.data().inputs[static_cast<std::size_t>(i)].actuator];
+    for (Index i = 0; i < map_.inputs(); ++i) commands[i] = given[map_.data().inputs[i].actuator];
     for (const MapUnknown& unknown : unknowns_) commands[unknown.input] = unknown.mean;
     values.setConstant(std::nan(""));
     spreads.setZero();
     for (Index c = 0; c < static_cast<Index>(read_.size()); ++c) {
-      const ReadOutput& read = read_[static_cast<std::size_t>(c)];
+      const ReadOutput& read = read_[c];
       values[read.output] = asked_.poses.values(static_cast<Index>(row), c) / read.size;
       spreads[read.output] = deviations_[c] / read.size;
     }
@@ -124,9 +122,9 @@ class MapRows {
     (void)map_.evaluate(found.commands.data(), outputs.data(), slopes.data());
     Eigen::VectorXd by(static_cast<Index>(unknowns_.size()));
     for (Index c = 0; c < static_cast<Index>(read_.size()); ++c) {
-      const ReadOutput& read = read_[static_cast<std::size_t>(c)];
+      const ReadOutput& read = read_[c];
       told.computed[c] = read.size * found.computed[read.output];
-      for (Index i = 0; i < by.size(); ++i) by[i] = slopes(unknowns_[static_cast<std::size_t>(i)].input, read.output);
+      for (Index i = 0; i < by.size(); ++i) by[i] = slopes(unknowns_[i].input, read.output);
       told.deviations[c] = read.size * std::sqrt(by.dot(found.covariance * by));
     }
     told.chi_square = found.chi_square;

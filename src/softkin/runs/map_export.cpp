@@ -34,7 +34,7 @@ void add_tree(const MapPiece& piece, Index first_cell, FlatMap& flat) {
   flat.roots.push_back(root);
   for (const MapNode& node : piece.tree) {
     const bool leaf = node.variable < 0;
-    flat.node_inputs.push_back(leaf ? -1 : piece.inputs[static_cast<std::size_t>(node.variable)]);
+    flat.node_inputs.push_back(leaf ? -1 : piece.inputs[node.variable]);
     flat.node_at.push_back(leaf ? 0 : node.at);
     flat.node_children.push_back(leaf ? std::pair<Index, Index>(node.cell < 0 ? -1 : first_cell + node.cell, 0)
                                       : std::pair(root + node.first, root + node.second));
@@ -66,7 +66,7 @@ bool is_inside(const KinematicMap& map, const Eigen::VectorXd& commands, const K
   for (const double side : {-share, share}) {
     Eigen::VectorXd beside = commands;
     for (Index i = 0; i < map.inputs(); ++i) {
-      const MapInput& input = map.data().inputs[static_cast<std::size_t>(i)];
+      const MapInput& input = map.data().inputs[i];
       beside[i] += side * (input.high - input.low);
     }
     const auto found = map.evaluate(beside.data(), values.data());
@@ -84,7 +84,7 @@ FlatMap flat_map(const MapData& data) {
   for (FlatSums* sums : {&flat.outputs, &flat.modes}) sums->cell_runs = sums->cell_terms = {0};
   flat.pieces.assign(std::size_t{1} << data.cables.size(), -1);
   for (std::size_t p = 0; p < data.pieces.size(); ++p) {
-    flat.pieces[static_cast<std::size_t>(maps::bits_of(data.pieces[p].taut))] = static_cast<Index>(p);
+    flat.pieces[maps::bits_of(data.pieces[p].taut)] = static_cast<Index>(p);
     add_piece(data, data.pieces[p], flat);
   }
   return flat;
@@ -122,7 +122,7 @@ MapAnswers map_answers(const KinematicMap& map, CNumbers numbers) {
     answers.outputs.row(found) = values;
     answers.slopes.row(found).setZero();
     for (Index i = 0; i < inputs; ++i) {
-      const MapInput& input = map.data().inputs[static_cast<std::size_t>(i)];
+      const MapInput& input = map.data().inputs[i];
       answers.slopes.row(found) += static_cast<double>(i + 1) * (input.high - input.low) * slopes.row(i);
     }
     ++found;
@@ -145,9 +145,7 @@ std::vector<std::string> error_lines(const MapData& data) {
       " of the finite-element robot; checked at " + counted(static_cast<std::size_t>(check.points), "point") +
       " that it was not made of (not a bound):"};
   for (std::size_t q = 0; q < data.outputs.size(); ++q)
-    lines.push_back(
-        "  " + data.outputs[q].name + " " +
-        error(check.largest[static_cast<Index>(q)], check.mean[static_cast<Index>(q)], data.outputs[q].unit));
+    lines.push_back("  " + data.outputs[q].name + " " + error(check.largest[q], check.mean[q], data.outputs[q].unit));
   if (data.shape) lines.push_back("  every vertex " + error(check.shape_largest_mm, check.shape_mean_mm, "mm"));
   if (check.outside > 0)
     lines.push_back("  of " + std::to_string(check.points + check.outside) + " random actuations " +

@@ -126,8 +126,7 @@ void add_tables(const MapData& data, const FlatMap& flat, CNumbers numbers, CTab
   for (const MapCable& cable : data.cables) {
     cables.insert(cables.end(), {cable.input, cable.tension, cable.ratio});
     commands.push_back(cable.command);
-    for (const Index output : {cable.tension, cable.ratio})
-      accuracies.push_back(data.outputs[static_cast<std::size_t>(output)].accuracy);
+    for (const Index output : {cable.tension, cable.ratio}) accuracies.push_back(data.outputs[output].accuracy);
   }
   tables.shorts("pieces", flat.pieces);
   tables.integers("variables", flat.variables, inputs);

@@ -144,7 +144,7 @@ void add_numpy_trees(const FlatMap& flat, NumpyArrays& arrays) {
   }
   tree.row(nodes) << -1, 0, 0, 0, -1;
   std::vector<Index> roots;
-  for (const Index piece : flat.pieces) roots.push_back(piece < 0 ? -1 : flat.roots[static_cast<std::size_t>(piece)]);
+  for (const Index piece : flat.pieces) roots.push_back(piece < 0 ? -1 : flat.roots[piece]);
   arrays.add("roots", roots);
   arrays.add("tree", tree.data(), {tree.rows(), tree.cols()});
 }

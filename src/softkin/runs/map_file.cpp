@@ -269,7 +269,7 @@ std::string map_text(const MapData& data) {
   const auto add = [&](const std::string& unit, const char* of, double shape) {
     double largest = shape;
     for (std::size_t q = 0; q < data.outputs.size(); ++q)
-      if (data.outputs[q].unit == unit) largest = std::max(largest, check.largest[static_cast<Index>(q)]);
+      if (data.outputs[q].unit == unit) largest = std::max(largest, check.largest[q]);
     text +=
         std::string(text.back() == ':' ? " " : ", ") + of + " " + number(largest, 2) + (unit.empty() ? "" : " " + unit);
   };

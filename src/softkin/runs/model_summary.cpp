@@ -34,7 +34,7 @@ std::string command_range(const Actuator& actuator) {
 }
 
 const char* unit_of_measure(const Actuator& actuator) {
-  return actuator.kind == ActuatorKind::cable ? "mm" : actuator.kind == ActuatorKind::dea ? "mm^2" : "mm^3";
+  return actuator.is<CableDrive>() ? "mm" : actuator.is<DeaDrive>() ? "mm^2" : "mm^3";
 }
 
 }  // namespace
@@ -54,18 +54,17 @@ std::string model_summary(const Model& model, const std::string& solver) {
     text += "\nbody " + body.name + ": " + number(1000 * body.mass_kg) + " g; held while " + body.name +
             "_hold is 1, free at 0; forces " + body.name + "_fx, _fy and _fz [N]";
   for (const Actuator& a : model.actuators)
-    if (a.kind == ActuatorKind::motion)
+    if (a.is<MotionCommand>())
       text += "\nobstacle moved by " + a.name + " [mm]";
     else if (loads_robot(a))
       text += std::string("\n") + kind_name(a) + " commanded by " + a.name + " " + bracketed_unit(a) + ", " +
               number(a.low) + " to " + number(a.high);
-    else if (a.kind == ActuatorKind::turn)
-      text +=
-          "\nsupport '" + model.turns[static_cast<std::size_t>(a.other)].support + "' turned by " + a.name + " [deg]";
+    else if (const auto* turn = a.as<TurnCommand>())
+      text += "\nsupport '" + model.turns[turn->turn].support + "' turned by " + a.name + " [deg]";
   for (const Actuator& a : model.actuators)
     if (drives(a))
       text += "\nactuator " + a.name + ": " + kind_name(a) + ", " +
-              (a.flat           ? "flat at rest, "
+              (flat_at_rest(a)  ? "flat at rest, "
                : has_measure(a) ? number(a.rest_measure) + " " + unit_of_measure(a) + " at rest, "
                                 : "") +
               command_range(a) + curve_text(a);

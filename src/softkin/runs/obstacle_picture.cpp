@@ -61,7 +61,7 @@ std::optional<PictureLayer> body_layer(const Model& model, const Points& positio
   layer.edges = false;
   layer.points = positions;
   for (std::size_t t = 0; t < model.contact.triangles.size(); ++t)
-    if (model.contact.parts[static_cast<std::size_t>(model.contact.part_of[t])].rank == ContactRank::body)
+    if (model.contact.parts[model.contact.part_of[t]].rank == ContactRank::body)
       layer.triangles.push_back(model.contact.triangles[t]);
   return layer;
 }
@@ -76,7 +76,7 @@ std::optional<PictureLayer> obstacle_layer(const Model& model, const Points& pos
   layer.edges = false;
   std::vector<Vec3> points;
   for (std::size_t t = 0; t < contact.triangles.size(); ++t) {
-    const ContactPart& part = contact.parts[static_cast<std::size_t>(contact.part_of[t])];
+    const ContactPart& part = contact.parts[contact.part_of[t]];
     if (part.rank != ContactRank::obstacle) continue;
     Corners corners;
     for (std::size_t i = 0; i < 3; ++i) corners[i] = vertex_at(positions, contact.triangles[t][i]);

@@ -67,16 +67,17 @@ Json rounded_array(const std::vector<float>& numbers, std::size_t components) {
 /// The unit of what a robot answers with; "" where it answers nothing.
 std::string load_unit(const Model& model, const Actuator& actuator) {
   if (model.formulation != Formulation::physical) return "";
-  return !shows_measure(actuator) ? multiplier_unit(actuator) : actuator.flat ? "mL" : "× rest";
+  return !shows_measure(actuator) ? multiplier_unit(actuator) : flat_at_rest(actuator) ? "mL" : "× rest";
 }
 
 /// What one mT of its command adds to the flux density everywhere, a unit vector [mT]; none: it makes no uniform field.
 std::optional<Vec3> uniform_flux_density(const Model& model, const Actuator& actuator) {
-  if (actuator.kind != ActuatorKind::magnetic) return std::nullopt;
-  const FieldSource& source = model.magnetism->sources[static_cast<std::size_t>(actuator.other)];
+  const auto* drive = actuator.as<MagneticDrive>();
+  if (!drive) return std::nullopt;
+  const FieldSource& source = model.magnetism->sources[drive->source];
   const auto* uniform = std::get_if<UniformField>(&source.field);
   if (uniform == nullptr) return std::nullopt;
-  const int axis = axis_of(static_cast<FieldCommand>(actuator.axis));
+  const int axis = axis_of(drive->command);
   return axis < 0 ? uniform->direction : Vec3(Vec3::Unit(axis));
 }
 
@@ -165,8 +166,8 @@ std::vector<Index> line_vertices(const Model& model) {
     for (const EmbeddedPoint& point : line)
       vertices.insert(vertices.end(), point.vertices.begin(), point.vertices.end());
   for (const Actuator& actuator : model.actuators)
-    if (actuator.kind == ActuatorKind::cable)
-      for (const EmbeddedPoint& point : actuator.points)
+    if (const auto* cable = actuator.as<CableDrive>())
+      for (const EmbeddedPoint& point : cable->points)
         vertices.insert(vertices.end(), point.vertices.begin(), point.vertices.end());
   return vertices;
 }
@@ -199,7 +200,7 @@ void PageDocument::take(const std::vector<Index>& more) {
   std::vector<Index> fresh = more;
   sort_unique(fresh);
   for (const Index v : fresh) {
-    Index& number = numbers_[static_cast<std::size_t>(v)];
+    Index& number = numbers_[v];
     if (number >= 0) continue;
     number = static_cast<Index>(vertices_.size());
     vertices_.push_back(v);
@@ -232,8 +233,7 @@ std::vector<VertexField> PageDocument::fields(const ElementDeformation& deformat
                                   {"volume_ratio", mean_at_vertices(deformation.volume_ratio)}};
   if (!deformation.contacts) return fields;
   std::vector<float> pressure;
-  for (const Index v : vertices_)
-    pressure.push_back(static_cast<float>(deformation.contacts->pressure_kPa[static_cast<std::size_t>(v)]));
+  for (const Index v : vertices_) pressure.push_back(static_cast<float>(deformation.contacts->pressure_kPa[v]));
   fields.push_back({"contact_pressure", std::move(pressure)});
   return fields;
 }
@@ -246,7 +246,7 @@ void PageDocument::add(const StepRecord& record, const Points& positions, const 
   for (const VertexField& field : this->fields(deformation)) fields[field.name] = rounded_array(field.values, 1);
   Json loads = Json::array(), markers = Json::array(), commands = Json::array();
   for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
-    commands.push_back(known(record.actuation[static_cast<Index>(a)]));
+    commands.push_back(known(record.actuation[a]));
     const bool answers = !load_unit(model_, model_.actuators[a]).empty();
     const ActuatorRecord& of = record.actuators[a];
     loads.push_back(answers ? known(shows_measure(model_.actuators[a]) ? of.achieved : of.multiplier) : Json());
@@ -308,8 +308,8 @@ Json page_fibres(const std::vector<std::vector<EmbeddedPoint>>& lines, const Num
 Json page_cables(const Model& model, const Numbering& number) {
   Json list = Json::array();
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
-    if (model.actuators[a].kind != ActuatorKind::cable) continue;
-    list.push_back({{"actuator", a}, {"points", page_line(model.actuators[a].points, number)}});
+    if (const auto* cable = model.actuators[a].as<CableDrive>())
+      list.push_back({{"actuator", a}, {"points", page_line(cable->points, number)}});
   }
   return list;
 }

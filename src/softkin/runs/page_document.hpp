@@ -50,7 +50,7 @@ class PageDocument {
 
  private:
   void take(const std::vector<Index>& more);
-  [[nodiscard]] Index number(Index vertex) const { return numbers_[static_cast<std::size_t>(vertex)]; }
+  [[nodiscard]] Index number(Index vertex) const { return numbers_[vertex]; }
   [[nodiscard]] std::vector<float> mean_at_vertices(const std::vector<double>& of_elements) const;
 
   const Model& model_;

@@ -82,7 +82,7 @@ void forces(Record& record, const Visit& visit) {
 }
 
 Json branch_json(const Model& model, const LoadBranch& branch) {
-  const Actuator& actuator = model.actuators[static_cast<std::size_t>(branch.actuator)];
+  const Actuator& actuator = model.actuators[branch.actuator];
   Json json = {{"actuator", actuator.name}, {"ratio", Json::array()}, {multiplier_key(actuator), Json::array()}};
   for (const LoadBranch::Point& point : branch.points) {
     json["ratio"].push_back(known(point.measure));
@@ -96,7 +96,7 @@ LoadBranch branch_of(const Model& model, const Json& json) {
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     if (model.actuators[a].name == json.at("actuator").get<std::string>()) branch.actuator = static_cast<Index>(a);
   if (branch.actuator < 0) throw std::out_of_range("no such actuator");
-  const Json& loads = json.at(multiplier_key(model.actuators[static_cast<std::size_t>(branch.actuator)]));
+  const Json& loads = json.at(multiplier_key(model.actuators[branch.actuator]));
   for (std::size_t i = 0; i < loads.size(); ++i)
     branch.points.push_back({number_or_nan(json.at("ratio").at(i)), number_or_nan(loads.at(i))});
   return branch;

@@ -21,7 +21,7 @@ std::vector<StepCurve> command_curves(const Model& model, const Records& records
   std::vector<StepCurve> curves;
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     curves.push_back(command_curve(model.actuators[a]));
-    for (const StepRecord& record : records) curves.back().values.push_back(record.actuation[static_cast<Index>(a)]);
+    for (const StepRecord& record : records) curves.back().values.push_back(record.actuation[a]);
   }
   return curves;
 }
@@ -42,7 +42,7 @@ std::vector<PlotPanel> measure_panels(const Model& model, const StepAxis& along,
     for (std::size_t a = 0; a < model.actuators.size(); ++a) {
       const Actuator& actuator = model.actuators[a];
       if (!answers_with_measure(actuator) || std::string(measure_name(actuator)) != measure) continue;
-      curves.push_back({actuator.name, actuator.flat ? "mL" : "-", {}});
+      curves.push_back({actuator.name, flat_at_rest(actuator) ? "mL" : "-", {}});
       for (const StepRecord& record : records) curves.back().values.push_back(record.actuators[a].achieved);
     }
     for (PlotPanel& panel : curve_panels(along, curves, std::string(measure) + " ratio"))
@@ -53,7 +53,7 @@ std::vector<PlotPanel> measure_panels(const Model& model, const StepAxis& along,
 
 template <class Records>
 StepCurve line_curve(const Model& model, const MarkerLine& line, const Records& records) {
-  const auto name = [&](Index m) { return model.markers[static_cast<std::size_t>(m)].name; };
+  const auto name = [&](Index m) { return model.markers[m].name; };
   StepCurve curve{name(line.from) + " to " + name(line.to), "deg", {}};
   TurnMeter meter(line.at_rest(model));
   for (const StepRecord& record : records) curve.values.push_back(meter.next(line.in(record.markers)));
@@ -137,7 +137,7 @@ class Steps {
     const SpaceCurve curve = way(marker);
     std::vector<StepCurve> coordinates{{"x", "mm", {}}, {"y", "mm", {}}, {"z", "mm", {}}};
     for (const Vec3& point : curve.points)
-      for (int axis = 0; axis < 3; ++axis) coordinates[static_cast<std::size_t>(axis)].values.push_back(point[axis]);
+      for (int axis = 0; axis < 3; ++axis) coordinates[axis].values.push_back(point[axis]);
     PlotPanel panel = curve_panels(along_, coordinates, "position").front();
     panel.title = model_.markers[marker].name;
     if (PlotSeries failed = unconverged(curve); !failed.x.empty()) panel.series.push_back(std::move(failed));
@@ -175,24 +175,20 @@ class PathPlot {
     if (along_.axis.whole) along_.axis.label = "waypoint";
   }
 
-  [[nodiscard]] const Vec3& place(std::size_t i, std::size_t m) const {
-    return done_[i].markers[static_cast<std::size_t>(path_.markers[m])];
-  }
+  [[nodiscard]] const Vec3& place(std::size_t i, std::size_t m) const { return done_[i].markers[path_.markers[m]]; }
 
   /// A coordinate that does not count is where the marker came to.
   [[nodiscard]] Vec3 target(std::size_t i, std::size_t m) const {
     Vec3 point = place(i, m);
     for (std::size_t axis = 0; axis < 3; ++axis)
-      if (path_.axes[m][axis])
-        point[static_cast<Index>(axis)] = path_.waypoints[i].targets[m][static_cast<Index>(axis)];
+      if (path_.axes[m][axis]) point[axis] = path_.waypoints[i].targets[m][axis];
     return point;
   }
 
   [[nodiscard]] std::vector<SpaceCurve> curves() const {
     std::vector<SpaceCurve> curves;
     for (std::size_t m = 0; m < path_.markers.size(); ++m) {
-      const std::string of =
-          path_.markers.size() == 1 ? "" : model_.markers[static_cast<std::size_t>(path_.markers[m])].name + ": ";
+      const std::string of = path_.markers.size() == 1 ? "" : model_.markers[path_.markers[m]].name + ": ";
       SpaceCurve targets{of + "target", {}, true, false}, reached{of + "reached", {}, true, true};
       SpaceCurve missed{of + "not reached", {}, false, true}, gaps{"", {}, true, false};
       targets.pale = true;

@@ -135,7 +135,7 @@ class RemoteDesk : public GroupDesk {
     wait_for(request);
     if (reply[0] < 0) return std::nullopt;
     GroupTask task{reply[0], {}};
-    for (int i = 0; i < reply[1]; ++i) task.known.push_back(told_status(reply[static_cast<std::size_t>(2 + i)]));
+    for (int i = 0; i < reply[1]; ++i) task.known.push_back(told_status(reply[2 + i]));
     return task;
   }
 

@@ -100,52 +100,6 @@ void note_jump(const Model& model, const MarkerPath& path, const WaypointRecord&
 /// The state that a record's shape is, as if it had just been solved.
 [[nodiscard]] State state_of(const Model& model, const StepRecord& record, Points positions);
 
-/// What a user should know of an equilibrium beside its numbers.
-struct Finding {
-  /// What is found; `name` and `values` as they stand beside each.
-  enum class Kind {
-    strain,               // values: least, greatest, 95th percentile of the magnitude [-]
-    beyond_linear_range,  // name: region; values: share of its volume [-], its linear range [-]
-    inverted,             // values: how many elements
-    slack,                // name: cable; values: length of its path and of the cable over that at rest [-]
-    charged,              // name: dea; values: charge [nC], capacitance [pF], the largest field in its layer [kV/mm],
-                          // thickness [mm] and place [mm] (3) there
-    rubbing,              // name: cable; values: tension at the motor and at its far end [N], share that sticks [-]
-    fibre,                // name; values: mean, largest, least tension [N], where the largest is [mm] (3), length over
-                          // that at rest [-], share that is slack [-]
-    layer,                // name; values: largest, least principal tension [N/mm], where the largest is [mm] (3),
-                          // largest strain [-], shares of its area that are wrinkled and slack [-]
-    self_overlap,         // values: points inside, depth of the deepest and its place [mm]
-    motionless,           // something is asked for and nothing moves; values: largest displacement [mm]
-    far_strained,         // values: greatest strain [-]
-    far_moved,            // values: largest displacement, diagonal of the robot [mm]
-    diverged,             // the iteration
-    accuracy,   // values: last step, estimated distance from the equilibrium [mm]; physical: largest force out
-                // of balance, largest pull of the elements at a vertex [N]
-    stress,     // name: region of the largest of von Mises; values: it [MPa], where [mm] (3), greatest and
-                // least principal stress [MPa]
-    reaction,   // name: support; values: force [N] (3), moment [N mm] (3), centre [mm] (3)
-    contact,    // name: what presses on the other, which is empty where it is itself; values: force [N] (3), moment
-                // [N mm] (3), centre [mm] (3), normal force [N], largest pressure [kPa], area [mm^2], least gap [mm],
-                // with friction the share of the normal force that slips [-]
-    magnetic,   // values: force [N] (3), moment [N mm] (3), centre [mm] (3)
-    untouched,  // nothing touches what it might
-    unstable,   // values: in how many ways
-    buckled,    // values: how often, the largest move [mm]
-    snapped,    // values: the longest move [mm], share of the way at which its step began [-]
-    unstable_way,  // of an equilibrium that is stable; values: share of the way from which it was not [-]
-    branch         // name: chamber or cable whose load has a maximum; values: ratio [-] and load [kPa, N] of each shape
-                   // along its volume or length
-  };
-  Kind kind;                     // what it is
-  std::string name{};            // of the region, actuator or part; empty: of none
-  std::vector<double> values{};  // numbers, in the order told above
-  std::string other{};           // the second name, of a contact
-};
-
-/// All that is worth knowing of a record's equilibrium.
-[[nodiscard]] std::vector<Finding> findings(const Model& model, const StepRecord& record);
-
 /// An actuator that did not come as far as was asked, in its own unit.
 struct Shortfall {
   Index actuator = -1;            // of the model

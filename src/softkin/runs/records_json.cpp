@@ -101,13 +101,13 @@ Json actuator_json(const Model& model, const Actuator& actuator, const ActuatorR
   const std::string key = multiplier_key(actuator);
   if (model.formulation != Formulation::physical || key.empty()) return json;
   json[key] = known(record.multiplier);
-  if (actuator.kind == ActuatorKind::cable) json["slack"] = record.slack;
+  if (actuator.is<CableDrive>()) json["slack"] = record.slack;
   if (record.tendon) {
     json["end_tension_N"] = known(record.tendon->end_N);
     json["sticking"] = known(record.tendon->sticks);
   }
   if (under_voltage(actuator)) json.update(layer_json(record.layer));
-  if (actuator.kind == ActuatorKind::pneumatic) json.update(chamber_json(actuator, record));
+  if (actuator.is<ChamberDrive>()) json.update(chamber_json(actuator, record));
   return json;
 }
 
@@ -119,7 +119,7 @@ ActuatorRecord actuator_of(const Model& model, const Actuator& actuator, const J
   const std::string key = multiplier_key(actuator);
   if (model.formulation != Formulation::physical || key.empty()) return record;
   record.multiplier = number_or_nan(json.at(key));
-  if (actuator.kind == ActuatorKind::cable) record.slack = json.at("slack").get<bool>();
+  if (actuator.is<CableDrive>()) record.slack = json.at("slack").get<bool>();
   if (json.contains("end_tension_N"))
     record.tendon = {number_or_nan(json.at("end_tension_N")), number_or_nan(json.at("sticking"))};
   if (under_voltage(actuator)) record.layer = layer_of(json);
@@ -129,16 +129,14 @@ ActuatorRecord actuator_of(const Model& model, const Actuator& actuator, const J
 
 Json by_actuator(const Model& model, const Actuation& values) {
   Json json = Json::object();
-  for (std::size_t a = 0; a < model.actuators.size(); ++a)
-    json[model.actuators[a].name] = values[static_cast<Index>(a)];
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) json[model.actuators[a].name] = values[a];
   return json;
 }
 
 Actuation by_actuator(const Model& model, const Json& json) {
   Actuation values(static_cast<Index>(model.actuators.size()));
   if (json.size() != model.actuators.size()) throw OtherActuators();
-  for (std::size_t a = 0; a < model.actuators.size(); ++a)
-    values[static_cast<Index>(a)] = json.at(model.actuators[a].name).get<double>();
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) values[a] = json.at(model.actuators[a].name).get<double>();
   return values;
 }
 
@@ -211,7 +209,7 @@ Json step_json(const Model& model, const StepRecord& record) {
 }
 
 const std::string& marker_name(const Model& model, const MarkerPath& path, std::size_t m) {
-  return model.markers[static_cast<std::size_t>(path.markers[m])].name;
+  return model.markers[path.markers[m]].name;
 }
 
 }  // namespace
@@ -274,7 +272,7 @@ Json to_json(const Model& model, const MarkerPath& path, const WaypointRecord& r
   for (std::size_t m = 0; m < path.markers.size(); ++m) {
     Json& target = json["targets"][marker_name(model, path, m)] = Json::array();
     for (std::size_t axis = 0; axis < 3; ++axis)
-      target.push_back(path.axes[m][axis] ? Json(record.asked.targets[m][static_cast<Index>(axis)]) : Json());
+      target.push_back(path.axes[m][axis] ? Json(record.asked.targets[m][axis]) : Json());
   }
   json["status"] = name_of(record.end);
   json["reached"] = record.is_reached();
@@ -334,7 +332,7 @@ void from_json(const Model& model, const MarkerPath& path, const Json& step, Way
     Vec3 point = Vec3::Zero();
     for (std::size_t axis = 0; axis < 3; ++axis) {
       if (target.at(axis).is_null() == path.axes[m][axis]) throw std::out_of_range("other axes");
-      if (path.axes[m][axis]) point[static_cast<Index>(axis)] = target.at(axis).get<double>();
+      if (path.axes[m][axis]) point[axis] = target.at(axis).get<double>();
     }
     record.asked.targets.push_back(point);
   }

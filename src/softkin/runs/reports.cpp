@@ -88,8 +88,7 @@ Json map_json(const UsedMap& map) {
                {"checked", {{"points", check.points}, {"outside", check.outside}, {"seed", check.seed}}}};
   for (std::size_t q = 0; q < map.data.outputs.size(); ++q) {
     const MapOutput& output = map.data.outputs[q];
-    json["largest_error"][output.name + (output.unit.empty() ? "" : "_" + output.unit)] =
-        check.largest[static_cast<Index>(q)];
+    json["largest_error"][output.name + (output.unit.empty() ? "" : "_" + output.unit)] = check.largest[q];
   }
   if (map.data.shape) json["largest_error"]["shape_mm"] = check.shape_largest_mm;
   return json;
@@ -132,8 +131,7 @@ Json head_json(const Model& model, const std::string& scene, const StaticsOption
 /// null where a component does not count.
 Json counted_json(const Vec3& vector, const std::array<bool, 3>& axes) {
   Json json = Json::array();
-  for (int axis = 0; axis < 3; ++axis)
-    json.push_back(axes[static_cast<std::size_t>(axis)] ? Json(vector[axis]) : Json());
+  for (int axis = 0; axis < 3; ++axis) json.push_back(axes[axis] ? Json(vector[axis]) : Json());
   return json;
 }
 
@@ -161,7 +159,7 @@ Json goals_json(const Model& model, const std::vector<NamedGoal>& goals, const I
          : direction ? "found"
                      : "found_mm"] = json_of(found_of(model, goal, found.equilibrium.state.positions, record));
     json["weight"] = goal.weight;
-    json[force ? "error_N" : "error_mm"] = own_error(goal, found.errors_mm[static_cast<Index>(i)]);
+    json[force ? "error_N" : "error_mm"] = own_error(goal, found.errors_mm[i]);
     all.push_back(json);
   }
   return all;
@@ -332,7 +330,7 @@ RecordLog step_report(const Model& model, const std::string& scene, const std::f
 Vec3 found_of(const Model& model, const Goal& goal, const Points& positions, const StepRecord& record) {
   if (const auto* force = std::get_if<ForceGoal>(&goal.what))
     return exerted_force(*force, record.reactions, record.contacts);
-  const auto at = [&](Index marker) { return model.markers[static_cast<std::size_t>(marker)].at(positions); };
+  const auto at = [&](Index marker) { return model.markers[marker].at(positions); };
   if (const auto* position = std::get_if<PositionGoal>(&goal.what)) return at(position->marker);
   if (const auto* plane = std::get_if<PlaneGoal>(&goal.what)) return at(plane->marker);
   const auto& direction = std::get<DirectionGoal>(goal.what);

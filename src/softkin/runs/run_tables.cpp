@@ -70,7 +70,7 @@ std::string load_title(const Model& model, const Actuator& actuator) {
 
 /// Of what the command comes to: "achieved [-]" of a ratio, else what the load does: "volume ratio [-]".
 std::string measure_title(const Actuator& actuator) {
-  if (actuator.flat) return "volume [mL]";
+  if (flat_at_rest(actuator)) return "volume [mL]";
   return (answers_with_measure(actuator) ? std::string(measure_name(actuator)) + " ratio" : "achieved") + " [-]";
 }
 
@@ -112,7 +112,7 @@ void add_commands(const Model& model, Table& table) {
 }
 
 std::string line_title(const Model& model, const MarkerLine& line) {
-  const auto name = [&](Index m) { return short_name(model.markers[static_cast<std::size_t>(m)].name); };
+  const auto name = [&](Index m) { return short_name(model.markers[m].name); };
   return "turn " + name(line.from) + " to " + name(line.to) + " [deg]";
 }
 
@@ -141,7 +141,7 @@ Table errors_table(const Model& model, const MarkerPath& path, const std::vector
   Table table{{{"waypoint"}}};
   if (has_times(path)) table.columns.push_back({"t_s"});
   for (std::size_t m = 0; m < path.markers.size(); ++m) {
-    const std::string& name = model.markers[static_cast<std::size_t>(path.markers[m])].name;
+    const std::string& name = model.markers[path.markers[m]].name;
     for (std::size_t axis = 0; axis < 3; ++axis)
       if (path.axes[m][axis]) table.columns.push_back({name + "_target_" + axis_names[axis] + "_mm"});
     for (const char* axis : axis_names) table.columns.push_back({name + "_" + axis + "_mm"});
@@ -153,8 +153,8 @@ Table errors_table(const Model& model, const MarkerPath& path, const std::vector
     if (done[i].time_s) row.emplace_back(*done[i].time_s);
     for (std::size_t m = 0; m < path.markers.size(); ++m) {
       for (std::size_t axis = 0; axis < 3; ++axis)
-        if (path.axes[m][axis]) row.emplace_back(done[i].asked.targets[m][static_cast<Index>(axis)]);
-      for (const double x : done[i].markers[static_cast<std::size_t>(path.markers[m])]) row.emplace_back(x);
+        if (path.axes[m][axis]) row.emplace_back(done[i].asked.targets[m][axis]);
+      for (const double x : done[i].markers[path.markers[m]]) row.emplace_back(x);
     }
     row.insert(row.end(),
                {done[i].command_change, done[i].step_mm, done[i].error_mm, std::int64_t{done[i].is_reached()},
@@ -222,8 +222,8 @@ Table table_of_steps(const Model& model, std::size_t steps, const std::optional<
     add(fixed(measure_title(actuator), value_decimals, width));
     if (const std::string load = load_title(model, actuator); !load.empty())
       add(fixed(load, value_decimals, load_width));
-    if (actuator.filling) add(fixed("volume [mL]", value_decimals, load_width));
-    for (const ConnectedChamber& chamber : actuator.connected)
+    if (filling_of(actuator)) add(fixed("volume [mL]", value_decimals, load_width));
+    for (const ConnectedChamber& chamber : connected_chambers(actuator))
       add(fixed(short_name(chamber.region) + " [mL]", value_decimals, load_width));
     if (actuator.curve)
       add(fixed("by curve [" + std::string(unit_of_input(actuator.curve->input) + 1) + "]", value_decimals,
@@ -253,7 +253,7 @@ Row row_of(const Model& model, std::size_t step, const StepRecord& record, std::
     if (!has_measure(actuator)) continue;
     row.emplace_back(of.achieved);
     if (!load_title(model, actuator).empty()) row.push_back(of.slack ? Cell("slack") : Cell(of.multiplier));
-    if (actuator.filling) row.emplace_back(volume_mL(actuator, of));
+    if (filling_of(actuator)) row.emplace_back(volume_mL(actuator, of));
     for (const double volume : of.volumes_mL) row.emplace_back(volume);
     if (actuator.curve) row.push_back(of.by_curve ? Cell(*of.by_curve) : Cell("outside"));
   }

@@ -51,9 +51,10 @@ void add_target(const Goal& goal, const Model& model, const Points& positions, s
 std::vector<PictureMark> marks_of(const Model& model, const Points& positions, const std::vector<Goal>& goals) {
   std::vector<PictureMark> marks;
   for (const Actuator& actuator : model.actuators) {
-    if (actuator.kind != ActuatorKind::cable) continue;
-    Points line(static_cast<Index>(actuator.points.size()), 3);
-    for (Index i = 0; i < line.rows(); ++i) line.row(i) = actuator.points[i].at(positions).transpose();
+    const auto* cable = actuator.as<CableDrive>();
+    if (!cable) continue;
+    Points line(static_cast<Index>(cable->points.size()), 3);
+    for (Index i = 0; i < line.rows(); ++i) line.row(i) = cable->points[i].at(positions).transpose();
     marks.push_back({line, "", cable_color});
   }
   for (const Goal& goal : goals) add_target(goal, model, positions, marks);
@@ -83,8 +84,7 @@ void add_forces(const Model& model, const ElementDeformation& deformation, VtuCo
     content.constants.emplace_back("support_" + model.supports[s].name, static_cast<double>(s));
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     if (const std::string key = multiplier_key(model.actuators[a]); !key.empty())
-      content.constants.emplace_back(key + "_" + model.actuators[a].name,
-                                     deformation.multipliers[static_cast<Index>(a)]);
+      content.constants.emplace_back(key + "_" + model.actuators[a].name, deformation.multipliers[a]);
 }
 
 /// Adds the bodies and obstacles, each as a region, after all fields: whatever is known of elements is 0 in them.
@@ -99,7 +99,7 @@ void add_surroundings(const Model& model, VtuContent& content) {
     content.region_names.push_back(part.name);
   }
   for (std::size_t t = 0; t < contact.triangles.size(); ++t) {
-    const Index region = regions[static_cast<std::size_t>(contact.part_of[t])];
+    const Index region = regions[contact.part_of[t]];
     if (region < 0) continue;
     content.triangles.push_back(contact.triangles[t]);
     content.cell_regions.push_back(region);
@@ -136,7 +136,7 @@ void add_state(const Model& model, const State& state, VtuContent& content) {
   content.constants.emplace_back(state_share, known ? state.share : -1);
   if (!known) return;
   for (Index a = 0; a < actuators; ++a) {
-    const std::string& name = model.actuators[static_cast<std::size_t>(a)].name;
+    const std::string& name = model.actuators[a].name;
     content.constants.emplace_back(state_command + name, state.actuation[a]);
     content.constants.emplace_back(state_multiplier + name, state.multipliers[a]);
   }
@@ -207,7 +207,7 @@ State read_state(const fs::path& path, const Model& model) {
   const auto actuators = static_cast<Index>(model.actuators.size());
   state.actuation = state.multipliers = Eigen::VectorXd::Zero(actuators);
   for (Index a = 0; a < actuators; ++a) {
-    const std::string& name = model.actuators[static_cast<std::size_t>(a)].name;
+    const std::string& name = model.actuators[a].name;
     const std::optional<double> command = number_of(state_command + name),
                                 multiplier = number_of(state_multiplier + name);
     if (!command || !multiplier) throw InvalidInput({path.string()}, "it has no actuator '" + name + "'");

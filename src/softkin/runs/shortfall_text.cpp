@@ -8,7 +8,7 @@ namespace softkin::runs {
 std::string reached_text(const Model& model, const StepRecord& step) {
   std::string text;
   for (const auto& [a, reached, asked] : shortfalls(model, step)) {
-    const Actuator& actuator = model.actuators[static_cast<std::size_t>(a)];
+    const Actuator& actuator = model.actuators[a];
     text += (text.empty() ? "" : ", ") + actuator.name + " reached " + command_text(actuator, reached) + " of " +
             command_text(actuator, asked);
   }
@@ -41,7 +41,7 @@ Misses misses_of(const std::vector<Goal>& goals, const InverseResult& found) {
   Misses misses;
   for (std::size_t i = 0; i < goals.size(); ++i) {
     std::optional<double>& most = std::holds_alternative<ForceGoal>(goals[i].what) ? misses.N : misses.mm;
-    most = std::max(most.value_or(0), own_error(goals[i], found.errors_mm[static_cast<Index>(i)]));
+    most = std::max(most.value_or(0), own_error(goals[i], found.errors_mm[i]));
   }
   return misses;
 }

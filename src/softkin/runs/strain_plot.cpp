@@ -99,8 +99,7 @@ std::string commands_title(const Model& model, const Actuation& actuation, int d
   std::string title;
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const Actuator& actuator = model.actuators[a];
-    title += (title.empty() ? "" : ", ") + actuator.name + " = " +
-             command_text(actuator, actuation[static_cast<Index>(a)], digits) +
+    title += (title.empty() ? "" : ", ") + actuator.name + " = " + command_text(actuator, actuation[a], digits) +
              (actuator.control == Control::ratio ? " [-]" : "");
   }
   return title;

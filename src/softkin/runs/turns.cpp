@@ -75,12 +75,11 @@ double TurnMeter::next(const Vec3& line) {
 }
 
 Vec3 MarkerLine::in(const std::vector<Vec3>& markers) const {
-  return markers.at(static_cast<std::size_t>(to)) - markers.at(static_cast<std::size_t>(from));
+  return markers.at(to) - markers.at(from);
 }
 
 Vec3 MarkerLine::at_rest(const Model& model) const {
-  return model.markers.at(static_cast<std::size_t>(to)).at(model.rest) -
-         model.markers.at(static_cast<std::size_t>(from)).at(model.rest);
+  return model.markers.at(to).at(model.rest) - model.markers.at(from).at(model.rest);
 }
 
 std::optional<MarkerLine> read_marker_line(const Model& model, const std::vector<std::string>& names) {

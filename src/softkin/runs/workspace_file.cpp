@@ -163,7 +163,7 @@ void WorkspaceFile::take(const WorkspaceTable& table, const WorkspaceHead& head,
 }
 
 void WorkspaceFile::note(const WorkspaceSample& sample) {
-  known_[static_cast<std::size_t>(sample.number)] = sample.status;
+  known_[sample.number] = sample.status;
   if (sample.markers.rows() == 0) ++without_shape_;
 }
 
@@ -182,8 +182,7 @@ void WorkspaceFile::add(const WorkspaceSample& sample) {
 std::vector<WorkspaceSample> WorkspaceFile::finish() {
   WorkspaceTable table = read_workspace(path_, columns_);
   std::vector<const std::string*> rows(known_.size());
-  for (std::size_t i = 0; i < rows.size(); ++i)
-    rows[static_cast<std::size_t>(table.samples[i].number)] = &table.rows[i];
+  for (std::size_t i = 0; i < rows.size(); ++i) rows[table.samples[i].number] = &table.rows[i];
   std::string text = store_->head();
   for (const std::string* row : rows) text += *row;
   write_file(path_, text);
@@ -204,7 +203,7 @@ std::vector<WorkspaceSample> samples_of(const Model& model, const std::string& w
 
 Actuation nearest_actuation(const Model& model, const std::string& workspace, const std::vector<Goal>& goals) {
   NearestSamples samples(model, samples_of(model, workspace));
-  const Actuation actuation = samples.samples()[static_cast<std::size_t>(samples.find(goals).front())].actuation;
+  const Actuation actuation = samples.samples()[samples.find(goals).front()].actuation;
   check_actuation(model, actuation);  // the ranges may have changed
   return actuation;
 }
@@ -223,7 +222,7 @@ Index shown_marker(const Model& model, const std::string& name) {
 
 Reach reach_of(const Model& model, std::vector<WorkspaceSample> samples, const std::string& marker, bool with_hull) {
   const Index shown = shown_marker(model, marker);
-  Reach reach{model.markers[static_cast<std::size_t>(shown)].name, {}, {}};
+  Reach reach{model.markers[shown].name, {}, {}};
   for (WorkspaceSample& sample : samples)
     if (sample.status == Status::converged) reach.samples.push_back(std::move(sample));
   reach.positions.resize(static_cast<Index>(reach.samples.size()), 3);
@@ -245,7 +244,7 @@ void write_cloud(const std::filesystem::path& path, const Model& model, const Re
   };
   add("sample", [](const WorkspaceSample& sample) { return sample.number; });
   for (std::size_t a = 0; a < columns.actuators.size(); ++a)
-    add(columns.actuators[a], [a](const WorkspaceSample& s) { return s.actuation[static_cast<Index>(a)]; });
+    add(columns.actuators[a], [a](const WorkspaceSample& s) { return s.actuation[a]; });
   for (std::size_t i = 0; i < columns.loads.size(); ++i)
     add(columns.loads[i], [a = columns.loaded[i]](const WorkspaceSample& s) { return s.multipliers[a]; });
   add("iterations", [](const WorkspaceSample& sample) { return sample.iterations; });

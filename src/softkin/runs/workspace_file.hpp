@@ -56,9 +56,7 @@ class WorkspaceFile {
   [[nodiscard]] Index count(Status status) const;
   /// Samples of which there is no shape, not even a last good one.
   [[nodiscard]] Index count_without_shape() const { return without_shape_; }
-  [[nodiscard]] const std::optional<Status>& known(Index sample) const {
-    return known_[static_cast<std::size_t>(sample)];
-  }
+  [[nodiscard]] const std::optional<Status>& known(Index sample) const { return known_[sample]; }
 
   /// Appends the row. Throws as Store::append
   void add(const WorkspaceSample& sample);

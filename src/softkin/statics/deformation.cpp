@@ -98,22 +98,32 @@ double mean_area(const Points& p, const Prism& e) {
   return sum;
 }
 
-double measure_of(const Model& model, const Actuator& actuator, const Points& positions) {
+double length_of(const CableDrive& cable, const Points& positions) {
   double sum = 0;
-  if (actuator.kind == ActuatorKind::cable) {
-    for (std::size_t i = 1; i < actuator.points.size(); ++i)
-      sum += (actuator.points[i].at(positions) - actuator.points[i - 1].at(positions)).norm();
-  } else if (actuator.kind == ActuatorKind::dea) {
-    for (const Index e : actuator.prisms) sum += mean_area(positions, model.prisms[e]);
-  } else if (!actuator.surface.empty()) {
-    Points points(static_cast<Index>(actuator.points.size()), 3);
-    for (Index i = 0; i < points.rows(); ++i) points.row(i) = actuator.points[i].at(positions).transpose();
-    sum = enclosed_volume(points, actuator.surface);
-  } else if (!actuator.cavity.empty()) {
-    sum = enclosed_volume(positions, actuator.cavity);
-  } else {
-    for (const Index e : actuator.tetrahedra) sum += signed_volume(positions, model.tetrahedra[e]);
+  for (std::size_t i = 1; i < cable.points.size(); ++i)
+    sum += (cable.points[i].at(positions) - cable.points[i - 1].at(positions)).norm();
+  return sum;
+}
+
+double volume_of(const Model& model, const ChamberDrive& chamber, const Points& positions) {
+  if (!chamber.surface.empty()) {
+    Points points(static_cast<Index>(chamber.points.size()), 3);
+    for (Index i = 0; i < points.rows(); ++i) points.row(i) = chamber.points[i].at(positions).transpose();
+    return enclosed_volume(points, chamber.surface);
   }
+  if (!chamber.cavity.empty()) return enclosed_volume(positions, chamber.cavity);
+  double sum = 0;
+  for (const Index e : chamber.tetrahedra) sum += signed_volume(positions, model.tetrahedra[e]);
+  return sum;
+}
+
+/// Length [mm], area [mm^2] or volume [mm^3]; 0 of what has none.
+double measure_of(const Model& model, const Actuator& actuator, const Points& positions) {
+  if (const auto* cable = actuator.as<CableDrive>()) return length_of(*cable, positions);
+  if (const auto* chamber = actuator.as<ChamberDrive>()) return volume_of(model, *chamber, positions);
+  double sum = 0;
+  if (const auto* dea = actuator.as<DeaDrive>())
+    for (const Index e : dea->prisms) sum += mean_area(positions, model.prisms[e]);
   return sum;
 }
 
@@ -175,7 +185,9 @@ std::vector<Sample> body_samples(const Model& model, const ElementDeformation& d
 
 double achieved_ratio(const Model& model, const Actuator& actuator, const Points& positions) {
   // a surface's own rest volume, where the elements inside it fill it only roughly
-  const double rest = actuator.surface.empty() ? actuator.rest_measure : measure_of(model, actuator, model.rest);
+  const auto* chamber = actuator.as<ChamberDrive>();
+  const bool by_surface = chamber && !chamber->surface.empty();
+  const double rest = by_surface ? measure_of(model, actuator, model.rest) : actuator.rest_measure;
   return measure_of(model, actuator, positions) / rest;
 }
 

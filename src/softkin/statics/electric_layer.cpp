@@ -52,7 +52,7 @@ PrismField field_of(const PrismNodes& rest, const PrismNodes& nodes) {
 
 std::vector<double> layer_permittivity(const Model& model, Index actuator) {
   std::vector<double> permittivity(model.prisms.size(), 0);
-  const Actuator& dea = model.actuators[actuator];
+  const auto& dea = std::get<DeaDrive>(model.actuators[actuator].drive);
   for (std::size_t i = 0; i < dea.prisms.size(); ++i) {
     const Index e = dea.prisms[i];
     permittivity[e] = energy::vacuum_permittivity_MPa * model.materials[model.prism_roles[e].material].permittivity *
@@ -63,7 +63,7 @@ std::vector<double> layer_permittivity(const Model& model, Index actuator) {
 
 ElectricLayer electric_layer(const Model& model, Index actuator, const Points& positions, double voltage_kV) {
   constexpr double pF_per_unit = 1e3;  // mJ per kV^2 are nF
-  const Actuator& dea = model.actuators[actuator];
+  const auto& dea = std::get<DeaDrive>(model.actuators[actuator].drive);
   const std::vector<double> permittivity = layer_permittivity(model, actuator);
   ElectricLayer layer;
   double most = -1;

@@ -46,7 +46,7 @@ void look(const Points& points, const SurfaceOfSide& vertices, const SurfaceOfSi
     for (std::size_t t = 0; t < boxes.size(); ++t) {
       if (boxes[t].exteriorDistance(x.col(0).eval()) >= gap.width_mm) continue;
       const std::array<Index, 3>& corners = triangles.triangles[t];
-      for (int i = 0; i < 3; ++i) x.col(i + 1) = vertex_at(points, corners[static_cast<std::size_t>(i)]);
+      for (int i = 0; i < 3; ++i) x.col(i + 1) = vertex_at(points, corners[i]);
       const contact::Separation apart = contact::vertex_triangle(x);
       const double width = std::sqrt(apart.squared);
       if (!(width < gap.width_mm)) continue;
@@ -64,9 +64,8 @@ void look(const Points& points, const SurfaceOfSide& vertices, const SurfaceOfSi
 
 std::optional<Gap> gap_before(const Model& model, Index part, const Points& positions) {
   const ContactModel& contact = model.contact;
-  const SurfaceOfSide robot = surface_of(contact, [&](Index p) {
-    return contact.parts[static_cast<std::size_t>(p)].rank == ContactRank::robot && contact.pair(p, part).touch;
-  });
+  const SurfaceOfSide robot = surface_of(
+      contact, [&](Index p) { return contact.parts[p].rank == ContactRank::robot && contact.pair(p, part).touch; });
   const SurfaceOfSide other = surface_of(contact, [&](Index p) { return p == part; });
   if (robot.triangles.empty() || other.triangles.empty()) return std::nullopt;
   const Points points = physical::ContactPoints::in(model, positions);
@@ -82,7 +81,7 @@ double change_of(const Gap& gap, const Model& model, const Points& moves) {
   const Points points = physical::ContactPoints::in(model, moves);
   const Vec3 vertex = vertex_at(points, gap.points[0]);
   Vec3 other = Vec3::Zero();
-  for (int i = 0; i < 3; ++i) other += gap.corners[i] * vertex_at(points, gap.points[static_cast<std::size_t>(i + 1)]);
+  for (int i = 0; i < 3; ++i) other += gap.corners[i] * vertex_at(points, gap.points[i + 1]);
   return gap.towards.dot(gap.vertex_of_robot ? Vec3(other - vertex) : Vec3(vertex - other));
 }
 

@@ -8,8 +8,7 @@ namespace {
 
 double change_of(const ShapeGradient& told, const ParameterSensitivity& found, Index number) {
   double sum = 0;
-  if (told.by_places.rows() > 0)
-    sum += told.by_places.cwiseProduct(found.positions[static_cast<std::size_t>(number)]).sum();
+  if (told.by_places.rows() > 0) sum += told.by_places.cwiseProduct(found.positions[number]).sum();
   if (told.by_loads.size() > 0) sum += told.by_loads.dot(found.multipliers.col(number));
   return sum;
 }
@@ -64,8 +63,7 @@ Eigen::MatrixXd Perturbations::gradients(const State& at, const std::vector<Shap
   if (!found.regular) return {};
   Eigen::MatrixXd result(static_cast<Index>(told.size()), static_cast<Index>(found.positions.size()));
   for (Index p = 0; p < static_cast<Index>(result.cols()); ++p)
-    for (Index r = 0; r < static_cast<Index>(result.rows()); ++r)
-      result(r, p) = change_of(told[static_cast<std::size_t>(r)], found, p);
+    for (Index r = 0; r < static_cast<Index>(result.rows()); ++r) result(r, p) = change_of(told[r], found, p);
   return result;
 }
 

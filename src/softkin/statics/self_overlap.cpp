@@ -18,7 +18,7 @@ constexpr double touching = 1e-5;  // of the diagonal: parts that only touch are
 constexpr double margin = 1e-9;    // in barycentric coordinates: a point between two cells is in both
 
 bool is_air(const Model& model, const ElementRole& role) {
-  return role.actuator >= 0 && model.actuators[static_cast<std::size_t>(role.actuator)].kind == ActuatorKind::pneumatic;
+  return role.actuator >= 0 && model.actuators[role.actuator].is<ChamberDrive>();
 }
 
 std::vector<Tetrahedron> body_cells(const Model& model) {
@@ -44,10 +44,9 @@ bool holds(const Tetrahedron& cell, Index vertex) {
 std::vector<std::array<Index, 4>> neighbours_of(const std::vector<Tetrahedron>& cells) {
   std::vector<std::array<Index, 4>> neighbours(cells.size(), {-1, -1, -1, -1});
   const auto set = [&](const Triangle& face, Index cell, Index across) {
-    const Tetrahedron& corners = cells[static_cast<std::size_t>(cell)];
+    const Tetrahedron& corners = cells[cell];
     for (std::size_t i = 0; i < 4; ++i)
-      if (std::find(face.begin(), face.end(), corners[i]) == face.end())
-        neighbours[static_cast<std::size_t>(cell)][i] = across;
+      if (std::find(face.begin(), face.end(), corners[i]) == face.end()) neighbours[cell][i] = across;
   };
   ElementFaces faces = faces_of(cells, {});
   visit_same_faces(faces.triangles, [&](const ElementFace<3>* begin, const ElementFace<3>* end) {
@@ -73,7 +72,7 @@ class OverlapSearch::Shape {
     tree_.refit(bounds_);
     for (const Tetrahedron& cell : cells_)
       if (!(signed_volume(positions, cell) > 0))
-        for (const Index v : cell) inverted_[static_cast<std::size_t>(v)] = true;
+        for (const Index v : cell) inverted_[v] = true;
   }
 
   /// A cell that the vertex lies in without being one of its corners; -1: none.
@@ -82,7 +81,7 @@ class OverlapSearch::Shape {
     if (is_inverted(vertex)) return inside;
     const Vec3 point = vertex_at(positions_, vertex);
     tree_.visit_at(point, [&](Index cell) {
-      const Tetrahedron& corners = cells_[static_cast<std::size_t>(cell)];
+      const Tetrahedron& corners = cells_[cell];
       if (holds(corners, vertex) || !covers(corners, point)) return true;
       inside = cell;
       return false;
@@ -106,14 +105,14 @@ class OverlapSearch::Shape {
         if (across < 0)
           nearest = std::min(nearest, squared_distance(point, at, corner, vertex));
         else if (seen.insert(across).second)
-          next.emplace(bounds_[static_cast<std::size_t>(across)].squaredExteriorDistance(point), across);
+          next.emplace(bounds_[across].squaredExteriorDistance(point), across);
       }
     }
     return std::sqrt(nearest);
   }
 
  private:
-  [[nodiscard]] bool is_inverted(Index vertex) const { return inverted_[static_cast<std::size_t>(vertex)]; }
+  [[nodiscard]] bool is_inverted(Index vertex) const { return inverted_[vertex]; }
 
   [[nodiscard]] bool covers(const Tetrahedron& cell, const Vec3& point) const {
     if (std::any_of(cell.begin(), cell.end(), [this](Index v) { return is_inverted(v); })) return false;

@@ -39,7 +39,7 @@ void check_actuation(const Model& model, const Actuation& actuation) {
                        std::to_string(model.actuators.size()) + " actuators");
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const Actuator& actuator = model.actuators[a];
-    const double value = actuation[static_cast<Index>(a)];
+    const double value = actuation[a];
     if (!(value >= actuator.low && value <= actuator.high))
       throw InvalidInput("actuator '" + actuator.name + "': the " + command_name(actuator) + " " + number(value) +
                          " is outside its range " + number(actuator.low) + " to " +

@@ -146,8 +146,7 @@ void Statics::Parts::solve_target_shape(const Actuation& start, const StaticsOpt
   const Actuation asked = result.actuation;
   Actuation from = start.size() > 0 ? start : asked;
   for (Index a = 0; start.size() == 0 && a < asked.size(); ++a)
-    if (model.actuators[static_cast<std::size_t>(a)].kind == ActuatorKind::turn)
-      from[a] = parts.turning.angle(a, result.state.positions);
+    if (model.actuators[a].is<TurnCommand>()) from[a] = parts.turning.angle(a, result.state.positions);
   const int steps = std::max(1, static_cast<int>(std::ceil(parts.turning.largest_turn(from, 1, asked, 1) / most_turn)));
   Actuation last = steps > 1 ? from : start;
   int on_the_way = 0;

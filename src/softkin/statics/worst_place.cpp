@@ -54,15 +54,15 @@ class Surroundings {
 
   bool tell_cables(WorstPlace& place) const {
     double nearest = near_edges * edge_;
-    for (const Actuator& cable : model_.actuators) {
-      if (cable.kind != ActuatorKind::cable) continue;
-      for (std::size_t i = 0; i < cable.points.size(); ++i) {
-        const double distance = (cable.points[i].at(positions_) - place.at).norm();
+    for (const Actuator& actuator : model_.actuators) {
+      const auto* cable = actuator.as<CableDrive>();
+      for (std::size_t i = 0; cable && i < cable->points.size(); ++i) {
+        const double distance = (cable->points[i].at(positions_) - place.at).norm();
         if (distance >= nearest) continue;
         nearest = distance;
-        const bool end = i == 0 || i + 1 == cable.points.size();
+        const bool end = i == 0 || i + 1 == cable->points.size();
         place.beside =
-            (end ? "the end of cable '" : "point " + std::to_string(i + 1) + " of cable '") + cable.name + "'";
+            (end ? "the end of cable '" : "point " + std::to_string(i + 1) + " of cable '") + actuator.name + "'";
       }
     }
     return !place.beside.empty();
@@ -78,14 +78,14 @@ class Surroundings {
   }
 
   bool tell_chambers(WorstPlace& place) const {
-    for (const Actuator& chamber : model_.actuators) {
+    for (const Actuator& actuator : model_.actuators) {
+      const auto* chamber = actuator.as<ChamberDrive>();
       const auto on_wall = [&](Index v) {
-        return std::any_of(chamber.cavity.begin(), chamber.cavity.end(), [&](const CavityFace& face) {
+        return std::any_of(chamber->cavity.begin(), chamber->cavity.end(), [&](const CavityFace& face) {
           return std::find(face.corners.begin(), face.corners.end(), v) != face.corners.end();
         });
       };
-      if (chamber.kind != ActuatorKind::pneumatic || !has(on_wall)) continue;
-      place.beside = "the wall of chamber '" + chamber.name + "'";
+      if (chamber && has(on_wall)) place.beside = "the wall of chamber '" + actuator.name + "'";
     }
     return !place.beside.empty();
   }
@@ -107,7 +107,7 @@ std::optional<WorstPlace> worst_place(const Model& model, const Points& position
   const std::size_t e = place.prism ? *worst - model.tetrahedra.size() : *worst;
   place.element = static_cast<Index>(e);
   const ElementRole& role = (place.prism ? model.prism_roles : model.tetrahedron_roles)[e];
-  if (role.region >= 0) place.region = model.region_names[static_cast<std::size_t>(role.region)];
+  if (role.region >= 0) place.region = model.region_names[role.region];
   place.strain = largest_strain(deformation.strain[*worst]);
   place.volume_ratio = deformation.volume_ratio[*worst];
   const std::span<const Index> corners =

@@ -66,7 +66,7 @@ class MeshBuilder {
     for (const AbaqusSet& card : cards_.sets)
       if (card.kind == AbaqusSetKind::surface) resolve_surface(card);
     add_regions(surfaces_, 2, [&](Region& region, Index face) {
-      const auto [is_quad, index] = faces_[static_cast<std::size_t>(face)];
+      const auto [is_quad, index] = faces_[face];
       (is_quad ? region.quads : region.triangles).push_back(index);
     });
     add_regions(node_sets_, 0, [](Region& region, Index node) { region.vertices.push_back(node); });
@@ -139,13 +139,13 @@ class MeshBuilder {
     Region region;
     region.name = set.name;
     region.dimension = 1;
-    const auto shape_of = [&](Index element) { return cards_.elements[static_cast<std::size_t>(element)].shape; };
+    const auto shape_of = [&](Index element) { return cards_.elements[element].shape; };
     for (const Index element : set.members)
       region.dimension = std::max(region.dimension, dimension_of(shape_of(element)));
     for (const Index element : set.members) {
       const AbaqusShape shape = shape_of(element);
       if (dimension_of(shape) != region.dimension) continue;
-      const std::size_t place = place_[static_cast<std::size_t>(element)];
+      const std::size_t place = place_[element];
       if (shape == AbaqusShape::line) {
         region.vertices.insert(region.vertices.end(), lines_[place].begin(), lines_[place].end());
         continue;
@@ -232,7 +232,7 @@ class MeshBuilder {
       const auto [corners, count] = corners_of(element);
       members.insert(members.end(), corners, corners + count);
       if (mesh_.edge_nodes.empty() || !is_solid(element)) continue;
-      const EdgeNodes& nodes = mesh_.edge_nodes[place_[static_cast<std::size_t>(element)]];
+      const EdgeNodes& nodes = mesh_.edge_nodes[place_[element]];
       members.insert(members.end(), nodes.begin(), nodes.end());
     }
     sort_unique(members);
@@ -272,9 +272,7 @@ class MeshBuilder {
     return found->second;
   }
 
-  [[nodiscard]] bool is_solid(Index element) const {
-    return dimension_of(cards_.elements[static_cast<std::size_t>(element)].shape) == 3;
-  }
+  [[nodiscard]] bool is_solid(Index element) const { return dimension_of(cards_.elements[element].shape) == 3; }
 
   /// The cell that a shell is, seen from either side.
   Index own_face_of(Index element, const AbaqusItem& item) {

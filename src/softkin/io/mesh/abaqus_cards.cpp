@@ -224,8 +224,7 @@ class CardReader {
         deck_.fail("a node is its number and 3 coordinates, here are " + std::to_string(deck_.fields().size()) +
                    " values");
       AbaqusNode node{deck_.integer(0, "node number"), Vec3::Zero(), deck_.line()};
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        node.position[static_cast<Eigen::Index>(axis)] = deck_.real(axis + 1, "coordinate");
+      for (std::size_t axis = 0; axis < 3; ++axis) node.position[axis] = deck_.real(axis + 1, "coordinate");
       cards_.nodes.push_back(node);
       append_number(numbers, node.id);
     }

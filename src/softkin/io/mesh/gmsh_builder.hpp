@@ -87,8 +87,7 @@ class CellStore {
   Index& slot_of(const Cell& key) {
     const std::size_t mask = slots_.size() - 1;
     std::size_t place = hash(key) & mask;
-    while (slots_[place] >= 0 && sorted(cells_[static_cast<std::size_t>(slots_[place])]) != key)
-      place = (place + 1) & mask;
+    while (slots_[place] >= 0 && sorted(cells_[slots_[place]]) != key) place = (place + 1) & mask;
     return slots_[place];
   }
 

@@ -105,8 +105,7 @@ class Reader {
     const auto physical = static_cast<int>(read_tags(tags));
     const CellShape shape = shape_of(type);
     std::array<Index, kMostNodes> vertices{};
-    for (int i = 0; i < shape.nodes; ++i)
-      vertices[static_cast<std::size_t>(i)] = builder_.vertex(element, in_.int_value(kNode, 1, kMaxInt));
+    for (int i = 0; i < shape.nodes; ++i) vertices[i] = builder_.vertex(element, in_.int_value(kNode, 1, kMaxInt));
     in_.end_record();
     const std::span<const Index> nodes(vertices.data(), static_cast<std::size_t>(shape.nodes));
     if (physical == 0) return builder_.add_element(type, nodes, {});
@@ -133,7 +132,7 @@ class Reader {
     for (std::int64_t& count : counts) count = in_.size_value("number of entities", 0, kMaxSize);
     in_.end_record();
     for (int dimension = 0; dimension < 4; ++dimension)
-      for (std::int64_t i = 0; i < counts[static_cast<std::size_t>(dimension)]; ++i) read_entity(dimension);
+      for (std::int64_t i = 0; i < counts[dimension]; ++i) read_entity(dimension);
   }
 
   void read_entity(int dimension) {
@@ -231,8 +230,7 @@ class Reader {
     const std::span<const Index> nodes(vertices.data(), static_cast<std::size_t>(shape.nodes));
     for (std::int64_t i = 0; i < count; ++i) {
       const std::int64_t element = in_.size_value(kElement, 0, kMaxSize);
-      for (int k = 0; k < shape.nodes; ++k)
-        vertices[static_cast<std::size_t>(k)] = builder_.vertex(element, in_.size_value(kNode, 1, kMaxSize));
+      for (int k = 0; k < shape.nodes; ++k) vertices[k] = builder_.vertex(element, in_.size_value(kNode, 1, kMaxSize));
       in_.end_record();
       builder_.add_element(type, nodes, groups);
     }

@@ -119,7 +119,7 @@ class Layout {
     std::vector<int> sets(cells, 0);
     for (std::size_t r = 0; r < mesh_.regions.size(); ++r)
       for (const Index cell : mesh_.regions[r].*list) {
-        int& set = sets[static_cast<std::size_t>(cell)];
+        int& set = sets[cell];
         set = extended(set, static_cast<int>(r) + 1);
       }
     return sets;
@@ -129,7 +129,7 @@ class Layout {
   int extended(int set, int region) {
     const auto [place, is_new] = extensions_.try_emplace({set, region}, static_cast<int>(sets_.size()));
     if (is_new) {
-      std::vector<int> more = sets_[static_cast<std::size_t>(set)];
+      std::vector<int> more = sets_[set];
       more.push_back(region);
       sets_.push_back(std::move(more));
     }
@@ -141,17 +141,17 @@ class Layout {
     for (std::size_t v = 0; v < sets.size(); ++v) {
       if (sets[v] == 0) continue;
       const Vec3 position = mesh_.vertices.row(static_cast<Eigen::Index>(v)).transpose();
-      entities[0].push_back({sets_[static_cast<std::size_t>(sets[v])], Eigen::AlignedBox3d(position)});
+      entities[0].push_back({sets_[sets[v]], Eigen::AlignedBox3d(position)});
       blocks.push_back({CellType::point, static_cast<int>(entities[0].size()), {static_cast<Index>(v)}});
     }
   }
 
   int entity_of(int dimension, int set) {
-    std::vector<Entity>& all = entities[static_cast<std::size_t>(dimension)];
+    std::vector<Entity>& all = entities[dimension];
     const auto [place, is_new] = tags_.try_emplace({dimension, set}, static_cast<int>(all.size()) + 1);
     // Gmsh's number for none: where some cells have a group, meshio asks for one of all
     const bool none = set == 0 && !mesh_.regions.empty();
-    if (is_new) all.push_back({none ? std::vector{0} : sets_[static_cast<std::size_t>(set)], {}});
+    if (is_new) all.push_back({none ? std::vector{0} : sets_[set], {}});
     return place->second;
   }
 
@@ -163,8 +163,7 @@ class Layout {
     const std::vector<int> sets = sets_of(cells.size(), list);
     for (std::size_t c = 0; c < cells.size(); ++c) {
       const int entity = entity_of(dimension, sets[c]);
-      Eigen::AlignedBox3d& box =
-          entities[static_cast<std::size_t>(dimension)][static_cast<std::size_t>(entity) - 1].box;
+      Eigen::AlignedBox3d& box = entities[dimension][static_cast<std::size_t>(entity) - 1].box;
       for (std::size_t i = 0; i < corners; ++i) box.extend(Vec3(mesh_.vertices.row(cells[c][i]).transpose()));
       if (blocks.empty() || blocks.back().type != type || blocks.back().entity != entity)
         blocks.push_back({type, entity, {}});

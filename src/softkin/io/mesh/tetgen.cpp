@@ -88,8 +88,7 @@ void read_edge_nodes(TetgenFile& file, Index first, Mesh& mesh) {
   mesh.edge_nodes.push_back(nodes);
   const auto at = [&](Index vertex) { return Vec3(mesh.vertices.row(vertex).transpose()); };
   const auto distance = [&](Index node, const int(&edge)[2]) {
-    const Vec3 middle =
-        (at(corners[static_cast<std::size_t>(edge[0])]) + at(corners[static_cast<std::size_t>(edge[1])])) / 2;
+    const Vec3 middle = (at(corners[edge[0]]) + at(corners[edge[1]])) / 2;
     return (at(node) - middle).norm();
   };
   // other versions wrote another order, which the file does not tell
@@ -111,7 +110,7 @@ void read_tetrahedra(const fs::path& path, Index first, Mesh& mesh) {
   mesh.tetrahedra.resize(static_cast<std::size_t>(count));
   for (Index i = 0; i < count; ++i) {
     file.entry_number(first + i);
-    file.vertices(mesh.tetrahedra[static_cast<std::size_t>(i)], first, mesh);
+    file.vertices(mesh.tetrahedra[i], first, mesh);
     if (nodes == 10) read_edge_nodes(file, first, mesh);
     for (Index a = 1; a < attributes; ++a) (void)file.real("attribute");
     if (attributes > 0) regions[whole_attribute(file)].tetrahedra.push_back(i);

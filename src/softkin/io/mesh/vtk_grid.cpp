@@ -153,8 +153,7 @@ class MeshBuilder {
     for (std::size_t cell = 0; cell < grid_.types.size(); ++cell)
       if (!is_nameless(labels, labels.values[cell])) add_cell(by_value[labels.values[cell]][dimension_of(cell)], cell);
     for (auto& [value, by_dimension] : by_value) {
-      const std::string name =
-          labels.names ? (*labels.names)[static_cast<std::size_t>(value)] : labels.name + "_" + std::to_string(value);
+      const std::string name = labels.names ? (*labels.names)[value] : labels.name + "_" + std::to_string(value);
       const int highest = by_dimension.begin()->first;
       for (auto& [dimension, region] : by_dimension) {
         region.dimension = dimension;

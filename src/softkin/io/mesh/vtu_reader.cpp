@@ -152,7 +152,7 @@ CellVectors read_vtu_cell_vectors(const std::filesystem::path& path, const std::
   const std::vector<double> values = document.reals(array, 3 * static_cast<std::uint64_t>(count));
   CellVectors vectors{Points::Zero(count, 3), Eigen::Map<const Points>(values.data(), count, 3)};
   for (Index cell = 0; cell < count; ++cell) {
-    const std::size_t begin = grid.starts[static_cast<std::size_t>(cell)];
+    const std::size_t begin = grid.starts[cell];
     const std::size_t end = grid.starts[static_cast<std::size_t>(cell) + 1];
     for (std::size_t i = begin; i < end; ++i)
       vectors.centers.row(cell) += grid.points.row(grid.connectivity[i]) / static_cast<double>(end - begin);

@@ -29,7 +29,7 @@ ObstacleShape read_shape(const Context& context, const std::string& key, const N
 std::array<bool, 3> read_axes(const Node& node) {
   std::array<bool, 3> axes{false, false, false};
   for (const auto& item : list(node)) {
-    bool& axis = axes[static_cast<std::size_t>(choice(*item, {"x", "y", "z"}))];
+    bool& axis = axes[choice(*item, {"x", "y", "z"})];
     if (axis) fail(*item, "axis " + item->text + " is given twice");
     axis = true;
   }

@@ -70,7 +70,7 @@ UniformField read_uniform(const Map& map, Commands& commands) {
     if (taken == std::array<bool, 3>{}) fail(*axes, axes->name + " must name an axis: x, y or z");
   }
   for (int axis = 0; axis < 3; ++axis)
-    if (taken[static_cast<std::size_t>(axis)])
+    if (taken[axis])
       commands.add(static_cast<FieldCommand>(static_cast<int>(FieldCommand::flux_density_x) + axis),
                    std::string("_") + field_axes[axis], range);
   return field;
@@ -106,7 +106,7 @@ Vec3 read_entries(const Node& node, double unit, bool middle, FieldCommand first
   const auto& items = list_of(3, node);
   Vec3 values;
   for (int axis = 0; axis < 3; ++axis) {
-    const Node& item = *items[static_cast<std::size_t>(axis)];
+    const Node& item = *items[axis];
     if (item.kind != Node::Kind::list) {
       values[axis] = unit * number(item);
       continue;

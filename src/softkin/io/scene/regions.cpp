@@ -47,7 +47,7 @@ Selector read_sidecar_column(const Context& context, const Node& node) {
   if (number < 1 || number > columns)
     fail(column ? *column : node, "column " + std::to_string(number) + " is asked for, but the sidecar has " +
                                       std::to_string(columns) + ", numbered from 1");
-  const std::vector<Index>& chosen = sidecar.columns[static_cast<std::size_t>(number - 1)];
+  const std::vector<Index>& chosen = sidecar.columns[number - 1];
   if (is_of_elements(context, map, sidecar.rows)) return ElementList{chosen};
   return VertexList{chosen};
 }

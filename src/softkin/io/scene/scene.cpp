@@ -100,7 +100,7 @@ std::array<Vec3, 2> read_force_range(const Node& node) {
   std::array<Vec3, 2> range{};
   for (std::size_t axis = 0; axis < 3; ++axis) {
     const auto& ends = list_of(2, *list_of(3, node)[axis]);
-    for (std::size_t end = 0; end < 2; ++end) range[end][static_cast<Eigen::Index>(axis)] = number(*ends[end]);
+    for (std::size_t end = 0; end < 2; ++end) range[end][axis] = number(*ends[end]);
   }
   return range;
 }

@@ -51,7 +51,7 @@ std::string unknown_column(const Model& model, const std::string& column) {
   const std::optional<Index> a =
       underscore == std::string::npos ? std::nullopt : find_actuator(model, column.substr(0, underscore));
   if (!a) return unknown_actuator(model, column) + "; a time is column t_s [s]";
-  const Actuator& actuator = model.actuators[static_cast<std::size_t>(*a)];
+  const Actuator& actuator = model.actuators[*a];
   return "actuator '" + actuator.name + "' takes a " + command_name(actuator) +
          (command_unit(actuator).empty()
               ? " without unit: its column is '" + actuator.name + "'" + curve_columns(actuator)
@@ -65,9 +65,8 @@ std::vector<Index> column_targets(const Model& model, const CsvTable& table, con
     const std::optional<Index> a = actuator_of_column(model, column);
     if (!a && column != time_column)
       throw InvalidInput({file}, "column " + excerpt(column) + ": " + unknown_column(model, column));
-    if (a && settings[static_cast<std::size_t>(*a)])
-      throw InvalidInput({file}, "column " + excerpt(column) + ": '" +
-                                     model.actuators[static_cast<std::size_t>(*a)].name +
+    if (a && settings[*a])
+      throw InvalidInput({file}, "column " + excerpt(column) + ": '" + model.actuators[*a].name +
                                      "' is set for the whole path, too; leave out one of them");
     if (a && std::find(targets.begin(), targets.end(), *a) != targets.end())
       throw InvalidInput({file}, "column " + excerpt(column) + ": another column is of the same actuator");
@@ -119,7 +118,7 @@ class PathReader {
         step.time = table_.rows[row][column];
         continue;
       }
-      const Actuator& actuator = model_.actuators[static_cast<std::size_t>(targets_[column])];
+      const Actuator& actuator = model_.actuators[targets_[column]];
       const double value = command(row, column, actuator);
       if (!(value >= actuator.low && value <= actuator.high))
         table_.fail(row, "column '" + table_.columns[column] + "': " + number(value, 12) + " is outside " +
@@ -138,7 +137,7 @@ class PathReader {
 constexpr const char* pressure_end = "_pressure_kPa";
 
 bool is_commanded_by_volume(const Actuator& actuator) {
-  return actuator.kind == ActuatorKind::pneumatic && actuator.control == Control::ratio;
+  return actuator.is<ChamberDrive>() && actuator.control == Control::ratio;
 }
 
 class CommandReader {
@@ -153,7 +152,7 @@ class CommandReader {
     take_pressures();
     take_curve_pressures();
     for (const std::string& column : table_.columns)
-      if (const auto a = actuator_of_column(model_, column)) commands_.commanded[static_cast<std::size_t>(*a)] = true;
+      if (const auto a = actuator_of_column(model_, column)) commands_.commanded[*a] = true;
     const std::vector<ActuationStep> steps = PathReader(model_, table_, Settings(model_.actuators.size())).steps();
     for (std::size_t row = 0; row < steps.size(); ++row) {
       const Eigen::VectorXd pressures =
@@ -180,7 +179,7 @@ class CommandReader {
       commands_.pressure_known[*a] = true;
       for (std::size_t row = 0; row < table_.rows.size(); ++row) {
         std::vector<double>& cells = table_.rows[row];
-        pressures_[row][static_cast<Index>(*a)] = cells[column];
+        pressures_[row][*a] = cells[column];
         cells.erase(cells.begin() + static_cast<std::ptrdiff_t>(column));
       }
       table_.columns.erase(table_.columns.begin() + static_cast<std::ptrdiff_t>(column));
@@ -201,7 +200,7 @@ class CommandReader {
         commands_.pressure_known[a] = true;
         const double gauge_zero = unit == "kPa_abs" ? actuator.curve->atmosphere_kPa : 0;
         for (std::size_t row = 0; row < table_.rows.size(); ++row)
-          pressures_[row][static_cast<Index>(a)] = table_.rows[row][column] - gauge_zero;
+          pressures_[row][a] = table_.rows[row][column] - gauge_zero;
       }
   }
 
@@ -220,14 +219,12 @@ class CommandReader {
                                      " commands " + names_of(chambers) + " by volume");
     for (CommandRow& row : commands_.rows) {
       Eigen::VectorXd asked(static_cast<Index>(chambers.size()));
-      for (std::size_t k = 0; k < chambers.size(); ++k)
-        asked[static_cast<Index>(k)] = row.actuation[static_cast<Index>(chambers[k])];
+      for (std::size_t k = 0; k < chambers.size(); ++k) asked[k] = row.actuation[chambers[k]];
       const std::vector<Eigen::VectorXd> found = curves.pressures_for(asked);
       if (found.size() != 1)
         throw InvalidInput({commands_.file, row.line}, (found.empty() ? "no pressures" : "several pressures") +
                                                            std::string(" within ") + file + " lead to its ratios");
-      for (std::size_t k = 0; k < chambers.size(); ++k)
-        row.pressures_kpa[static_cast<Index>(chambers[k])] = found.front()[static_cast<Index>(k)];
+      for (std::size_t k = 0; k < chambers.size(); ++k) row.pressures_kpa[chambers[k]] = found.front()[k];
     }
     for (const std::size_t a : chambers) commands_.pressure_known[a] = true;
   }
@@ -258,7 +255,7 @@ class CommandReader {
     CommandRow& row = commands_.rows[index];
     for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
       const double asked = step.at("actuation").at(model_.actuators[a].name).get<double>();
-      const double here = row.actuation[static_cast<Index>(a)];
+      const double here = row.actuation[a];
       if (std::abs(asked - here) > 1e-9 * std::max(1.0, std::abs(here)))
         throw InvalidInput({file}, "its step " + std::to_string(index) + " is of " + model_.actuators[a].name + " = " +
                                        number(asked, 12) + ", but " + commands_.file + ":" + std::to_string(row.line) +
@@ -267,7 +264,7 @@ class CommandReader {
     if (step.at("status").get<std::string>() != "converged")
       throw InvalidInput({file}, "its step " + std::to_string(index) + " has not converged: it has no pressures");
     for (const std::size_t a : chambers) {
-      row.pressures_kpa[static_cast<Index>(a)] =
+      row.pressures_kpa[a] =
           pressure_of(file, index, step.at("actuators").at(model_.actuators[a].name), model_.actuators[a]);
       commands_.pressure_known[a] = true;
     }

@@ -24,7 +24,7 @@ std::vector<ChamberColumns> chamber_columns(const Model& model, const CsvTable& 
   std::vector<bool> used(table.columns.size(), false);
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const Actuator& actuator = model.actuators[a];
-    if (actuator.kind != ActuatorKind::pneumatic || actuator.control != Control::ratio) continue;
+    if (!actuator.is<ChamberDrive>() || actuator.control != Control::ratio) continue;
     const auto pressure = table.find(actuator.name + end_of_pressure), ratio = table.find(actuator.name);
     if (!pressure && !ratio) continue;
     if (!pressure || !ratio)
@@ -108,10 +108,10 @@ void check_rise(const CsvTable& table, const std::vector<ChamberColumns>& column
   for (std::size_t k = columns.size(); k-- > 0;) {
     const std::size_t count = curves.pressures_kPa[k].size();
     for (std::size_t node = 0; node < rows.size(); ++node) {
-      const double ratio = curves.ratios[node][static_cast<Index>(k)];
+      const double ratio = curves.ratios[node][k];
       if (!(ratio > 0)) table.fail(rows[node], "'" + table.columns[columns[k].ratio] + "' must be greater than 0");
       if (node / stride % count == 0) continue;
-      const double before = curves.ratios[node - stride][static_cast<Index>(k)];
+      const double before = curves.ratios[node - stride][k];
       if (!(ratio > before))
         table.fail(rows[node], "'" + table.columns[columns[k].ratio] +
                                    "' must rise with its own pressure, the others being equal, but is " +
@@ -137,8 +137,7 @@ CoupledCurves read_coupled_curves(const Model& model, const std::filesystem::pat
   for (const auto& [node, row] : rows_of_nodes(table, columns, curves)) {
     rows.push_back(row);
     curves.ratios.emplace_back(static_cast<Index>(columns.size()));
-    for (std::size_t k = 0; k < columns.size(); ++k)
-      curves.ratios.back()[static_cast<Index>(k)] = table.rows[row][columns[k].ratio];
+    for (std::size_t k = 0; k < columns.size(); ++k) curves.ratios.back()[k] = table.rows[row][columns[k].ratio];
   }
   check_rise(table, columns, curves, rows);
   return curves;

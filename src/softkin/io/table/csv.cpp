@@ -165,7 +165,7 @@ void RunTable::group() {
       runs.push_back({"run " + std::to_string(static_cast<long>(number)), {row}});
       continue;
     }
-    Run& run = runs[static_cast<std::size_t>(found - numbers.begin())];
+    Run& run = runs[found - numbers.begin()];
     if (run.rows.back() + 1 != row) fail(row, run.name + " goes on here after another run: keep its rows together");
     run.rows.push_back(row);
   }

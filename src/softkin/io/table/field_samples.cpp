@@ -30,11 +30,11 @@ FieldSamples samples_of_csv(const std::filesystem::path& path, const SampleKind&
   const auto count = static_cast<Index>(table.rows.size());
   FieldSamples samples{path.string(), Points(count, 3), Points(count, 3), true, table.lines};
   for (Index i = 0; i < 6; ++i) {
-    const char* name = of.columns[static_cast<std::size_t>(i)];
+    const char* name = of.columns[i];
     const auto column = table.find(name);
     if (!column) table.fail_header(std::string("the column '") + name + "' is missing");
     Points& to = i < 3 ? samples.places : samples.values;
-    for (Index row = 0; row < count; ++row) to(row, i % 3) = table.rows[static_cast<std::size_t>(row)][*column];
+    for (Index row = 0; row < count; ++row) to(row, i % 3) = table.rows[row][*column];
   }
   return samples;
 }
@@ -56,15 +56,14 @@ void find_planes(const FieldSamples& samples, Index axis, GridField& grid) {
                        "a grid needs at least 4 places along " + name + ", not " + std::to_string(count));
   const double step = (at.back() - at.front()) / (count - 1);
   for (Index i = 0; i < count; ++i)
-    if (std::abs(at[static_cast<std::size_t>(i)] - at.front() - i * step) > same * step)
-      throw InvalidInput({samples.file}, "the grid is not regular: along " + name + " " +
-                                             number(at[static_cast<std::size_t>(i)]) + " mm stands where " +
-                                             number(at.front() + i * step) + " mm would; its " + std::to_string(count) +
-                                             " places reach from " + number(at.front()) + " to " + number(at.back()) +
-                                             " mm");
+    if (std::abs(at[i] - at.front() - i * step) > same * step)
+      throw InvalidInput({samples.file}, "the grid is not regular: along " + name + " " + number(at[i]) +
+                                             " mm stands where " + number(at.front() + i * step) + " mm would; its " +
+                                             std::to_string(count) + " places reach from " + number(at.front()) +
+                                             " to " + number(at.back()) + " mm");
   grid.low[axis] = at.front();
   grid.step[axis] = step;
-  grid.counts[static_cast<std::size_t>(axis)] = count;
+  grid.counts[axis] = count;
 }
 
 FieldSamples read_samples(const std::filesystem::path& path, const SampleKind& of) {
@@ -93,7 +92,7 @@ GridField grid_of(const FieldSamples& samples) {
   std::size_t points = 1;
   for (Index axis = 0; axis < 3; ++axis) {
     find_planes(samples, axis, grid);
-    points *= static_cast<std::size_t>(grid.counts[static_cast<std::size_t>(axis)]);
+    points *= static_cast<std::size_t>(grid.counts[axis]);
   }
   const auto rows = static_cast<std::size_t>(samples.places.rows());
   const std::string size = std::to_string(grid.counts[0]) + " x " + std::to_string(grid.counts[1]) + " x " +
@@ -106,7 +105,7 @@ GridField grid_of(const FieldSamples& samples) {
   for (std::size_t row = 0; row < rows; ++row) {
     std::size_t place = 0;
     for (Index axis = 2; axis >= 0; --axis)
-      place = place * static_cast<std::size_t>(grid.counts[static_cast<std::size_t>(axis)]) +
+      place = place * static_cast<std::size_t>(grid.counts[axis]) +
               static_cast<std::size_t>(
                   std::lround((samples.places(static_cast<Index>(row), axis) - grid.low[axis]) / grid.step[axis]));
     if (there[place]) fail(samples, row, "this place of the grid of " + size + " is there twice");

@@ -59,10 +59,10 @@ class PathColumns {
         path.markers.push_back(*column.marker);
         path.axes.push_back({false, false, false});
       }
-      bool& counts = path.axes[at][static_cast<std::size_t>(column.axis)];
+      bool& counts = path.axes[at][column.axis];
       if (counts)
         table_.fail_header("two columns are the " + std::string(axis_names[column.axis]) + " of marker '" +
-                           names_[static_cast<std::size_t>(*column.marker)] + "'");
+                           names_[*column.marker] + "'");
       counts = true;
     }
     if (path.markers.empty())
@@ -125,10 +125,10 @@ Waypoint waypoint_of(const std::vector<TargetColumn>& columns, const MarkerPath&
 /// Distance of a marker at rest from a target, along the axes that count [mm]; scale: of the target.
 double distance_from_rest(const Model& model, const MarkerPath& path, const Waypoint& waypoint, std::size_t m,
                           double scale) {
-  const Vec3 rest = model.markers[static_cast<std::size_t>(path.markers[m])].at(model.rest);
+  const Vec3 rest = model.markers[path.markers[m]].at(model.rest);
   Vec3 away = Vec3::Zero();
   for (int axis = 0; axis < 3; ++axis)
-    if (path.axes[m][static_cast<std::size_t>(axis)]) away[axis] = scale * waypoint.targets[m][axis] - rest[axis];
+    if (path.axes[m][axis]) away[axis] = scale * waypoint.targets[m][axis] - rest[axis];
   return away.norm();
 }
 
@@ -265,7 +265,7 @@ Track read_track(const std::filesystem::path& path, const std::string& marker, c
   for (std::size_t r = 0; r < table.rows.size(); ++r) {
     Vec3 point = Vec3::Zero();
     for (std::size_t axis = 0; axis < 3; ++axis)
-      if (coordinates[axis]) point[static_cast<Index>(axis)] = table.rows[r][*coordinates[axis]];
+      if (coordinates[axis]) point[axis] = table.rows[r][*coordinates[axis]];
     track.points.push_back(point);
     if (!along) continue;
     track.parameter.push_back(table.rows[r][*along]);

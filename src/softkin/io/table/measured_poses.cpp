@@ -47,18 +47,17 @@ class DotColumns {
   [[nodiscard]] UnnamedDots dots() const {
     UnnamedDots dots;
     for (int axis = 0; axis < 3; ++axis)
-      if (std::any_of(at_.begin(), at_.end(),
-                      [&](const auto& dot) { return dot[static_cast<std::size_t>(axis)].has_value(); }))
+      if (std::any_of(at_.begin(), at_.end(), [&](const auto& dot) { return dot[axis].has_value(); }))
         dots.axes.push_back(axis);
     dots.names = names_;
     dots.places.resize(static_cast<Index>(table_.rows.size()), static_cast<Index>(names_.size() * dots.axes.size()));
     Index c = 0;
     for (std::size_t d = 0; d < names_.size(); ++d) {
       for (const int axis : dots.axes) {
-        if (!at_[d][static_cast<std::size_t>(axis)])
+        if (!at_[d][axis])
           table_.fail_header("column '" + name_of(d, axis) + "' is missing: all dots have the same coordinates");
         for (std::size_t row = 0; row < table_.rows.size(); ++row)
-          dots.places(static_cast<Index>(row), c) = table_.rows[row][*at_[d][static_cast<std::size_t>(axis)]];
+          dots.places(static_cast<Index>(row), c) = table_.rows[row][*at_[d][axis]];
         ++c;
       }
       check(d, dots);
@@ -74,7 +73,7 @@ class DotColumns {
       names_.push_back(name);
       at_.emplace_back();
     }
-    at_[d][static_cast<std::size_t>(axis)] = at;
+    at_[d][axis] = at;
   }
 
   [[nodiscard]] std::string name_of(std::size_t dot, int axis) const {
@@ -84,9 +83,7 @@ class DotColumns {
   /// A dot is seen whole or not at all.
   void check(std::size_t dot, const UnnamedDots& dots) const {
     for (std::size_t row = 0; row < table_.rows.size(); ++row) {
-      const auto empty = [&](int axis) {
-        return std::isnan(table_.rows[row][*at_[dot][static_cast<std::size_t>(axis)]]);
-      };
+      const auto empty = [&](int axis) { return std::isnan(table_.rows[row][*at_[dot][axis]]); };
       const auto gap = std::find_if(dots.axes.begin(), dots.axes.end(), empty);
       if (gap != dots.axes.end() && !std::all_of(dots.axes.begin(), dots.axes.end(), empty))
         table_.fail(row, "column '" + name_of(dot, *gap) + "' is empty: a dot is seen whole or not at all");
@@ -237,9 +234,9 @@ class Columns {
 
   /// With what an actuator answers: a load, or where that is commanded a length or volume.
   [[nodiscard]] std::optional<PoseColumn> reading_of(const std::string& column, Index a) const {
-    const Actuator& actuator = model_.actuators[static_cast<std::size_t>(a)];
-    const bool cable = actuator.kind == ActuatorKind::cable;
-    if (!cable && actuator.kind != ActuatorKind::pneumatic) return std::nullopt;
+    const Actuator& actuator = model_.actuators[a];
+    const bool cable = actuator.is<CableDrive>();
+    if (!cable && !actuator.is<ChamberDrive>()) return std::nullopt;
     const bool load = column == actuator.name + (cable ? "_tension_N" : "_pressure_kPa");
     if (!load && column != actuator.name + (cable ? "_length_mm" : "_volume_mm3")) return std::nullopt;
     if (actuator.control == (load ? Control::load : Control::ratio))
@@ -275,8 +272,8 @@ std::vector<PoseColumn> possible_readings(const Model& model) {
   };
   for (const Marker& marker : model.markers) along_axes(marker.name + "_", "_mm");
   for (const Actuator& actuator : model.actuators) {
-    const bool air = actuator.kind == ActuatorKind::pneumatic;
-    if (!air && actuator.kind != ActuatorKind::cable) continue;
+    const bool air = actuator.is<ChamberDrive>();
+    if (!air && !actuator.is<CableDrive>()) continue;
     if (actuator.control != Control::load) names.push_back(actuator.name + (air ? "_pressure_kPa" : "_tension_N"));
     if (actuator.control != Control::ratio) names.push_back(actuator.name + (air ? "_volume_mm3" : "_length_mm"));
   }

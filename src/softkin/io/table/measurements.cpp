@@ -37,7 +37,7 @@ class MeasurementTable : public CsvTable {
   [[nodiscard]] std::optional<double> value(std::size_t row, const std::string& name) const {
     const int at = places_[index(name)];
     if (at < 0) return std::nullopt;
-    return rows[row][static_cast<std::size_t>(at)];
+    return rows[row][at];
   }
   [[nodiscard]] double at(std::size_t row, const std::string& name) const { return *value(row, name); }
   [[nodiscard]] double positive(std::size_t row, const std::string& name) const {

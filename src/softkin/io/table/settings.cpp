@@ -99,7 +99,7 @@ namespace {
 /// What may stand in place of a ratio; "" without a curve.
 std::string curve_hint(const Actuator& actuator) {
   if (!actuator.curve) return "";
-  const bool dea = actuator.kind == ActuatorKind::dea;
+  const bool dea = actuator.is<DeaDrive>();
   return dea ? "; or a voltage by its curve, such as 2.5kV" +
                    std::string(actuator.curve->unloading ? " or 2.5kV:unloading" : "")
              : "; or a pressure by its curve, such as 50kPa (gauge), 150kPa_abs" +
@@ -125,7 +125,7 @@ bool is_kPa(const std::string& unit) {
 /// Where to get a curve, for a pressure or voltage given to an actuator that has none; else "".
 std::string missing_curve(const Actuator& actuator, const std::string& text) {
   if (actuator.curve || actuator.control != Control::ratio) return "";
-  if (actuator.kind == ActuatorKind::pneumatic &&
+  if (actuator.is<ChamberDrive>() &&
       (text.ends_with("kPa_abs") ||
        std::any_of(std::begin(other_units), std::end(other_units),
                    [&](const auto& each) { return is_kPa(each.own) && text.ends_with(each.unit); }) ||
@@ -134,7 +134,7 @@ std::string missing_curve(const Actuator& actuator, const std::string& text) {
            "' is commanded by its volume: a pressure needs a curve in the scene (softkin calibrate pressure), or "
            "'control: "
            "pressure' with a range in kPa (physical)";
-  if (actuator.kind == ActuatorKind::dea && text.ends_with("kV"))
+  if (actuator.is<DeaDrive>() && text.ends_with("kV"))
     return "; a voltage needs 'control: voltage', or a curve in the scene (softkin calibrate dea)";
   return "";
 }
@@ -203,7 +203,7 @@ Settings read_settings(const Model& model, const std::string& option, const std:
     const std::string text(trimmed(std::string_view(setting).substr(equals + 1)));
     const std::optional<Index> a = find_actuator(model, name);
     if (!a) refuse(unknown_actuator(model, name));
-    const Actuator& actuator = model.actuators[static_cast<std::size_t>(*a)];
+    const Actuator& actuator = model.actuators[*a];
     double value = 0;
     if (!parse_command(actuator, text, value))
       refuse(expected_command(actuator) + ", not " + excerpt(text) + missing_curve(actuator, text) +
@@ -211,15 +211,15 @@ Settings read_settings(const Model& model, const std::string& option, const std:
     if (!(value >= actuator.low && value <= actuator.high))
       refuse(std::string("the ") + command_name(actuator) + " is outside " + range_text(actuator) +
              meant_hint(actuator, value));
-    if (values[static_cast<std::size_t>(*a)]) refuse("actuator '" + name + "' is set twice");
-    values[static_cast<std::size_t>(*a)] = value;
+    if (values[*a]) refuse("actuator '" + name + "' is set twice");
+    values[*a] = value;
   }
   return values;
 }
 
 Actuation with_settings(Actuation actuation, const Settings& settings) {
   for (std::size_t a = 0; a < settings.size(); ++a)
-    if (settings[a]) actuation[static_cast<Index>(a)] = *settings[a];
+    if (settings[a]) actuation[a] = *settings[a];
   return actuation;
 }
 

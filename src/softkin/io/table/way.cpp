@@ -13,8 +13,7 @@ Points read_way(const std::filesystem::path& path) {
     const std::string name = std::string(1, "xyz"[axis]) + "_mm";
     const auto column = table.find(name);
     if (!column) table.fail_header("the column '" + name + "' is missing");
-    for (Index row = 0; row < corners.rows(); ++row)
-      corners(row, axis) = table.rows[static_cast<std::size_t>(row)][*column];
+    for (Index row = 0; row < corners.rows(); ++row) corners(row, axis) = table.rows[row][*column];
   }
   return corners;
 }

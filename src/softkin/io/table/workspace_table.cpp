@@ -120,8 +120,7 @@ class SampleReader {
     WorkspaceSample sample;
     sample.number = integer("sample");
     sample.actuation.resize(static_cast<Index>(columns_.actuators.size()));
-    for (Index a = 0; a < sample.actuation.size(); ++a)
-      sample.actuation[a] = real(columns_.actuators[static_cast<std::size_t>(a)]);
+    for (Index a = 0; a < sample.actuation.size(); ++a) sample.actuation[a] = real(columns_.actuators[a]);
     const std::size_t values = cursor_;
     for (std::size_t i = 0; i < columns_.markers.size() + columns_.loads.size(); ++i) (void)cell();
     sample.status = status();
@@ -154,8 +153,7 @@ class SampleReader {
 
   void read_values(WorkspaceSample& sample) {
     sample.markers.resize(static_cast<Index>(columns_.markers.size() / 3), 3);
-    for (Index i = 0; i < sample.markers.size(); ++i)
-      sample.markers.data()[i] = real(columns_.markers[static_cast<std::size_t>(i)]);
+    for (Index i = 0; i < sample.markers.size(); ++i) sample.markers.data()[i] = real(columns_.markers[i]);
     sample.multipliers.setZero(sample.actuation.size());
     for (std::size_t i = 0; i < columns_.loads.size(); ++i)
       sample.multipliers[columns_.loaded[i]] = real(columns_.loads[i]);

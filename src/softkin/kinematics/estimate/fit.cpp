@@ -75,7 +75,7 @@ Eigen::VectorXd Fitter::step_of(const Guess& at, const Normal& normal, double da
   matrix.diagonal() *= 1 + damping;
   const Variables& variables = problem_.variables();
   for (Index i = 0; i < variables.numbers(); ++i) {
-    const Variable& v = variables.all()[static_cast<std::size_t>(i)];
+    const Variable& v = variables.all()[i];
     const bool held = (at.values[i] <= v.low && right[i] < 0) || (at.values[i] >= v.high && right[i] > 0);
     if (!held) continue;
     matrix.row(i).setZero();

@@ -14,7 +14,7 @@ Eigen::MatrixXd covariance_before(const Variables& variables) {
   const Index numbers = variables.numbers(), size = numbers + 3 * static_cast<Index>(variables.forces().size());
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(size, size);
   for (Index i = 0; i < numbers; ++i) {
-    const double deviation = variables.all()[static_cast<std::size_t>(i)].deviation;
+    const double deviation = variables.all()[i].deviation;
     covariance(i, i) = deviation * deviation;
   }
   for (std::size_t f = 0; f < variables.forces().size(); ++f) {
@@ -36,7 +36,7 @@ Eigen::VectorXd mean_before(const Variables& variables) {
 /// Inverse on what it spans, by coordinates in units of what is known before.
 Eigen::MatrixXd information_of(const Variables& variables, const Eigen::MatrixXd& covariance) {
   Eigen::VectorXd units(covariance.rows());
-  for (Index i = 0; i < variables.numbers(); ++i) units[i] = variables.all()[static_cast<std::size_t>(i)].deviation;
+  for (Index i = 0; i < variables.numbers(); ++i) units[i] = variables.all()[i].deviation;
   for (std::size_t f = 0; f < variables.forces().size(); ++f)
     units.segment<3>(variables.numbers() + 3 * static_cast<Index>(f))
         .setConstant(std::sqrt(variables.forces()[f].patch->covariance().trace()));

@@ -18,8 +18,7 @@ Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance) {
     if (eigen.values[k] > least_share * largest) spanned.push_back(k);
   Eigen::MatrixXd root(covariance.rows(), static_cast<Index>(spanned.size()));
   for (Index c = 0; c < static_cast<Index>(spanned.size()); ++c)
-    root.col(c) = std::sqrt(eigen.values[spanned[static_cast<std::size_t>(c)]]) *
-                  eigen.vectors.col(spanned[static_cast<std::size_t>(c)]);
+    root.col(c) = std::sqrt(eigen.values[spanned[c]]) * eigen.vectors.col(spanned[c]);
   return root;
 }
 
@@ -29,8 +28,8 @@ Eigen::MatrixXd product_covariance(const Variables& variables, const FreeForce& 
   Mat3 squares = Mat3::Zero();
   Vec3 mean = Vec3::Zero();
   for (Index axis = 0; axis < 3; ++axis)
-    if (const Index v = force.variables[static_cast<std::size_t>(axis)]; v >= 0) {
-      const Variable& variable = variables.all()[static_cast<std::size_t>(v)];
+    if (const Index v = force.variables[axis]; v >= 0) {
+      const Variable& variable = variables.all()[v];
       squares(axis, axis) = variable.deviation * variable.deviation;
       mean[axis] = variable.mean;
     }
@@ -48,7 +47,7 @@ Memory::Memory(const Variables& variables) : variables_(variables) {
   mean_.setZero(size);
   mean_.head(numbers) = variables.means();
   from_y_.setZero(size, numbers);
-  for (Index i = 0; i < numbers; ++i) from_y_(i, i) = variables.all()[static_cast<std::size_t>(i)].deviation;
+  for (Index i = 0; i < numbers; ++i) from_y_(i, i) = variables.all()[i].deviation;
   for (std::size_t f = 0; f < variables.forces().size(); ++f) {
     const Eigen::MatrixXd root = root_of(product_covariance(variables, variables.forces()[f]));
     const Index columns = static_cast<Index>(from_y_.cols()), more = static_cast<Index>(root.cols());
@@ -73,7 +72,7 @@ Eigen::VectorXd Memory::sums(const Eigen::VectorXd& values, const std::vector<Pl
     const FreeForce& force = variables_.forces()[f];
     const Vec3 way = force.patch->at(places[f], variables_.model().rest) - force.patch->middle();
     for (Index axis = 0; axis < 3; ++axis)
-      if (const Index v = force.variables[static_cast<std::size_t>(axis)]; v >= 0)
+      if (const Index v = force.variables[axis]; v >= 0)
         sums.segment<3>(variables_.numbers() + 9 * static_cast<Index>(f) + 3 * axis) = values[v] * way;
   }
   return sums;
@@ -92,7 +91,7 @@ Eigen::MatrixXd Memory::slopes(const Eigen::VectorXd& values, const std::vector<
     const Vec3 way = force.patch->at(places[f], variables_.model().rest) - force.patch->middle();
     const auto tangents = force.patch->tangents(places[f]);
     for (Index axis = 0; axis < 3; ++axis) {
-      const Index v = force.variables[static_cast<std::size_t>(axis)];
+      const Index v = force.variables[axis];
       if (v < 0) continue;
       const Index row = numbers + 9 * static_cast<Index>(f) + 3 * axis;
       slopes.block<3, 1>(row, v) = way;
@@ -114,7 +113,7 @@ void Memory::add(const Eigen::MatrixXd& by_parts, const std::vector<Place>& base
     const auto tangents = force.patch->tangents(base[f]);
     const Vec3 from = force.patch->middle() - force.patch->at(base[f], variables_.model().rest);
     for (Index axis = 0; axis < 3; ++axis) {
-      const Index v = force.variables[static_cast<std::size_t>(axis)];
+      const Index v = force.variables[axis];
       for (Index t = 0; v >= 0 && t < 2; ++t, ++part) {
         parts.block<1, 3>(part, numbers + 9 * static_cast<Index>(f) + 3 * axis) = tangents.col(t).transpose();
         parts(part, v) = tangents.col(t).dot(from);

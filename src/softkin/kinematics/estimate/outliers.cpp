@@ -55,7 +55,7 @@ Weighted weighted(const Fit& fit, const ReadingGroup& group, const Eigen::Vector
   const auto count = static_cast<Index>(read.size());
   Weighted of{Eigen::MatrixXd(count, fit.slopes.cols()), Eigen::VectorXd(count)};
   for (Index i = 0; i < count; ++i) {
-    const Index r = read[static_cast<std::size_t>(i)];
+    const Index r = read[i];
     of.slopes.row(i) = std::sqrt(weights[r]) * fit.slopes.row(r);
     of.off[i] = std::sqrt(weights[r]) * (fit.told.computed[r] - values[r]);
   }

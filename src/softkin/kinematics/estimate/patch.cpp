@@ -79,7 +79,7 @@ void Patch::measure() {
 }
 
 Eigen::Matrix<double, 3, 2> Patch::tangents(const Place& place) const {
-  const Triangle& t = faces_[static_cast<std::size_t>(place.face)].corners;
+  const Triangle& t = faces_[place.face].corners;
   const Vec3 a = vertex_at(model_.rest, t[0]), along = vertex_at(model_.rest, t[1]) - a,
              across = vertex_at(model_.rest, t[2]) - a;
   Eigen::Matrix<double, 3, 2> tangents;
@@ -104,9 +104,8 @@ Patch::Shares Patch::shares(const Place& place) const {
     moments += node.weight * node.basis * node.basis.transpose();
     for (int t = 0; t < 2; ++t) {
       const Vec3 change = -Vec3::Unit(t + 1) / radius_;
-      changes[static_cast<std::size_t>(t)] +=
-          node.slope[t] * node.basis * node.basis.transpose() +
-          node.weight * (change * node.basis.transpose() + node.basis * change.transpose());
+      changes[t] += node.slope[t] * node.basis * node.basis.transpose() +
+                    node.weight * (change * node.basis.transpose() + node.basis * change.transpose());
     }
   }
   const Mat3 inverse = moments.inverse();
@@ -119,24 +118,23 @@ Patch::Shares Patch::shares(const Place& place) const {
     found.shares[row] = node.weight * node.basis.dot(fit);
     for (int t = 0; t < 2; ++t)
       found.slopes(row, t) = node.slope[t] * node.basis.dot(fit) - node.weight * fit[t + 1] / radius_ -
-                             node.weight * node.basis.dot(inverse * changes[static_cast<std::size_t>(t)] * fit);
+                             node.weight * node.basis.dot(inverse * changes[t] * fit);
   }
   return found;
 }
 
 Vec3 Patch::at(const Place& place, const Points& positions) const {
-  const std::vector<Index>& nodes = of_face_[static_cast<std::size_t>(place.face)];
+  const std::vector<Index>& nodes = of_face_[place.face];
   const Eigen::VectorXd shape = shape_of(nodes.size(), place);
   Vec3 point = Vec3::Zero();
-  for (std::size_t i = 0; i < nodes.size(); ++i)
-    point += shape[static_cast<Index>(i)] * vertex_at(positions, nodes_[static_cast<std::size_t>(nodes[i])]);
+  for (std::size_t i = 0; i < nodes.size(); ++i) point += shape[i] * vertex_at(positions, nodes_[nodes[i]]);
   return point;
 }
 
 Place Patch::nearest(const Vec3& at_rest) const {
   Place place;
   const Vec3 point = tree_.nearest(at_rest, &place.face);
-  const Triangle& t = faces_[static_cast<std::size_t>(place.face)].corners;
+  const Triangle& t = faces_[place.face].corners;
   const Vec3 a = vertex_at(model_.rest, t[0]), e = vertex_at(model_.rest, t[1]) - a,
              f = vertex_at(model_.rest, t[2]) - a, normal = e.cross(f), arm = point - a;
   place.u = std::clamp(arm.cross(f).dot(normal) / normal.squaredNorm(), 0.0, 1.0);

@@ -45,7 +45,7 @@ const Statics& Problem::statics(const Eigen::VectorXd& values) const {
   if (!variables_.stiffens()) return statics_;
   const auto same = [&](const Stiffened& kept) {
     for (Index i = 0; i < variables_.numbers(); ++i)
-      if (variables_.all()[static_cast<std::size_t>(i)].material >= 0 && kept.values[i] != values[i]) return false;
+      if (variables_.all()[i].material >= 0 && kept.values[i] != values[i]) return false;
     return true;
   };
   const auto found = std::find_if(stiffened_.begin(), stiffened_.end(), same);
@@ -79,7 +79,7 @@ Guess Problem::solve(const Actuation& commands, const Eigen::VectorXd& values, c
   if (reads_supports()) reactions = statics.measured(state).reactions;
   guess.computed.resize(static_cast<Index>(columns_.size()));
   for (Index r = 0; r < static_cast<Index>(columns_.size()); ++r)
-    guess.computed[r] = reading_at(variables_.model(), columns_[static_cast<std::size_t>(r)], state, reactions);
+    guess.computed[r] = reading_at(variables_.model(), columns_[r], state, reactions);
   if (!guess.computed.allFinite()) guess.computed.resize(0);
   return guess;
 }
@@ -110,7 +110,7 @@ void Problem::set_stiffness_slopes(const Guess& at, Slopes& parts) const {
   std::vector<Index> numbers;
   models.reserve(2 * static_cast<std::size_t>(variables_.numbers()));
   for (Index i = 0; i < variables_.numbers(); ++i) {
-    const Variable& variable = variables_.all()[static_cast<std::size_t>(i)];
+    const Variable& variable = variables_.all()[i];
     if (variable.material < 0) continue;
     Eigen::VectorXd more = at.values, less = at.values;
     more[i] += perturbation * variable.mean;
@@ -126,7 +126,7 @@ void Problem::set_stiffness_slopes(const Guess& at, Slopes& parts) const {
     const Index i = numbers[k], column = static_cast<Index>(k);
     parts.of_readings.col(i) = found.of_readings.col(column);
     parts.multipliers.col(i) = found.multipliers.col(column);
-    parts.moves[static_cast<std::size_t>(i)] = std::move(found.moves[k]);
+    parts.moves[i] = std::move(found.moves[k]);
   }
 }
 
@@ -223,7 +223,7 @@ std::vector<Points> Problem::moves(const Nearby& nearby, const Guess& at) const 
   for (Index c = 0; c < static_cast<Index>(by.cols()); ++c) {
     Points& of = moves.emplace_back(Points::Zero(variables_.model().rest.rows(), 3));
     for (Index p = 0; p < static_cast<Index>(by.rows()); ++p)
-      if (by(p, c) != 0) of += by(p, c) * nearby.parts.moves[static_cast<std::size_t>(p)];
+      if (by(p, c) != 0) of += by(p, c) * nearby.parts.moves[p];
   }
   return moves;
 }
@@ -235,14 +235,14 @@ void Problem::follow(const Nearby& nearby, const Guess& from, const Guess& to, c
     if (state == nullptr) return;
     state->multipliers += by.multipliers * way;
     for (Index c = 0; c < static_cast<Index>(way.size()); ++c)
-      if (way[c] != 0) state->positions += way[c] * by.moves[static_cast<std::size_t>(c)];
+      if (way[c] != 0) state->positions += way[c] * by.moves[c];
   };
   add(nearby.parts,
       variables_.parts(to.values, to.places, nearby.base) - variables_.parts(from.values, from.places, nearby.base));
   if (commands.size() == 0) return;
   const std::vector<Index> measured = variables_.measured();
   Eigen::VectorXd way(static_cast<Index>(measured.size()));
-  for (std::size_t i = 0; i < measured.size(); ++i) way[static_cast<Index>(i)] = commands[measured[i]];
+  for (std::size_t i = 0; i < measured.size(); ++i) way[i] = commands[measured[i]];
   add(nearby.commands, way);
 }
 

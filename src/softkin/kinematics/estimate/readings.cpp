@@ -13,12 +13,12 @@ constexpr double small_move = 1e-6;
 double force_on(const Model& model, const PoseColumn& column, const Points& positions, const Points& at_vertices) {
   ElementDeformation deformation;
   deformation.reactions = at_vertices;
-  return reactions(model, positions, deformation)[static_cast<std::size_t>(column.support)].force[column.axis];
+  return reactions(model, positions, deformation)[column.support].force[column.axis];
 }
 
 /// Of a cable or a chamber, [mm] or [mm^3].
 double measure_at(const Model& model, Index actuator, const Points& positions) {
-  const Actuator& of = model.actuators[static_cast<std::size_t>(actuator)];
+  const Actuator& of = model.actuators[actuator];
   return achieved_ratio(model, of, positions) * of.rest_measure;
 }
 
@@ -33,10 +33,8 @@ bool is_of_shape(const PoseColumn& column) {
 }
 
 double reading_at(const Model& model, const PoseColumn& column, const State& state, const Points& reactions) {
-  if (column.marker >= 0)
-    return model.markers[static_cast<std::size_t>(column.marker)].at(state.positions)[column.axis];
-  if (column.sensor >= 0)
-    return model.sensors[static_cast<std::size_t>(column.sensor)]->at(state.positions, column.axis);
+  if (column.marker >= 0) return model.markers[column.marker].at(state.positions)[column.axis];
+  if (column.sensor >= 0) return model.sensors[column.sensor]->at(state.positions, column.axis);
   if (is_measure(column)) return measure_at(model, column.actuator, state.positions);
   if (column.support >= 0) return force_on(model, column, state.positions, reactions);
   return state.multipliers[column.actuator];
@@ -44,10 +42,8 @@ double reading_at(const Model& model, const PoseColumn& column, const State& sta
 
 double reading_change(const Model& model, const PoseColumn& column, const State& state, const ShapeChange& change) {
   const Points& at = state.positions;
-  if (column.marker >= 0)
-    return model.markers[static_cast<std::size_t>(column.marker)].velocity(at, change.moves)[column.axis];
-  if (column.sensor >= 0)
-    return model.sensors[static_cast<std::size_t>(column.sensor)]->velocity(at, change.moves, column.axis);
+  if (column.marker >= 0) return model.markers[column.marker].velocity(at, change.moves)[column.axis];
+  if (column.sensor >= 0) return model.sensors[column.sensor]->velocity(at, change.moves, column.axis);
   if (is_measure(column)) {
     const double largest = change.moves.cwiseAbs().maxCoeff();
     if (!(largest > 0)) return 0;
@@ -64,8 +60,8 @@ namespace {
 
 /// Those that a marker or a sensor is read from, some of them twice.
 std::vector<Index> vertices_of(const Model& model, const PoseColumn& column) {
-  if (column.marker >= 0) return model.markers[static_cast<std::size_t>(column.marker)].point.vertices;
-  const Sensor& sensor = *model.sensors[static_cast<std::size_t>(column.sensor)];
+  if (column.marker >= 0) return model.markers[column.marker].point.vertices;
+  const Sensor& sensor = *model.sensors[column.sensor];
   std::vector<Index> all;
   for (const FibrePlace& place : sensor.places) all.insert(all.end(), place.vertices.begin(), place.vertices.end());
   for (const TurningSection& section : sensor.sections)
@@ -84,10 +80,8 @@ Points reading_gradient(const Model& model, const PoseColumn& column, const Poin
   for (const Index v : vertices)
     for (Index axis = 0; axis < 3; ++axis) {
       move(v, axis) = 1;
-      gradient(v, axis) =
-          column.marker >= 0
-              ? model.markers[static_cast<std::size_t>(column.marker)].velocity(positions, move)[column.axis]
-              : model.sensors[static_cast<std::size_t>(column.sensor)]->velocity(positions, move, column.axis);
+      gradient(v, axis) = column.marker >= 0 ? model.markers[column.marker].velocity(positions, move)[column.axis]
+                                             : model.sensors[column.sensor]->velocity(positions, move, column.axis);
       move(v, axis) = 0;
     }
   return gradient;

@@ -50,7 +50,7 @@ Survey Searcher::survey(std::size_t force, const Guess& at, std::shared_ptr<cons
   }
   std::vector<Index> axes;
   for (Index axis = 0; axis < 3; ++axis)
-    if (variables.forces()[force].variables[static_cast<std::size_t>(axis)] >= 0) axes.push_back(axis);
+    if (variables.forces()[force].variables[axis] >= 0) axes.push_back(axis);
   const auto count = static_cast<Index>(axes.size());
   survey.theirs.setZero(by_nodes.rows(), count * static_cast<Index>(survey.places.size()));
   for (std::size_t p = 0; p < survey.places.size(); ++p) {
@@ -58,8 +58,7 @@ Survey Searcher::survey(std::size_t force, const Guess& at, std::shared_ptr<cons
     for (std::size_t i = 0; i < shares.nodes.size(); ++i)
       for (Index k = 0; k < count; ++k)
         survey.theirs.col(static_cast<Index>(p) * count + k) +=
-            shares.shares[static_cast<Index>(i)] *
-            by_nodes.col(3 * shares.nodes[i] + axes[static_cast<std::size_t>(k)]);
+            shares.shares[i] * by_nodes.col(3 * shares.nodes[i] + axes[k]);
   }
   return survey;
 }
@@ -96,7 +95,7 @@ std::vector<Searcher::Ranked> Searcher::rank(std::size_t force, const Survey& su
     for (const Index variable : components)
       if (variable >= 0) reach += each.values[variable] * slopes.col(variable);
     for (std::size_t r = 0; r < problem_.columns().size(); ++r)
-      if (problem_.columns()[r].marker >= 0) each.reach = std::max(each.reach, std::abs(reach[static_cast<Index>(r)]));
+      if (problem_.columns()[r].marker >= 0) each.reach = std::max(each.reach, std::abs(reach[r]));
     ranked.push_back(std::move(each));
   }
   return ranked;

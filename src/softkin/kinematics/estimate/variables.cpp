@@ -15,11 +15,12 @@ namespace {
 }
 
 /// The commands of a force, or of its moment, that the scene gives a range: NAME_fx and so on.
-std::vector<Index> commands_of(const Model& model, const std::string& name, ActuatorKind kind) {
+template <class Kind>
+std::vector<Index> commands_of(const Model& model, const std::string& name) {
   std::vector<Index> commands;
   for (const char* axis : axis_names)
-    if (const auto a = find_actuator(model, name + (kind == ActuatorKind::moment ? "_m" : "_f") + axis))
-      if (model.actuators[static_cast<std::size_t>(*a)].kind == kind) commands.push_back(*a);
+    if (const auto a = find_actuator(model, name + (std::is_same_v<Kind, MomentCommand> ? "_m" : "_f") + axis))
+      if (model.actuators[*a].template is<Kind>()) commands.push_back(*a);
   return commands;
 }
 
@@ -62,13 +63,13 @@ void stiffen(Material& material, double factor) {
 void Variables::add(const EstimatedUnknown& unknown) {
   if (const auto region = stiffened_region(unknown.name)) return add_stiffness(unknown, *region);
   const std::optional<Index> command = find_actuator(*model_, unknown.name);
-  const std::vector<Index> force = commands_of(*model_, unknown.name, ActuatorKind::force);
-  const std::vector<Index> moment = commands_of(*model_, unknown.name, ActuatorKind::moment);
+  const std::vector<Index> force = commands_of<ForceCommand>(*model_, unknown.name);
+  const std::vector<Index> moment = commands_of<MomentCommand>(*model_, unknown.name);
   if (command && !(force.empty() && moment.empty()))
     refuse_unknown(unknown, "both a command and a force have that name");
   if (!command && force.empty() && moment.empty()) {
     std::vector<std::string> names;
-    for (Index a = 0; a < own_actuators_; ++a) names.push_back(model_->actuators[static_cast<std::size_t>(a)].name);
+    for (Index a = 0; a < own_actuators_; ++a) names.push_back(model_->actuators[a].name);
     std::string list;
     for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
     refuse_unknown(unknown, "the scene has no command of that name, and no force with a 'range'; commands: " + list +
@@ -86,12 +87,12 @@ void Variables::add(const EstimatedUnknown& unknown) {
 }
 
 void Variables::add_variable(const EstimatedUnknown& unknown, Index actuator, Index force) {
-  const Actuator& of = model_->actuators[static_cast<std::size_t>(actuator)];
+  const Actuator& of = model_->actuators[actuator];
   if (std::any_of(variables_.begin(), variables_.end(), [&](const Variable& v) { return v.actuator == actuator; }))
     refuse_unknown(unknown, "command '" + of.name + "' is to be told twice");
   if (!(of.low < of.high))
     refuse_unknown(unknown, "command '" + of.name + "' has one value, so there is nothing to tell");
-  if (of.kind == ActuatorKind::hold || of.kind == ActuatorKind::motion)
+  if (of.is<HoldCommand>() || of.is<MotionCommand>())
     refuse_unknown(unknown, "a command of kind '" + std::string(kind_name(of)) + "' cannot be told");
   Variable variable{.actuator = actuator,
                     .force = force,
@@ -128,14 +129,14 @@ void Variables::add_stiffness(const EstimatedUnknown& unknown, const std::string
 }
 
 std::string name_of(const Model& model, const Variable& variable) {
-  if (variable.actuator >= 0) return model.actuators[static_cast<std::size_t>(variable.actuator)].name;
-  return "materials." + model.materials[static_cast<std::size_t>(variable.material)].region + ".stiffness";
+  if (variable.actuator >= 0) return model.actuators[variable.actuator].name;
+  return "materials." + model.materials[variable.material].region + ".stiffness";
 }
 
 ToldNumber told_number(const Model& model, const Variable& variable, double value, double deviation) {
   ToldNumber told;
   told.name = name_of(model, variable);
-  if (variable.actuator >= 0) told.unit = command_unit(model.actuators[static_cast<std::size_t>(variable.actuator)]);
+  if (variable.actuator >= 0) told.unit = command_unit(model.actuators[variable.actuator]);
   told.value = value;
   told.deviation = deviation;
   told.known_mean = variable.mean;
@@ -159,8 +160,7 @@ bool Variables::stiffens() const {
 Model Variables::stiffened(const Eigen::VectorXd& values) const {
   Model robot = *model_;
   for (Index i = 0; i < numbers(); ++i)
-    if (const Index m = variables_[static_cast<std::size_t>(i)].material; m >= 0)
-      stiffen(robot.materials[static_cast<std::size_t>(m)], values[i]);
+    if (const Index m = variables_[i].material; m >= 0) stiffen(robot.materials[m], values[i]);
   return robot;
 }
 
@@ -169,13 +169,13 @@ void Variables::add_patch(const EstimatedUnknown& unknown, const std::vector<Ind
   FreeForce force;
   force.name = unknown.name;
   for (const Index a : commands) {
-    const Actuator& of = model_->actuators[static_cast<std::size_t>(a)];
-    if (of.cavity.empty())
+    const auto& of = std::get<ForceCommand>(model_->actuators[a].drive);
+    if (of.faces.empty())
       refuse_unknown(unknown,
                      "its place can be told on a region of faces of the body's surface; it is at a point, or at a "
                      "region without such");
-    if (!force.patch) force.patch = std::make_unique<Patch>(*model_, of.cavity);
-    force.variables[static_cast<std::size_t>(of.axis)] = numbers();
+    if (!force.patch) force.patch = std::make_unique<Patch>(*model_, of.faces);
+    force.variables[of.axis] = numbers();
     add_variable(unknown, a, number);
   }
   add_node_commands(force);
@@ -188,10 +188,8 @@ void Variables::add_node_commands(FreeForce& force) {
     for (int axis = 0; axis < 3; ++axis) {
       Actuator command;
       command.name = force.name + ":" + std::to_string(node) + axis_names[axis];
-      command.kind = ActuatorKind::force;
+      command.drive = ForceCommand{.axis = axis, .place = EmbeddedPoint{{node}, {1.0}}};
       command.control = Control::load;
-      command.axis = axis;
-      command.points = {{{node}, {1.0}}};
       command.rest = 0;
       command.high = std::numeric_limits<double>::max();
       command.low = -command.high;
@@ -204,7 +202,7 @@ Actuation Variables::actuation(const Actuation& commands, const Eigen::VectorXd&
   Actuation all = Actuation::Zero(static_cast<Index>(model_->actuators.size()));
   all.head(own_actuators_) = commands;
   for (Index i = 0; i < numbers(); ++i) {
-    const Variable& variable = variables_[static_cast<std::size_t>(i)];
+    const Variable& variable = variables_[i];
     if (variable.actuator >= 0) all[variable.actuator] = variable.force < 0 ? values[i] : 0;
   }
   for (std::size_t f = 0; f < forces_.size(); ++f) {
@@ -221,10 +219,10 @@ std::vector<Actuation> Variables::changes_at(std::size_t number, const Place& pl
   const Patch::Shares at = force.patch->shares(place);
   std::vector<Actuation> changes;
   for (Index axis = 0; axis < 3; ++axis) {
-    if (force.variables[static_cast<std::size_t>(axis)] < 0) continue;
+    if (force.variables[axis] < 0) continue;
     Actuation& change = changes.emplace_back(Actuation::Zero(static_cast<Index>(model_->actuators.size())));
     for (std::size_t i = 0; i < at.nodes.size(); ++i)
-      change[force.first_command + 3 * at.nodes[i] + axis] = at.shares[static_cast<Index>(i)];
+      change[force.first_command + 3 * at.nodes[i] + axis] = at.shares[i];
   }
   return changes;
 }
@@ -265,18 +263,17 @@ std::vector<Actuation> Variables::part_changes(const std::vector<Place>& base) c
   const Actuation none = Actuation::Zero(static_cast<Index>(model_->actuators.size()));
   std::vector<Actuation> changes(static_cast<std::size_t>(numbers()), none);
   for (Index i = 0; i < numbers(); ++i)
-    if (const Variable& variable = variables_[static_cast<std::size_t>(i)];
-        variable.force < 0 && variable.actuator >= 0)
-      changes[static_cast<std::size_t>(i)][variable.actuator] = 1;
+    if (const Variable& variable = variables_[i]; variable.force < 0 && variable.actuator >= 0)
+      changes[i][variable.actuator] = 1;
   for (std::size_t f = 0; f < forces_.size(); ++f) {
     const FreeForce& force = forces_[f];
     const Patch::Shares at = force.patch->shares(base[f]);
     std::vector<Actuation> along = changes_at(f, base[f]);
     std::size_t next = 0;
     for (Index axis = 0; axis < 3; ++axis) {
-      const Index variable = force.variables[static_cast<std::size_t>(axis)];
+      const Index variable = force.variables[axis];
       if (variable < 0) continue;
-      changes[static_cast<std::size_t>(variable)] = std::move(along[next++]);
+      changes[variable] = std::move(along[next++]);
       for (Index t = 0; t < 2; ++t) {
         Actuation& change = changes.emplace_back(none);
         for (std::size_t i = 0; i < at.nodes.size(); ++i)
@@ -290,7 +287,7 @@ std::vector<Actuation> Variables::part_changes(const std::vector<Place>& base) c
 std::vector<Index> Variables::measured() const {
   std::vector<Index> measured;
   for (Index a = 0; a < own_actuators_; ++a) {
-    const Actuator& actuator = model_->actuators[static_cast<std::size_t>(a)];
+    const Actuator& actuator = model_->actuators[a];
     const bool told =
         std::any_of(variables_.begin(), variables_.end(), [&](const Variable& v) { return v.actuator == a; });
     if (!told && actuator.low < actuator.high && drives(actuator)) measured.push_back(a);
@@ -300,14 +297,12 @@ std::vector<Index> Variables::measured() const {
 
 Eigen::VectorXd Variables::means() const {
   Eigen::VectorXd means(numbers());
-  for (Index i = 0; i < numbers(); ++i) means[i] = variables_[static_cast<std::size_t>(i)].mean;
+  for (Index i = 0; i < numbers(); ++i) means[i] = variables_[i].mean;
   return means;
 }
 
 Eigen::VectorXd Variables::clamped(Eigen::VectorXd values) const {
-  for (Index i = 0; i < numbers(); ++i)
-    values[i] = std::clamp(values[i], variables_[static_cast<std::size_t>(i)].low,
-                           variables_[static_cast<std::size_t>(i)].high);
+  for (Index i = 0; i < numbers(); ++i) values[i] = std::clamp(values[i], variables_[i].low, variables_[i].high);
   return values;
 }
 

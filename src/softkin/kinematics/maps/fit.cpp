@@ -59,8 +59,7 @@ RowMatrix candidates(Index variables) {
   for (Index j = 0; j < variables; ++j)
     for (const double end : {-1.0, 1.0}) points(row++, j) = end;
   for (Index i = 1; i <= inside; ++i, ++row)
-    for (Index j = 0; j < variables; ++j)
-      points(row, j) = std::cos(pi * radical_inverse(i, primes[static_cast<std::size_t>(j)]));
+    for (Index j = 0; j < variables; ++j) points(row, j) = std::cos(pi * radical_inverse(i, primes[j]));
   return points;
 }
 

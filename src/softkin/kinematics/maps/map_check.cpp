@@ -45,8 +45,7 @@ class Checker {
     Sample sample;
     sample.commands = commands;
     Actuation actuation = data_.actuation;
-    for (Index i = 0; i < commands.size(); ++i)
-      actuation[data_.inputs[static_cast<std::size_t>(i)].actuator] = commands[i];
+    for (Index i = 0; i < commands.size(); ++i) actuation[data_.inputs[i].actuator] = commands[i];
     Equilibrium found = statics_.solve(actuation, place ? start_(*place, commands) : statics_.rest(),
                                        one_of_many(options_.statics), crew_.patience());
     if (found.report.stopped) return std::nullopt;
@@ -97,7 +96,7 @@ MapCheck summed_up(const std::vector<Compared>& all, std::size_t outputs) {
 std::string verdict(const MapData& data, const MapOptions& options, const std::vector<Compared>& all) {
   for (std::size_t q = 0; q < data.outputs.size(); ++q) {
     const MapOutput& output = data.outputs[q];
-    const double largest = data.check.largest[static_cast<Index>(q)];
+    const double largest = data.check.largest[q];
     if (largest > output.accuracy)
       return output.name + " was " + number(largest, 3) + " " + output.unit + " off at a check, " +
              number(output.accuracy, 3) + " was asked for";
@@ -120,9 +119,8 @@ std::optional<std::string> check_map(const Model& model, const Statics& statics,
   std::vector<Compared> all(static_cast<std::size_t>(options.checks));
   Checker checker(model, statics, options, start, crew, data);
   const Index key = -1 - round;
-  const bool done = crew.each(options.checks, {data.equilibria, 0, 0, "checking"}, &MapProgress::checks, [&](Index i) {
-    return checker.check_at(commands.row(i), key, i, all[static_cast<std::size_t>(i)]);
-  });
+  const bool done = crew.each(options.checks, {data.equilibria, 0, 0, "checking"}, &MapProgress::checks,
+                              [&](Index i) { return checker.check_at(commands.row(i), key, i, all[i]); });
   if (!done) return std::nullopt;
   data.check = summed_up(all, data.outputs.size());
   data.check.seed = seed;

@@ -28,7 +28,7 @@ PieceFit::PieceFit(const MapData& data, const Wanted& wanted, MapPiece& piece)
       error_(std::numeric_limits<double>::infinity()) {
   Chart whole{Eigen::VectorXd(variables_), Eigen::VectorXd(variables_)};
   for (Index j = 0; j < variables_; ++j) {
-    const MapInput& input = data.inputs[static_cast<std::size_t>(piece.inputs[static_cast<std::size_t>(j)])];
+    const MapInput& input = data.inputs[piece.inputs[j]];
     whole.low[j] = input.low;
     whole.high[j] = input.high;
   }
@@ -56,7 +56,7 @@ Observation PieceFit::observation(const Chart& chart, const Sample& sample) cons
     made.slopes.col(q) = unit * half.cwiseProduct(sample.slopes.col(q));
   }
   for (Index p = 0; shape && p < static_cast<Index>(wanted_.probes.size()); ++p) {
-    const Index vertex = wanted_.probes[static_cast<std::size_t>(p)];
+    const Index vertex = wanted_.probes[p];
     for (Index k = 0; k < 3; ++k) {
       const Index q = outputs + 3 * p + k;
       made.values[q] = sample.state.positions(vertex, k) / wanted_.shape_mm;
@@ -95,9 +95,7 @@ RowMatrix PieceFit::next() {
     return commands;
   }
   RowMatrix known(static_cast<Index>(chart.samples.size()), variables_);
-  for (Index i = 0; i < known.rows(); ++i)
-    known.row(i) =
-        scaled(chart, samples_[static_cast<std::size_t>(chart.samples[static_cast<std::size_t>(i)])].commands);
+  for (Index i = 0; i < known.rows(); ++i) known.row(i) = scaled(chart, samples_[chart.samples[i]].commands);
   const Terms terms = terms_of(chart, static_cast<Index>(known.rows()) + batch);
   const RowMatrix points = worst_known(terms, chart.decay, known, batch);
   const Eigen::RowVectorXd half = 0.5 * (chart.high - chart.low), middle = 0.5 * (chart.high + chart.low);
@@ -117,7 +115,7 @@ double PieceFit::error_of(const Chart& chart, const Sample& sample) const {
 void PieceFit::fit_chart(Chart& chart) const {
   std::vector<Observation> observations;
   for (const Index s : chart.samples) {
-    const Sample& sample = samples_[static_cast<std::size_t>(s)];
+    const Sample& sample = samples_[s];
     if (sample.is_good()) observations.push_back(observation(chart, sample));
   }
   chart.polynomials = fit(terms_of(chart, static_cast<Index>(observations.size())), observations, chart.decay);
@@ -138,7 +136,7 @@ void PieceFit::take(std::vector<Sample> samples) {
     chart.samples.push_back(static_cast<Index>(samples_.size()));
     samples_.push_back(std::move(sample));
   }
-  const auto is_good = [&](Index s) { return samples_[static_cast<std::size_t>(s)].is_good(); };
+  const auto is_good = [&](Index s) { return samples_[s].is_good(); };
   const auto good = std::count_if(chart.samples.begin(), chart.samples.end(), is_good);
   if (good < static_cast<std::ptrdiff_t>(chart.samples.size()) || (chart.polynomials.count() > 0 && stagnates(chart)))
     return halve(std::move(chart));
@@ -154,12 +152,12 @@ void PieceFit::take(std::vector<Sample> samples) {
 Index PieceFit::side_of(const Chart& chart) const {
   Eigen::VectorXd score = (chart.high - chart.low).cwiseQuotient(high_ - low_).array().log().matrix() - chart.decay;
   Index bad = 0;
-  for (const Index s : chart.samples) bad += samples_[static_cast<std::size_t>(s)].is_good() ? 0 : 1;
+  for (const Index s : chart.samples) bad += samples_[s].is_good() ? 0 : 1;
   if (bad > 0) {
     for (Index j = 0; j < variables_; ++j) {
       double below = 0, above = 0;
       for (const Index s : chart.samples) {
-        const Sample& sample = samples_[static_cast<std::size_t>(s)];
+        const Sample& sample = samples_[s];
         if (sample.is_good()) continue;
         (sample.commands[j] < 0.5 * (chart.low[j] + chart.high[j]) ? below : above) += 1;
       }
@@ -172,14 +170,14 @@ Index PieceFit::side_of(const Chart& chart) const {
 }
 
 void PieceFit::halve(Chart chart) {
-  const auto is_good = [&](Index s) { return samples_[static_cast<std::size_t>(s)].is_good(); };
+  const auto is_good = [&](Index s) { return samples_[s].is_good(); };
   const bool any = std::any_of(chart.samples.begin(), chart.samples.end(), is_good);
   const bool hopeless = !any && static_cast<Index>(chart.samples.size()) > 2 * variables_;
   if (variables_ == 0 || hopeless || chart.width <= least_width) return;  // a node without a cell: outside the map
   const Index side = side_of(chart);
   const double middle = 0.5 * (chart.low[side] + chart.high[side]);
   const auto first = static_cast<Index>(piece_.tree.size());
-  piece_.tree[static_cast<std::size_t>(chart.node)] = {static_cast<int>(side), middle, first, first + 1, -1};
+  piece_.tree[chart.node] = {static_cast<int>(side), middle, first, first + 1, -1};
   for (const bool upper : {false, true}) {
     Chart half{chart.low, chart.high};
     (upper ? half.low : half.high)[side] = middle;
@@ -187,7 +185,7 @@ void PieceFit::halve(Chart chart) {
     half.decay = chart.decay;
     half.width = 0.5 * chart.width;
     for (const Index s : chart.samples) {
-      const double at = samples_[static_cast<std::size_t>(s)].commands[side];
+      const double at = samples_[s].commands[side];
       if (upper ? at >= middle : at <= middle) half.samples.push_back(s);
     }
     const bool clean = !half.samples.empty() && std::all_of(half.samples.begin(), half.samples.end(), is_good);
@@ -203,7 +201,7 @@ void PieceFit::keep(Chart chart) {
   const auto outputs = static_cast<Index>(data_.outputs.size());
   RowMatrix coefficients = chart.polynomials.coefficients().leftCols(outputs);
   for (Index q = 0; q < outputs; ++q) coefficients.col(q) *= wanted_.accuracy[q];
-  piece_.tree[static_cast<std::size_t>(chart.node)].cell = static_cast<Index>(piece_.cells.size());
+  piece_.tree[chart.node].cell = static_cast<Index>(piece_.cells.size());
   piece_.cells.push_back({chart.low, chart.high, {chart.polynomials.terms(), std::move(coefficients)}, {}});
   done_.push_back(std::move(chart));
 }
@@ -215,7 +213,7 @@ const Sample* PieceFit::nearest(const Eigen::VectorXd& commands) const {
     if (!sample.is_good()) continue;
     double distance = 0;
     for (Index j = 0; j < variables_; ++j) {
-      const MapInput& input = data_.inputs[static_cast<std::size_t>(piece_.inputs[static_cast<std::size_t>(j)])];
+      const MapInput& input = data_.inputs[piece_.inputs[j]];
       const double share = (sample.commands[j] - commands[j]) / (input.high - input.low);
       distance += share * share;
     }
@@ -234,7 +232,7 @@ void PieceFit::fit_modes(const MapShape& shape) {
     const Eigen::VectorXf half = (0.5 * (chart.high - chart.low)).cast<float>();
     std::vector<Observation> observations;
     for (const Index s : chart.samples) {
-      const Sample& sample = samples_[static_cast<std::size_t>(s)];
+      const Sample& sample = samples_[s];
       if (!sample.is_good()) continue;
       const Points& at = sample.state.positions;
       const Eigen::VectorXf away = Eigen::Map<const Eigen::VectorXd>(at.data(), at.size()).cast<float>() - shape.mean;

@@ -17,7 +17,7 @@ Model of_piece(const Model& model, const MapData& data, const MapPiece& piece) {
     Actuator& actuator = changed.actuators[a];
     if (c == data.cables.size() || data.cables[c].actuator != static_cast<Index>(a)) continue;
     if (piece.taut[c++]) {
-      actuator.pushes = true;
+      std::get<CableDrive>(actuator.drive).pushes = true;
     } else {
       actuator.control = Control::load;
       actuator.low = actuator.high = actuator.rest = 0;
@@ -28,8 +28,7 @@ Model of_piece(const Model& model, const MapData& data, const MapPiece& piece) {
 
 /// A cable that goes slack where it would push.
 bool is_cable(const Model& model, const Actuator& actuator) {
-  return model.formulation == Formulation::physical && actuator.kind == ActuatorKind::cable &&
-         actuator.control == Control::ratio;
+  return model.formulation == Formulation::physical && actuator.is<CableDrive>() && actuator.control == Control::ratio;
 }
 
 /// Does a physical robot answer with a load?
@@ -66,7 +65,7 @@ MapData outline_of(const Model& model) {
     const auto input = static_cast<Index>(data.inputs.size());
     const auto number = static_cast<Index>(a);
     if (answers_with_load(model, actuator)) {
-      const bool cable = actuator.kind == ActuatorKind::cable;
+      const bool cable = actuator.is<CableDrive>();
       data.outputs.push_back({actuator.name + (cable ? "_tension" : "_pressure"), cable ? "N" : "kPa"});
     }
     if (answers_with_ratio(model, actuator)) data.outputs.push_back({actuator.name + "_ratio", ""});
@@ -95,7 +94,7 @@ Eigen::VectorXd outputs_of(const Model& model, const MapData& data, const State&
     // a cable of a piece that is slack there answers as the robot's does
     const bool cable = c < data.cables.size() && data.cables[c].actuator == static_cast<Index>(a);
     if (cable) ++c;
-    if (cable || answers_with_load(model, actuator)) values[next++] = state.multipliers[static_cast<Index>(a)];
+    if (cable || answers_with_load(model, actuator)) values[next++] = state.multipliers[a];
     if (cable || answers_with_ratio(model, actuator)) values[next++] = achieved_ratio(model, actuator, state.positions);
   }
   return values;
@@ -103,7 +102,7 @@ Eigen::VectorXd outputs_of(const Model& model, const MapData& data, const State&
 
 PieceSolver::PieceSolver(const Model& model, const MapData& data, const MapPiece& piece)
     : model_(of_piece(model, data, piece)), data_(data), statics_(model_) {
-  for (const Index input : piece.inputs) actuators_.push_back(data.inputs[static_cast<std::size_t>(input)].actuator);
+  for (const Index input : piece.inputs) actuators_.push_back(data.inputs[input].actuator);
 }
 
 std::optional<Sample> PieceSolver::solve(const Eigen::VectorXd& commands, const Sample* nearest,
@@ -112,7 +111,7 @@ std::optional<Sample> PieceSolver::solve(const Eigen::VectorXd& commands, const 
   Sample sample;
   sample.commands = commands;
   Actuation actuation = model_.rest_actuation();
-  for (std::size_t j = 0; j < actuators_.size(); ++j) actuation[actuators_[j]] = commands[static_cast<Index>(j)];
+  for (std::size_t j = 0; j < actuators_.size(); ++j) actuation[actuators_[j]] = commands[j];
   Equilibrium found = statics_.solve(actuation, nearest ? nearest->state : statics_.rest(), own, progress);
   if (found.report.stopped) return std::nullopt;
   // beyond a snap shapes are others than those from where they were reached
@@ -135,9 +134,9 @@ void PieceSolver::add_slopes(const Sensitivity& sensitivity, Sample& sample) con
   sample.slopes.resize(variables, sample.values.size());
   sample.moves.resize(3 * model_.rest.rows(), variables);
   for (Index j = 0; j < variables; ++j) {
-    const Index a = actuators_[static_cast<std::size_t>(j)];
-    const Actuator& actuator = model_.actuators[static_cast<std::size_t>(a)];
-    const Points& moves = sensitivity.positions[static_cast<std::size_t>(a)];
+    const Index a = actuators_[j];
+    const Actuator& actuator = model_.actuators[a];
+    const Points& moves = sensitivity.positions[a];
     const double step = share * (actuator.high - actuator.low);
     State before = sample.state, after = sample.state;
     before.positions -= step * moves;

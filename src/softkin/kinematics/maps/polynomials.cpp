@@ -46,8 +46,7 @@ struct Table {
 std::vector<int> highest_degrees(const Terms& terms) {
   std::vector<int> highest(static_cast<std::size_t>(terms.cols()), 0);
   for (Index t = 0; t < terms.rows(); ++t)
-    for (Index j = 0; j < terms.cols(); ++j)
-      highest[static_cast<std::size_t>(j)] = std::max<int>(highest[static_cast<std::size_t>(j)], terms(t, j));
+    for (Index j = 0; j < terms.cols(); ++j) highest[j] = std::max<int>(highest[j], terms(t, j));
   return highest;
 }
 
@@ -66,7 +65,7 @@ Terms least_terms(const Eigen::VectorXd& decay, Index count) {
     for (std::size_t j = 0; j < variables; ++j) {
       Degrees above = degrees;
       if (++above[j] > highest_degree || !seen.insert(above).second) continue;
-      next.push({sum + decay[static_cast<Index>(j)], above});
+      next.push({sum + decay[j], above});
     }
   }
   Terms terms(static_cast<Index>(chosen.size()), decay.size());

@@ -21,7 +21,7 @@ MapShape shape_modes(const std::vector<const Sample*>& samples, double accuracy_
   const auto count = static_cast<Index>(samples.size());
   Eigen::MatrixXf left(samples.front()->state.positions.size(), count);  // what the modes so far do not tell
   for (Index s = 0; s < count; ++s) {
-    const Points& at = samples[static_cast<std::size_t>(s)]->state.positions;
+    const Points& at = samples[s]->state.positions;
     left.col(s) = Eigen::Map<const Eigen::VectorXd>(at.data(), at.size()).cast<float>();
   }
   MapShape shape;
@@ -52,7 +52,7 @@ RowMatrix random_commands(const MapData& data, Index count, std::uint64_t seed) 
   RowMatrix commands(count, static_cast<Index>(data.inputs.size()));
   for (Index i = 0; i < count; ++i)
     for (Index j = 0; j < static_cast<Index>(data.inputs.size()); ++j) {
-      const MapInput& input = data.inputs[static_cast<std::size_t>(j)];
+      const MapInput& input = data.inputs[j];
       const double share = static_cast<double>(generator() >> 11) / steps;
       commands(i, j) = input.low + share * (input.high - input.low);
     }

@@ -189,6 +189,7 @@ const std::vector<Index>& chamber_region(const Compilation& c, const ActuatorSpe
 /// The elements of Eq. (8).
 void fill_chamber(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
   Model& model = c.model;
+  auto& chamber = std::get<ChamberDrive>(actuator.drive);
   std::vector<Index> found;
   if (spec.region) {
     found = in_model(spec, chamber_region(c, spec), c.tetrahedron_at, "tetrahedron");
@@ -199,14 +200,15 @@ void fill_chamber(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) 
       refuse(spec,
              "has no element: the target-shape formulation needs the chamber meshed, and no element lies inside "
              "the surface");
-    if (spec.surface) actuator.surface = std::move(surface.triangles);
+    if (spec.surface) chamber.surface = std::move(surface.triangles);
   }
-  take(c, spec, found, model.tetrahedron_roles, c.tetrahedron_of, "tetrahedron", actuator.tetrahedra);
-  for (const Index i : actuator.tetrahedra) actuator.rest_measure += model.tetrahedron_volumes[i];
+  take(c, spec, found, model.tetrahedron_roles, c.tetrahedron_of, "tetrahedron", chamber.tetrahedra);
+  for (const Index i : chamber.tetrahedra) actuator.rest_measure += model.tetrahedron_volumes[i];
 }
 
 /// Each as a chamber of its own would be; one cavity of all.
 void fill_connected(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
+  auto& all = std::get<ChamberDrive>(actuator.drive);
   double volume = 0;
   for (const std::string& name : spec.connected) {
     ActuatorSpec one = spec;
@@ -219,11 +221,13 @@ void fill_connected(Compilation& c, const ActuatorSpec& spec, Actuator& actuator
       take(c, one, in_model(one, chamber_region(c, one), c.chamber_at, "tetrahedron"), c.chamber_roles, c.chamber_of,
            "tetrahedron", elements);
     }
-    Actuator chamber;
-    compile_cavity(c, one, elements, chamber);
-    actuator.cavity.insert(actuator.cavity.end(), chamber.cavity.begin(), chamber.cavity.end());
-    actuator.connected.push_back({name, static_cast<Index>(actuator.cavity.size())});
-    volume += chamber.rest_measure;
+    Actuator single;
+    single.drive = ChamberDrive{};
+    compile_cavity(c, one, elements, single);
+    const std::vector<CavityFace>& cavity = single.as<ChamberDrive>()->cavity;
+    all.cavity.insert(all.cavity.end(), cavity.begin(), cavity.end());
+    all.connected.push_back({name, static_cast<Index>(all.cavity.size())});
+    volume += single.rest_measure;
   }
   actuator.rest_measure = volume;
 }
@@ -246,23 +250,23 @@ double area(const Points& vertices, Index i, Index j, Index k) {
 /// The elements of Eq. (7), and their areas at rest.
 void fill_membrane(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
   Model& model = c.model;
+  std::vector<Index>& prisms = std::get<DeaDrive>(actuator.drive).prisms;
   const Region& region = c.regions.find(*spec.region, spec.origin);
   if (!region.tetrahedra.empty())
     refuse(spec, "is a dea and needs prisms, but region '" + *spec.region + "' has " +
                      counted(region.tetrahedra.size(), "tetrahedron", "tetrahedra"));
   if (region.prisms.empty()) refuse(spec, "is a dea and needs prisms, but region '" + *spec.region + "' has none");
-  take(c, spec, in_model(spec, region.prisms, c.prism_at, "prism"), model.prism_roles, c.prism_of, "prism",
-       actuator.prisms);
-  for (const Index i : actuator.prisms) {
+  take(c, spec, in_model(spec, region.prisms, c.prism_at, "prism"), model.prism_roles, c.prism_of, "prism", prisms);
+  for (const Index i : prisms) {
     const Prism& p = model.prisms[i];
     actuator.rest_measure += 0.5 * (area(model.rest, p[0], p[1], p[2]) + area(model.rest, p[3], p[4], p[5]));
   }
 }
 
 /// Shares of the voltage, by the place of each prism among the actuator's.
-void fill_shares(const Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
+void fill_shares(const Compilation& c, const ActuatorSpec& spec, DeaDrive& dea) {
   if (!spec.shares) {
-    actuator.shares.assign(actuator.prisms.size(), 1);
+    dea.shares.assign(dea.prisms.size(), 1);
     return;
   }
   constexpr double none = -1;
@@ -281,12 +285,30 @@ void fill_shares(const Compilation& c, const ActuatorSpec& spec, Actuator& actua
       fail("does not belong to actuator '" + spec.name + "'");
     shares[prism] = share;
   }
-  for (const Index e : actuator.prisms) {
+  for (const Index e : dea.prisms) {
     const Index prism = c.prism_of[e];
     if (shares[prism] == none)
       refuse(spec, "has no share of the voltage for prism " + std::to_string(prism) + " (from 0)");
-    actuator.shares.push_back(shares[prism]);
+    dea.shares.push_back(shares[prism]);
   }
+}
+
+/// Of the spec's kind, without what is compiled.
+Drive drive_of(const ActuatorSpec& spec) {
+  switch (spec.kind) {
+    case ActuatorKind::cable:
+      return CableDrive{.friction = spec.friction,
+                        .sheath = spec.sheath_friction * spec.sheath_turns_degrees * std::numbers::pi / 180};
+    case ActuatorKind::dea:
+      return DeaDrive{.prestretch = spec.prestretch};
+    case ActuatorKind::pneumatic:
+      return ChamberDrive{};
+    case ActuatorKind::magnetic:
+      return MagneticDrive{};
+    case ActuatorKind::growth:
+      return GrowthDrive{};
+  }
+  refuse(spec, "is of no kind");
 }
 
 }  // namespace
@@ -301,24 +323,21 @@ void compile_actuator_elements(Compilation& c) {
     check_members(spec, c.spec.formulation);
     Actuator actuator;
     actuator.name = spec.name;
-    actuator.kind = spec.kind;
+    actuator.drive = drive_of(spec);
     actuator.control = spec.control;
     actuator.low = spec.low;
     actuator.high = spec.high;
     actuator.rest = spec.rest;
     actuator.weight = spec.weight;
     actuator.distribution = spec.distribution;
-    actuator.prestretch = spec.prestretch;
     actuator.factor = spec.factor;
     actuator.offset = spec.offset;
     actuator.backlash = spec.backlash;
-    actuator.friction = spec.friction;
-    actuator.sheath = spec.sheath_friction * spec.sheath_turns_degrees * std::numbers::pi / 180;
     actuator.curve = spec.curve;
     actuator.branch = spec.branch;
     if (spec.kind == ActuatorKind::pneumatic) fill_pneumatic(c, spec, actuator);
     if (spec.kind == ActuatorKind::dea) fill_membrane(c, spec, actuator);
-    if (under_voltage(actuator)) fill_shares(c, spec, actuator);
+    if (under_voltage(actuator)) fill_shares(c, spec, std::get<DeaDrive>(actuator.drive));
     if (!spec.filling) note_rest(c, actuator);
     c.model.actuators.push_back(std::move(actuator));
   }
@@ -329,7 +348,7 @@ void compile_actuator_points(Compilation& c) {
     const ActuatorSpec& spec = c.spec.actuators[i];
     Actuator& actuator = c.model.actuators[i];
     if (spec.kind == ActuatorKind::cable) compile_cable(c, spec, actuator);
-    if (spec.surface && actuator.cavity.empty()) {
+    if (spec.surface && actuator.as<ChamberDrive>()->cavity.empty()) {
       if (body_of(c, spec.robot).embedder.empty())
         refuse(spec, "has a surface but the robot has no body that could hold it");
       embed_surface(c, spec, actuator);

@@ -65,7 +65,7 @@ std::optional<NearestFace> nearest_face(const Body& body, const Points& rest, co
   Index nearest = 0;
   const Vec3 at = SurfaceTree(rest, corners).nearest(point, &nearest);
   if (!body.embedder.empty() && body.embedder.embed(point).distance_mm <= (point - at).norm()) return std::nullopt;
-  return NearestFace{body.sheets[static_cast<std::size_t>(nearest)], at};
+  return NearestFace{body.sheets[nearest], at};
 }
 
 }  // namespace

@@ -16,7 +16,7 @@ std::string segment_text(std::size_t segment) {
 }
 
 /// Where the cable is guided on the straight way to `end` [mm]: at most `spacing` apart, but nowhere outside the body.
-void add_guides(Compilation& c, const ActuatorSpec& spec, const Vec3& end, Actuator& cable) {
+void add_guides(Compilation& c, const ActuatorSpec& spec, const Vec3& end, CableDrive& cable) {
   const Vec3 start = cable.points.back().at(c.model.rest);
   const double pieces = std::ceil((end - start).norm() / spec.spacing * (1 - 1e-12));
   if (pieces > most_guides)
@@ -29,7 +29,7 @@ void add_guides(Compilation& c, const ActuatorSpec& spec, const Vec3& end, Actua
 }
 
 /// The cable's points at rest, those by which its spacing guides it between the given ones among them.
-std::vector<Vec3> embed_points(Compilation& c, const ActuatorSpec& spec, Actuator& cable) {
+std::vector<Vec3> embed_points(Compilation& c, const ActuatorSpec& spec, CableDrive& cable) {
   if (spec.points.size() < 2) refuse(spec, "is a cable and needs at least two points");
   for (std::size_t i = 0; i < spec.points.size(); ++i) {
     EmbeddedPoint point =
@@ -94,7 +94,7 @@ Vec3 find_apex(const Compilation& c, const ActuatorSpec& spec, const SurfaceTree
                    " with no body straight across it: name its third corner in `apexes`");
 }
 
-void find_apexes(Compilation& c, const ActuatorSpec& spec, const std::vector<Vec3>& points, Actuator& cable) {
+void find_apexes(Compilation& c, const ActuatorSpec& spec, const std::vector<Vec3>& points, CableDrive& cable) {
   const Body& body = body_of(c, spec.robot);
   const SurfaceTree boundary(c.model.rest, triangulated(boundary_of(body.tetrahedra, body.prisms)));
   const Vec3 centroid = body_centroid(c, body);
@@ -102,7 +102,7 @@ void find_apexes(Compilation& c, const ActuatorSpec& spec, const std::vector<Vec
     gap.apex = body.embedder.embed(find_apex(c, spec, boundary, centroid, points, gap.segment));
 }
 
-void take_apexes(Compilation& c, const ActuatorSpec& spec, const std::vector<Vec3>& points, Actuator& cable) {
+void take_apexes(Compilation& c, const ActuatorSpec& spec, const std::vector<Vec3>& points, CableDrive& cable) {
   if (spec.apexes.size() != cable.gaps.size())
     refuse(spec, "has " + counted(cable.gaps.size(), "gap") + " but " + counted(spec.apexes.size(), "apex", "apexes") +
                      ": it needs one for each, in order");
@@ -118,9 +118,10 @@ void take_apexes(Compilation& c, const ActuatorSpec& spec, const std::vector<Vec
 
 }  // namespace
 
-void compile_cable(Compilation& c, const ActuatorSpec& spec, Actuator& cable) {
+void compile_cable(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
+  auto& cable = std::get<CableDrive>(actuator.drive);
   const std::vector<Vec3> points = embed_points(c, spec, cable);
-  for (std::size_t i = 0; i + 1 < points.size(); ++i) cable.rest_measure += (points[i + 1] - points[i]).norm();
+  for (std::size_t i = 0; i + 1 < points.size(); ++i) actuator.rest_measure += (points[i + 1] - points[i]).norm();
   // physical: a constraint on its length, without actuation elements
   if (c.spec.formulation == Formulation::physical) return;
   for (const Index segment : free_segments(c, body_of(c, spec.robot), points)) cable.gaps.push_back({segment, {}});
@@ -129,12 +130,12 @@ void compile_cable(Compilation& c, const ActuatorSpec& spec, Actuator& cable) {
   else
     take_apexes(c, spec, points, cable);
 
-  double inside = cable.rest_measure;
+  double inside = actuator.rest_measure;
   for (const CableGap& gap : cable.gaps) inside -= (points[gap.segment + 1] - points[gap.segment]).norm();
-  const double least = inside / cable.rest_measure;
-  if (cable.low < least - 1e-12)
-    refuse(spec, "has a range that begins at " + number(cable.low) + ", but its pieces inside the body alone make " +
-                     number(least) + " of its length of " + number(cable.rest_measure) + " mm");
+  const double least = inside / actuator.rest_measure;
+  if (actuator.low < least - 1e-12)
+    refuse(spec, "has a range that begins at " + number(actuator.low) + ", but its pieces inside the body alone make " +
+                     number(least) + " of its length of " + number(actuator.rest_measure) + " mm");
 }
 
 }  // namespace softkin

@@ -10,7 +10,7 @@ namespace softkin {
 namespace {
 
 void add_faces(const Compilation& c, const ActuatorSpec& spec, const std::vector<Triangle>& triangles,
-               Actuator& actuator) {
+               ChamberDrive& chamber) {
   const EdgeTable& edges = c.regions.edges();
   for (const Triangle& corners : triangles) {
     const CavityFace face = face_of(c, corners);
@@ -18,14 +18,14 @@ void add_faces(const Compilation& c, const ActuatorSpec& spec, const std::vector
       refuse(spec, "has a wall with a face that is none of an element of order 2: vertices " +
                        std::to_string(corners[0]) + ", " + std::to_string(corners[1]) + " and " +
                        std::to_string(corners[2]) + " (from 0)");
-    actuator.cavity.push_back(face);
+    chamber.cavity.push_back(face);
   }
 }
 
 // What of a cavity's boundary is not the body's cannot move.
-void check_contact(Compilation& c, const ActuatorSpec& spec, const Actuator& actuator) {
+void check_contact(Compilation& c, const ActuatorSpec& spec, const ChamberDrive& chamber) {
   std::set<Index> vertices;
-  for (const CavityFace& face : actuator.cavity)
+  for (const CavityFace& face : chamber.cavity)
     for (const Index v : nodes_of(face)) vertices.insert(v);
   const auto loose = static_cast<std::size_t>(
       std::count_if(vertices.begin(), vertices.end(), [&](Index v) { return !c.model.used[v]; }));
@@ -131,9 +131,9 @@ bool is_plate(const Model& model, const CavityFace& face, bool loose) {
   return false;
 }
 
-void check_openings(const Compilation& c, const ActuatorSpec& spec, const Actuator& actuator) {
+void check_openings(const Compilation& c, const ActuatorSpec& spec, const ChamberDrive& chamber) {
   const Model& model = c.model;
-  const std::vector<CavityFace> open = open_faces(model, c.sheets, actuator.cavity);
+  const std::vector<CavityFace> open = open_faces(model, c.sheets, chamber.cavity);
   const bool loose = std::any_of(open.begin(), open.end(), [&](const CavityFace& face) {
     return std::any_of(face.corners.begin(), face.corners.end(), [&](Index v) { return !model.used[v]; });
   });
@@ -156,17 +156,17 @@ void check_openings(const Compilation& c, const ActuatorSpec& spec, const Actuat
 }
 
 /// An empty bag has no volume that others could be compared with.
-void take_as_flat(const Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
+void take_as_flat(const Compilation& c, const ActuatorSpec& spec, ChamberDrive& chamber, double& rest_measure) {
   constexpr double flat = 1e-9, mm3_of_a_mL = 1000;
   double area = 0;
-  for (const CavityFace& face : actuator.cavity) area += triangle_area(c.model.rest, face.corners);
-  if (std::abs(actuator.rest_measure) > flat * std::pow(area, 1.5)) return;
+  for (const CavityFace& face : chamber.cavity) area += triangle_area(c.model.rest, face.corners);
+  if (std::abs(rest_measure) > flat * std::pow(area, 1.5)) return;
   if (spec.control == Control::ratio)
     refuse(spec,
            "is flat at rest, so that no volume is a ratio of the one there: command its pressure (control: "
            "pressure) or what is in it (control: gas or liquid)");
-  actuator.flat = true;
-  actuator.rest_measure = mm3_of_a_mL;
+  chamber.flat = true;
+  rest_measure = mm3_of_a_mL;
 }
 
 }  // namespace
@@ -189,30 +189,33 @@ void take_empty_space(Compilation& c, const ActuatorSpec& spec, std::size_t spac
   if (owner >= 0)
     refuse(spec, "and actuator '" + c.model.actuators[owner].name + "' both take the empty space of " + text_of(taken));
   owner = taker;
-  add_faces(c, spec, taken.triangles, actuator);
-  actuator.rest_measure = enclosed_volume(c.model.rest, actuator.cavity);
+  auto& chamber = std::get<ChamberDrive>(actuator.drive);
+  add_faces(c, spec, taken.triangles, chamber);
+  actuator.rest_measure = enclosed_volume(c.model.rest, chamber.cavity);
 }
 
 void compile_cavity(Compilation& c, const ActuatorSpec& spec, const std::vector<Index>& elements, Actuator& actuator) {
   if (spec.surface) return select_cavity(c, spec, actuator);
   if (!spec.region && !spec.wall) return take_only_space(c, spec, actuator);
+  auto& chamber = std::get<ChamberDrive>(actuator.drive);
   if (spec.region) {
-    add_faces(c, spec, boundary_of_chamber(c, elements), actuator);
+    add_faces(c, spec, boundary_of_chamber(c, elements), chamber);
   } else {
     const TriangleSurface wall = checked_wall(c, spec);
     check_filling(c, spec, wall);
-    add_faces(c, spec, wall.triangles, actuator);
+    add_faces(c, spec, wall.triangles, chamber);
   }
-  check_contact(c, spec, actuator);
-  actuator.rest_measure = enclosed_volume(c.model.rest, actuator.cavity);
-  take_as_flat(c, spec, actuator);
+  check_contact(c, spec, chamber);
+  actuator.rest_measure = enclosed_volume(c.model.rest, chamber.cavity);
+  take_as_flat(c, spec, chamber, actuator.rest_measure);
 }
 
 void check_openings(const Compilation& c) {
   for (std::size_t i = 0; i < c.spec.actuators.size(); ++i) {
     const ActuatorSpec& spec = c.spec.actuators[i];
-    if (!c.model.actuators[i].cavity.empty() && (spec.region || spec.wall || !spec.connected.empty()))
-      check_openings(c, spec, c.model.actuators[i]);
+    const auto* chamber = c.model.actuators[i].as<ChamberDrive>();
+    if (chamber && !chamber->cavity.empty() && (spec.region || spec.wall || !spec.connected.empty()))
+      check_openings(c, spec, *chamber);
   }
 }
 

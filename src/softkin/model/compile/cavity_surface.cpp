@@ -215,13 +215,14 @@ void select_cavity(Compilation& c, const ActuatorSpec& spec, Actuator& actuator)
   if (!matches.empty()) return;
   for (const Shell& shell : shells) refuse_inside_space(c, spec, shell);
   check_filling(c, spec, surface);
-  actuator.surface = std::move(surface.triangles);
+  std::get<ChamberDrive>(actuator.drive).surface = std::move(surface.triangles);
 }
 
 void embed_surface(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
   const bool physical = c.spec.formulation == Formulation::physical;
   const Body& body = body_of(c, spec.robot);
-  TriangleSurface surface{spec.surface->vertices, actuator.surface};
+  auto& chamber = std::get<ChamberDrive>(actuator.drive);
+  TriangleSurface surface{spec.surface->vertices, chamber.surface};
   if (physical) {
     try {
       surface = refined(
@@ -232,18 +233,18 @@ void embed_surface(Compilation& c, const ActuatorSpec& spec, Actuator& actuator)
                        "; mesh the chamber and name it as `region` or `void`");
     }
   }
-  actuator.surface = surface.triangles;
-  actuator.points.reserve(static_cast<std::size_t>(surface.vertices.rows()));
+  chamber.surface = surface.triangles;
+  chamber.points.reserve(static_cast<std::size_t>(surface.vertices.rows()));
   std::size_t outside = 0;
   double farthest = 0;
   for (Index i = 0; i < surface.vertices.rows(); ++i) {
     const Vec3 vertex = vertex_at(surface.vertices, i);
     try {
-      actuator.points.push_back(body.embedder.embed(vertex));
+      chamber.points.push_back(body.embedder.embed(vertex));
     } catch (const InvalidInput& error) {
       refuse(spec, "has a surface whose point " + point_text(vertex) + " mm cannot be embedded: " + error.what());
     }
-    const double distance = actuator.points.back().distance_mm;
+    const double distance = chamber.points.back().distance_mm;
     if (!(distance > 1e-6 * c.model.diagonal_mm)) continue;
     farthest = std::max(farthest, distance);
     ++outside;
@@ -258,8 +259,8 @@ void embed_surface(Compilation& c, const ActuatorSpec& spec, Actuator& actuator)
                             " mm outside the body and follow" + (outside == 1 ? "s" : "") + " its nearest elements.");
   if (!physical) return;
   Points embedded(surface.vertices.rows(), 3);
-  for (Index i = 0; i < embedded.rows(); ++i) embedded.row(i) = actuator.points[i].at(c.model.rest).transpose();
-  actuator.rest_measure = enclosed_volume(embedded, actuator.surface);
+  for (Index i = 0; i < embedded.rows(); ++i) embedded.row(i) = chamber.points[i].at(c.model.rest).transpose();
+  actuator.rest_measure = enclosed_volume(embedded, chamber.surface);
 }
 
 }  // namespace softkin

@@ -180,7 +180,7 @@ void compile_feet(Compilation& c) {
     c.model.feet.push_back({marker_of(c.model, spec), spec.forward, spec.backward});
   }
   for (std::size_t f = 0; f < feet.size(); ++f)
-    if (!c.model.markers[static_cast<std::size_t>(c.model.feet[f].marker)].arms.empty())
+    if (!c.model.markers[c.model.feet[f].marker].arms.empty())
       throw InvalidInput(feet[f].origin, "marker '" + feet[f].marker + "' is on a stem: a foot stands on the body");
   if (c.model.feet[0].marker == c.model.feet[1].marker)
     throw InvalidInput(feet[1].origin, "both feet stand at marker '" + feet[1].marker + "'");

@@ -35,9 +35,8 @@ Index robot_of_region(const Compilation& c, const std::string& region, const Ori
   const auto of = [&](Index v) { return robot_of(c.spec, &RobotPart::vertices, v); };
   const Index first = of(vertices.front()), last = of(vertices.back());
   if (first != last)
-    throw InvalidInput(origin, "region '" + region + "' is of robot '" +
-                                   c.spec.robots[static_cast<std::size_t>(first)].name + "' and of robot '" +
-                                   c.spec.robots[static_cast<std::size_t>(last)].name +
+    throw InvalidInput(origin, "region '" + region + "' is of robot '" + c.spec.robots[first].name +
+                                   "' and of robot '" + c.spec.robots[last].name +
                                    "': what touches is of one of them; name a region of each");
   return first;
 }
@@ -108,7 +107,7 @@ class FaceRegion {
  public:
   FaceRegion(const Compilation& c, const Region& region)
       : c_(c), region_(region), held_(static_cast<std::size_t>(c.mesh.vertices.rows())) {
-    for (const Index v : region.vertices) held_[static_cast<std::size_t>(v)] = true;
+    for (const Index v : region.vertices) held_[v] = true;
   }
 
   /// owner  its element; -1: none

@@ -216,7 +216,7 @@ Index robot_of(const RobotSpec& spec, Index RobotPart::*first, Index number) {
 
 std::string robot_text(const RobotSpec& spec, Index RobotPart::*first, Index number) {
   if (spec.robots.empty()) return "";
-  return ", of robot '" + spec.robots[static_cast<std::size_t>(robot_of(spec, first, number))].name + "'";
+  return ", of robot '" + spec.robots[robot_of(spec, first, number)].name + "'";
 }
 
 void compile_elements(Compilation& c) {

@@ -39,7 +39,7 @@ double squared_distance(const Vec3 (&corners)[4], const Barycentric& weights, co
 template <std::size_t K, class Weights>
 void add_weights(const std::array<Index, K>& vertices, const Weights& weights, EmbeddedPoint& embedded) {
   for (std::size_t i = 0; i < K; ++i) {
-    const double weight = weights[static_cast<Eigen::Index>(i)];
+    const double weight = weights[i];
     if (std::abs(weight) < 1e-12) continue;
     embedded.vertices.push_back(vertices[i]);
     embedded.weights.push_back(weight);

@@ -48,8 +48,7 @@ std::shared_ptr<const Families> families_of(const Model& model, const MaterialSp
 void refuse_growth(const Compilation& c, const Families& families, const MaterialSpec& material) {
   const Growers growers = growers_of(c.model);
   const auto grows = [](const std::vector<Index>& elements, const std::vector<Index>& grower) {
-    return !grower.empty() && std::any_of(elements.begin(), elements.end(),
-                                          [&](Index e) { return grower[static_cast<std::size_t>(e)] >= 0; });
+    return !grower.empty() && std::any_of(elements.begin(), elements.end(), [&](Index e) { return grower[e] >= 0; });
   };
   if (grows(families.tetrahedra, growers.tetrahedra) || grows(families.prisms, growers.prisms))
     throw InvalidInput(material.origin, "the material of region '" + material.region +

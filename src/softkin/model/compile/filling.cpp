@@ -53,22 +53,23 @@ void check_connected(const ActuatorSpec& spec, Formulation formulation) {
 
 void compile_filling(Compilation& c, const FillingSpec& spec, Actuator& actuator) {
   constexpr double mm3_per_mL = 1000, MPa_per_kPa = 1e-3;
-  const double syringe = spec.syringe_mL.value_or(0), chamber = actuator.flat ? 0 : actuator.rest_measure;
-  actuator.filling = Filling{.liquid = spec.liquid,
-                             .pushed = spec.syringe_mL.has_value(),
-                             .exponent = spec.exponent,
-                             .compressibility = spec.compressibility,
-                             .atmosphere_MPa = MPa_per_kPa * spec.atmosphere_kPa,
-                             .dead_mm3 = mm3_per_mL * spec.dead_mL,
-                             .syringe_mm3 = mm3_per_mL * syringe,
-                             .chamber_mm3 = chamber};
-  actuator.rest = actuator.filling->rest();
+  const double syringe = spec.syringe_mL.value_or(0), chamber = flat_at_rest(actuator) ? 0 : actuator.rest_measure;
+  const Filling filling{.liquid = spec.liquid,
+                        .pushed = spec.syringe_mL.has_value(),
+                        .exponent = spec.exponent,
+                        .compressibility = spec.compressibility,
+                        .atmosphere_MPa = MPa_per_kPa * spec.atmosphere_kPa,
+                        .dead_mm3 = mm3_per_mL * spec.dead_mL,
+                        .syringe_mm3 = mm3_per_mL * syringe,
+                        .chamber_mm3 = chamber};
+  std::get<ChamberDrive>(actuator.drive).filling = filling;
+  actuator.rest = filling.rest();
   const auto part = [](double mL, const char* where) { return mL > 0 ? ", " + number(mL) + " mL " + where : ""; };
   c.model.notes.push_back("Actuator '" + actuator.name + "' is sealed at rest with " +
-                          number((chamber + actuator.filling->dead_mm3 + actuator.filling->syringe_mm3) / mm3_per_mL) +
-                          " mL of " + (spec.liquid ? "liquid" : "gas") + " under " + number(spec.atmosphere_kPa) +
+                          number((chamber + filling.dead_mm3 + filling.syringe_mm3) / mm3_per_mL) + " mL of " +
+                          (spec.liquid ? "liquid" : "gas") + " under " + number(spec.atmosphere_kPa) +
                           " kPa: " + number(chamber / mm3_per_mL) + " mL in " +
-                          (actuator.connected.empty() ? "its chamber" : "its chambers") +
+                          (connected_chambers(actuator).empty() ? "its chamber" : "its chambers") +
                           part(spec.dead_mL, "of dead volume") + part(syringe, "in its syringe") + ".");
   note_rest(c, actuator);
 }
@@ -89,7 +90,7 @@ void note_rest(Compilation& c, const Actuator& actuator) {
   if (actuator.rest >= actuator.low && actuator.rest <= actuator.high) return;
   c.model.notes.push_back(
       "The range " + interval_text(actuator.low, actuator.high) + " of actuator '" + actuator.name + "' excludes its " +
-      (actuator.kind == ActuatorKind::growth && actuator.control == Control::load
+      (actuator.is<GrowthDrive>() && actuator.control == Control::load
            ? "temperature of reference, " + command_text(actuator, actuator.rest)
        : actuator.control == Control::load ? "load at rest " + number(actuator.rest)
        : actuator.control == Control::filling

@@ -49,15 +49,13 @@ void take_growing(const Compilation& c, const ActuatorSpec& spec, const std::str
   const auto take = [&](const std::vector<Index>& found, const std::vector<Index>& at, std::vector<Index>& grower,
                         std::vector<Index>& elements, const char* kind) {
     for (const Index i : found) {
-      const Index e = at[static_cast<std::size_t>(i)];
+      const Index e = at[i];
       if (e < 0) continue;
-      Index& own = grower[static_cast<std::size_t>(e)];
+      Index& own = grower[e];
       if (own >= 0) {
-        const Index other = c.model.growths[static_cast<std::size_t>(own)]->actuator;
+        const Index other = c.model.growths[own]->actuator;
         const std::string whose =
-            other == growth.actuator
-                ? "lets "
-                : "and actuator '" + c.spec.actuators[static_cast<std::size_t>(other)].name + "' both let ";
+            other == growth.actuator ? "lets " : "and actuator '" + c.spec.actuators[other].name + "' both let ";
         refuse(spec,
                whose + kind + " " + std::to_string(i) + " (from 0) grow" + (other == growth.actuator ? " twice" : ""));
       }
@@ -70,13 +68,13 @@ void take_growing(const Compilation& c, const ActuatorSpec& spec, const std::str
   if (growth.tetrahedra.empty() && growth.prisms.empty())
     refuse(spec, "has nothing that grows: region '" + name + "' holds no element of the body");
   for (const Index e : growth.prisms)
-    if (const Index dea = c.model.prism_roles[static_cast<std::size_t>(e)].actuator; dea >= 0)
-      refuse(spec, "lets the layer of dea '" + c.model.actuators[static_cast<std::size_t>(dea)].name +
+    if (const Index dea = c.model.prism_roles[e].actuator; dea >= 0)
+      refuse(spec, "lets the layer of dea '" + c.model.actuators[dea].name +
                        "' grow, which has an active stretch of its own");
 }
 
 void add_growth(Compilation& c, Index actuator, const GrowthPart& part, Growers& growers) {
-  const ActuatorSpec& spec = c.spec.actuators[static_cast<std::size_t>(actuator)];
+  const ActuatorSpec& spec = c.spec.actuators[actuator];
   auto growth = std::make_shared<Growth>();
   growth->actuator = actuator;
   take_growing(c, spec, part.region, growers, *growth);
@@ -120,7 +118,7 @@ void compile_growth(Compilation& c) {
   Growers growers{std::vector<Index>(c.model.tetrahedra.size(), -1), std::vector<Index>(c.model.prisms.size(), -1)};
   for (std::size_t a = 0; a < c.spec.actuators.size(); ++a) {
     if (!c.spec.actuators[a].growth) continue;
-    c.model.actuators[a].other = static_cast<Index>(c.model.growths.size());
+    c.model.actuators[a].drive = GrowthDrive{static_cast<Index>(c.model.growths.size())};
     for (const GrowthPart& part : c.spec.actuators[a].growth->parts)
       add_growth(c, static_cast<Index>(a), part, growers);
   }

@@ -28,7 +28,7 @@ class Blocks {
     std::vector<Index> first(static_cast<std::size_t>(model_.rest.rows()), -1);
     std::map<Index, std::set<Index>> all;
     each_vertex([&](Index v, Index block) {
-      Index& known = first[static_cast<std::size_t>(v)];
+      Index& known = first[v];
       if (known < 0) known = block;
       if (known != block) all[v].insert({known, block});
     });
@@ -79,8 +79,8 @@ class Blocks {
     std::vector<Face> faces(starts.back());
     std::vector<std::size_t> next(starts.begin(), starts.end() - 1);
     each_face([&](Index least, Index second, Index third, Index element) {
-      const std::size_t begin = starts[static_cast<std::size_t>(least)];
-      std::size_t& end = next[static_cast<std::size_t>(least)];
+      const std::size_t begin = starts[least];
+      std::size_t& end = next[least];
       for (std::size_t i = begin; i < end; ++i)
         if (faces[i].second == second && faces[i].third == third) return sets_.join(element, faces[i].element);
       faces[end++] = {second, third, element};
@@ -91,11 +91,11 @@ class Blocks {
   void join_rigid() {
     std::vector<Index> owner(static_cast<std::size_t>(model_.rest.rows()), -1);
     for (std::size_t r = 0; r < model_.rigid.size(); ++r)
-      for (const Index v : model_.rigid[r].vertices) owner[static_cast<std::size_t>(v)] = static_cast<Index>(r);
+      for (const Index v : model_.rigid[r].vertices) owner[v] = static_cast<Index>(r);
     const auto look = [&](const auto& vertices, std::size_t element) {
       for (const Index v : vertices) {
-        const Index rigid = owner[static_cast<std::size_t>(v)];
-        const auto same = [&](Index w) { return owner[static_cast<std::size_t>(w)] == rigid; };
+        const Index rigid = owner[v];
+        const auto same = [&](Index w) { return owner[w] == rigid; };
         if (rigid < 0 || std::count_if(vertices.begin(), vertices.end(), same) < 3) continue;
         sets_.join(static_cast<Index>(element), static_cast<Index>(elements_) + rigid);
         return;
@@ -157,7 +157,7 @@ Eigen::MatrixXd free_motions(const Model& model, const std::map<Index, Place>& p
     for (int axis = 0; axis < 3; ++axis) {
       std::size_t held = 0;
       for (const Index v : place.vertices)
-        if (model.fixed[static_cast<std::size_t>(v)][axis]) {
+        if (model.fixed[v][axis]) {
           rows.push_back(row());
           add(rows.back(), v, block, axis, 1);
           if (++held == 200) break;  // of a face, far more than it takes

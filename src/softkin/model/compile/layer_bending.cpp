@@ -42,8 +42,7 @@ struct FacePoint {
       const Eigen::Vector2d slope = frame.back * Eigen::Vector2d(point.along_u[k], point.along_v[k]);
       parts.emplace_back();
       parts.back() << slope, own(0, 0), own(1, 1), own(0, 1);
-      for (std::size_t c = 0; c < 3; ++c)
-        second[c] += parts.back()[static_cast<Eigen::Index>(2 + c)] * vertex_at(rest, nodes[i]);
+      for (std::size_t c = 0; c < 3; ++c) second[c] += parts.back()[2 + c] * vertex_at(rest, nodes[i]);
     }
     curvature << frame.normal.dot(second[0]), frame.normal.dot(second[1]), 2 * frame.normal.dot(second[2]);
   }

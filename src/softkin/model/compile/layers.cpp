@@ -121,18 +121,18 @@ std::vector<LayerPlace> carried_places(Compilation& c, const LayerSpec& spec, Tr
   Points embedded(surface.vertices.rows(), 3);
   for (Index i = 0; i < embedded.rows(); ++i) {
     const Vec3 vertex = vertex_at(surface.vertices, i);
-    const double distance = points[static_cast<std::size_t>(i)].distance_mm;
+    const double distance = points[i].distance_mm;
     if (const double most = most_outside(body, c.model.rest, vertex); distance > most)
       refuse_layer(spec, "has a point, " + point_text(vertex) + " mm, that is " + number(distance) +
                              " mm from the body, " + too_far_text(most) + ": check its unit");
-    embedded.row(i) = points[static_cast<std::size_t>(i)].at(c.model.rest).transpose();
+    embedded.row(i) = points[i].at(c.model.rest).transpose();
   }
   std::vector<LayerPlace> places;
   for (const Triangle& t : surface.triangles) {
     const LayerPlace flat = place_on(spec, strain_points(3).front(), {t.begin(), t.end()}, embedded);
     LayerPlace place{{}, {}, {}, flat.area_mm2};
     for (std::size_t corner = 0; corner < 3; ++corner) {
-      const EmbeddedPoint& point = points[static_cast<std::size_t>(t[corner])];
+      const EmbeddedPoint& point = points[t[corner]];
       for (std::size_t i = 0; i < point.vertices.size(); ++i) {
         const auto found = std::find(place.vertices.begin(), place.vertices.end(), point.vertices[i]);
         const auto at = static_cast<std::size_t>(found - place.vertices.begin());
@@ -223,7 +223,7 @@ void use_sheets(Compilation& c) {
     const Region region = c.regions.resolve(*where);
     if (region.dimension != 2) continue;
     for (const Index i : region.triangles) {
-      const Triangle& t = c.mesh.triangles[static_cast<std::size_t>(i)];
+      const Triangle& t = c.mesh.triangles[i];
       if (std::all_of(t.begin(), t.end(), [&](Index v) { return static_cast<bool>(c.model.used[v]); })) continue;
       c.sheets.push_back(t);
     }

@@ -21,7 +21,8 @@ class DryFaces {
  public:
   explicit DryFaces(Compilation& c) {
     for (const Actuator& actuator : c.model.actuators)
-      for (const CavityFace& face : actuator.cavity) dry_.insert(sorted_corners(face.corners));
+      if (const auto* chamber = actuator.as<ChamberDrive>())
+        for (const CavityFace& face : chamber->cavity) dry_.insert(sorted_corners(face.corners));
     for (const EmptySpace& space : empty_spaces(c))
       for (const Triangle& triangle : space.triangles) dry_.insert(sorted_corners(triangle));
     for (const Tetrahedron& t : c.chamber_tetrahedra)
@@ -53,7 +54,7 @@ void check_liquid(const LiquidAroundSpec& spec, const Vec3& gravity) {
 /// A chamber that no faces of the mesh close stands open to the liquid.
 void check_chambers(const Compilation& c) {
   for (const Actuator& actuator : c.model.actuators)
-    if (!actuator.surface.empty())
+    if (const auto* chamber = actuator.as<ChamberDrive>(); chamber && !chamber->surface.empty())
       throw InvalidInput(c.spec.liquid_around->origin,
                          "the liquid around the robot would be in the chamber of actuator '" + actuator.name +
                              "', whose surface bounds no empty space of the mesh: close it in the mesh");

@@ -82,12 +82,11 @@ std::string label(const ForceSpec& spec) {
 /// The force of an entry, or its moment.
 struct Commanded {
   const ForceSpec& spec;
-  ActuatorKind kind;
+  bool is_moment = false;
 
-  [[nodiscard]] bool is_moment() const { return kind == ActuatorKind::moment; }
-  [[nodiscard]] const Vec3& value() const { return is_moment() ? spec.moment : spec.force; }
+  [[nodiscard]] const Vec3& value() const { return is_moment ? spec.moment : spec.force; }
   [[nodiscard]] const std::optional<std::array<Vec3, 2>>& range() const {
-    return is_moment() ? spec.moment_range : spec.range;
+    return is_moment ? spec.moment_range : spec.range;
   }
   /// Is it commanded along an axis, and not held to one value there.
   [[nodiscard]] bool along(int axis) const { return range() && (*range())[0][axis] < (*range())[1][axis]; }
@@ -95,11 +94,11 @@ struct Commanded {
 
 void check_values(const Commanded& of) {
   const auto refuse = [&](const std::string& why) {
-    throw InvalidInput(of.spec.at.origin, (of.is_moment() ? "the moment of " : "") + label(of.spec) + " " + why);
+    throw InvalidInput(of.spec.at.origin, (of.is_moment ? "the moment of " : "") + label(of.spec) + " " + why);
   };
   if (!of.value().allFinite()) refuse("is not finite");
   if (!of.range()) return;
-  const char* const unit = of.is_moment() ? " N mm" : " N";
+  const char* const unit = of.is_moment ? " N mm" : " N";
   const auto& [low, high] = *of.range();
   if (of.spec.name.empty()) refuse("is commanded, and so needs a name");
   if (!low.allFinite() || !high.allFinite()) refuse("has a range that is not finite");
@@ -113,12 +112,11 @@ void check_values(const Commanded& of) {
   }
 }
 
-Actuator command_of(const Commanded& of, int axis) {
+Actuator command_of(const Commanded& of, int axis, Drive drive) {
   Actuator command;
-  command.name = of.spec.name + (of.is_moment() ? "_m" : "_f") + "xyz"[axis];
-  command.kind = of.kind;
+  command.name = of.spec.name + (of.is_moment ? "_m" : "_f") + "xyz"[axis];
+  command.drive = std::move(drive);
   command.control = Control::load;
-  command.axis = axis;
   command.low = (*of.range())[0][axis];
   command.high = (*of.range())[1][axis];
   command.rest = of.value()[axis];
@@ -163,14 +161,14 @@ std::vector<Index> moment_vertices(const Compilation& c, const ForceSpec& spec) 
 }
 
 void add_moment(Compilation& c, const ForceSpec& spec) {
-  const Commanded moment{spec, ActuatorKind::moment};
+  const Commanded moment{spec, true};
   check_values(moment);
   if (spec.moment.isZero(0) && !spec.moment_range) return;
   RegionMoment of{moment_vertices(c, spec)};
   for (int axis = 0; axis < 3; ++axis)
     if (moment.along(axis)) {
-      c.force_commands.push_back(command_of(moment, axis));
-      c.force_commands.back().other = static_cast<Index>(c.model.moments.size());
+      const auto index = static_cast<Index>(c.model.moments.size());
+      c.force_commands.push_back(command_of(moment, axis, MomentCommand{index, axis}));
     } else {
       of.moment_Nmm[axis] = spec.moment[axis];
     }
@@ -178,7 +176,7 @@ void add_moment(Compilation& c, const ForceSpec& spec) {
 }
 
 void add_force(Compilation& c, const ForceSpec& spec) {
-  const Commanded force{spec, ActuatorKind::force};
+  const Commanded force{spec};
   check_values(force);
   const EmbeddedPoint at = embed_point(c, spec.at, "the point of " + label(spec));
   std::vector<CavityFace> faces;
@@ -186,9 +184,7 @@ void add_force(Compilation& c, const ForceSpec& spec) {
     for (const LoadedFace& face : surface_faces(c, {*region, spec.at.origin})) faces.push_back(face.face);
   for (int axis = 0; axis < 3; ++axis) {
     if (force.along(axis)) {
-      c.force_commands.push_back(command_of(force, axis));
-      c.force_commands.back().points = {at};
-      c.force_commands.back().cavity = faces;
+      c.force_commands.push_back(command_of(force, axis, ForceCommand{.axis = axis, .place = at, .faces = faces}));
       continue;
     }
     for (std::size_t i = 0; i < at.vertices.size(); ++i)

@@ -32,13 +32,13 @@ double excess_of(const std::vector<Wall>& walls, double Wall::*excess) {
 std::vector<bool> rigid_vertices(const Model& model) {
   std::vector<bool> rigid(static_cast<std::size_t>(model.rest.rows()));
   for (const RigidRegion& region : model.rigid)
-    for (const Index v : region.vertices) rigid[static_cast<std::size_t>(v)] = true;
+    for (const Index v : region.vertices) rigid[v] = true;
   return rigid;
 }
 
 std::vector<Wall> walls_of(const Model& model) {
   const std::vector<bool> rigid = rigid_vertices(model);
-  const auto is_rigid = [&rigid](Index v) { return rigid[static_cast<std::size_t>(v)]; };
+  const auto is_rigid = [&rigid](Index v) { return rigid[v]; };
   std::vector<Wall> walls;
   for (const WallSample& sample : wall_samples(model.rest, model.tetrahedra, model.prisms, most_samples)) {
     const auto element = static_cast<std::size_t>(sample.element);

@@ -112,9 +112,9 @@ bool magnetise(const Compilation& c, Magnetism& magnetism) {
   bool any = false;
   const auto add = [&](const std::vector<ElementRole>& roles) {
     for (const ElementRole& role : roles) {
-      const auto& remanence = of_material[static_cast<std::size_t>(role.material)];
+      const auto& remanence = of_material[role.material];
       magnetism.remanence.push_back(remanence ? remanence->of(model, magnetism.remanence.size()) : Vec3(0, 0, 0));
-      const RemanenceSpec* spec = c.spec.materials[static_cast<std::size_t>(role.material)].remanence.get();
+      const RemanenceSpec* spec = c.spec.materials[role.material].remanence.get();
       magnetism.magnetisation.push_back(spec ? spec->magnetisation : Magnetisation::turns);
       any = any || !magnetism.remanence.back().isZero(0);
     }
@@ -172,14 +172,13 @@ void compile_magnetism(Compilation& c) {
     const ActuatorSpec& spec = c.spec.actuators[a];
     if (spec.kind != ActuatorKind::magnetic) continue;
     if (!any) refuse(spec, "is a magnetic field that acts on nothing: give a material a remanence");
-    Actuator& actuator = c.model.actuators[a];
-    actuator.other = place_of(*magnetism, known, spec);
-    actuator.axis = static_cast<int>(spec.field->command);
+    const MagneticDrive drive{place_of(*magnetism, known, spec), spec.field->command};
     for (std::size_t b = 0; b < a; ++b)
-      if (c.model.actuators[b].other == actuator.other && c.model.actuators[b].axis == actuator.axis &&
-          c.model.actuators[b].kind == actuator.kind)
+      if (const auto* other = c.model.actuators[b].as<MagneticDrive>();
+          other && other->source == drive.source && other->command == drive.command)
         refuse(spec, "commands the same as actuator '" + c.model.actuators[b].name + "'");
-    check_grid(c, *magnetism, magnetism->sources[static_cast<std::size_t>(actuator.other)], spec.origin);
+    c.model.actuators[a].drive = drive;
+    check_grid(c, *magnetism, magnetism->sources[drive.source], spec.origin);
   }
   if (!any) return;
   doubt_remanence(c.model, *magnetism);

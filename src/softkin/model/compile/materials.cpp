@@ -202,8 +202,8 @@ bool only_actuated(const Compilation& c, const Region& region) {
 void require_permittivity(const Compilation& c) {
   for (const Actuator& actuator : c.model.actuators) {
     if (!under_voltage(actuator)) continue;
-    for (const Index e : actuator.prisms) {
-      const MaterialSpec& material = c.spec.materials[static_cast<std::size_t>(c.model.prism_roles[e].material)];
+    for (const Index e : actuator.as<DeaDrive>()->prisms) {
+      const MaterialSpec& material = c.spec.materials[c.model.prism_roles[e].material];
       if (!material.permittivity)
         throw InvalidInput(material.origin, "the material of region '" + material.region +
                                                 "' needs 'permittivity', over that of the vacuum: actuator '" +

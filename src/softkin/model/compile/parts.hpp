@@ -133,7 +133,7 @@ void compile_materials(Compilation& c);
 /// Embeds cables and, for target shapes, finds their gaps and apexes; embeds the surfaces of pneumatic actuators.
 void compile_actuator_points(Compilation& c);
 /// The elements of Eq. (6): a triangle over each gap; none in the physical formulation.
-void compile_cable(Compilation& c, const ActuatorSpec& spec, Actuator& cable);
+void compile_cable(Compilation& c, const ActuatorSpec& spec, Actuator& actuator);
 
 /// "[0, 1.5]"
 [[nodiscard]] inline std::string interval_text(double low, double high) {

@@ -98,7 +98,7 @@ void doubt_pressures(const Compilation& c, std::vector<std::string>& warnings) {
   const double most = std::min(highest_kPa, in_stiffest_moduli * stiffest_kPa);
   for (const Actuator& actuator : c.model.actuators) {
     const double kPa = std::max(std::abs(actuator.low), std::abs(actuator.high));
-    if (actuator.kind != ActuatorKind::pneumatic || actuator.control != Control::load || kPa <= most) continue;
+    if (!actuator.is<ChamberDrive>() || actuator.control != Control::load || kPa <= most) continue;
     warnings.push_back("The range of chamber '" + actuator.name + "' goes to " + number(kPa) +
                        " kPa, where the robot's stiffest material has a Young's modulus of " + number(stiffest_kPa) +
                        " kPa" + taken_as(kPa, "kPa", {0.01, most}, {{"taken as Pa it", 1e-3}}) +

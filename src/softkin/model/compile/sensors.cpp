@@ -19,8 +19,7 @@ TurningSection section_of(Compilation& c, const SensorSpec& spec, const std::str
   std::vector<Vec3> arms;
   for (const Index v : mean.vertices) arms.push_back(vertex_at(c.model.rest, v) - middle);
   TurningSection section;
-  for (int axis = 0; axis < 3; ++axis)
-    section.along[static_cast<std::size_t>(axis)] = {spec.name, mean, Vec3::Unit(axis), arms};
+  for (int axis = 0; axis < 3; ++axis) section.along[axis] = {spec.name, mean, Vec3::Unit(axis), arms};
   return section;
 }
 

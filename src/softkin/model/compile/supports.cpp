@@ -132,15 +132,18 @@ Parts connected_parts(const Model& model) {
   for (const auto& layer : model.layers)
     for (const CavityFace& face : layer->faces) parts.join(nodes_of(face));
   for (const RigidRegion& rigid : model.rigid) parts.join(rigid.vertices);
-  for (const Actuator& actuator : model.actuators)
-    for (const CableGap& gap : actuator.gaps) {
+  for (const Actuator& actuator : model.actuators) {
+    const auto* cable = actuator.as<CableDrive>();
+    if (!cable) continue;
+    for (const CableGap& gap : cable->gaps) {
       std::vector<Index> corners = gap.apex.vertices;
       for (const Index end : {gap.segment, gap.segment + 1}) {
-        const auto& vertices = actuator.points[end].vertices;
+        const auto& vertices = cable->points[end].vertices;
         corners.insert(corners.end(), vertices.begin(), vertices.end());
       }
       parts.join(corners);
     }
+  }
   return parts;
 }
 

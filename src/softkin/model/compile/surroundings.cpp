@@ -155,8 +155,7 @@ Index add_part(Compilation& c, const Spec& spec, const FacetedSurface& made, Con
 }
 
 /// A command to what surrounds the robot.
-void add_command(Compilation& c, const std::string& name, ActuatorKind kind, Index other, int axis,
-                 const Origin& origin) {
+void add_command(Compilation& c, const std::string& name, Drive drive, double most, const Origin& origin) {
   Model& model = c.model;
   for (const Actuator& actuator : model.actuators)
     if (actuator.name == name)
@@ -164,16 +163,12 @@ void add_command(Compilation& c, const std::string& name, ActuatorKind kind, Ind
                          "the command '" + name + "' has the name of an actuator: give one of them another name");
   Actuator command;
   command.name = name;
-  command.kind = kind;
-  command.control = kind == ActuatorKind::hold ? Control::ratio : Control::load;
-  command.other = other;
-  command.axis = axis;
-  command.rest = kind == ActuatorKind::hold ? 1 : 0;
-  command.high = kind == ActuatorKind::hold ? 1
-                 : kind == ActuatorKind::motion
-                     ? most_way * model.diagonal_mm
-                     : most_force * model.contact.modulus_MPa * model.diagonal_mm * model.diagonal_mm;
-  command.low = kind == ActuatorKind::hold ? 0 : -command.high;
+  command.drive = std::move(drive);
+  const bool holds = command.is<HoldCommand>();
+  command.control = holds ? Control::ratio : Control::load;
+  command.rest = holds ? 1 : 0;
+  command.high = most;
+  command.low = holds ? 0 : -most;
   model.actuators.push_back(std::move(command));
 }
 
@@ -182,8 +177,9 @@ void add_obstacle(Compilation& c, const ObstacleSpec& spec, double area) {
   (void)add_part(c, spec, facets_of(c, spec), ContactRank::obstacle);
   c.model.contact.area.resize(static_cast<std::size_t>(c.model.rest.rows()), area);
   for (int axis = 0; axis < 3; ++axis)
-    if (spec.motion[static_cast<std::size_t>(axis)])
-      add_command(c, spec.name + "_" + axis_names[axis], ActuatorKind::motion, part, axis, spec.origin);
+    if (spec.motion[axis])
+      add_command(c, spec.name + "_" + axis_names[axis], MotionCommand{part, axis}, most_way * c.model.diagonal_mm,
+                  spec.origin);
 }
 
 /// Weights of points whose mean they make, wherever it is: the smallest that do.
@@ -228,13 +224,13 @@ void add_body(Compilation& c, const BodySpec& spec, double least_area) {
   std::vector<double>& area = model.contact.area;
   area.resize(static_cast<std::size_t>(model.rest.rows()), 0);
   for (const Triangle& t : triangles)
-    for (const Index v : t) area[static_cast<std::size_t>(first + v)] += triangle_area(made.surface.vertices, t) / 3;
+    for (const Index v : t) area[first + v] += triangle_area(made.surface.vertices, t) / 3;
   FreeBody body;
   body.name = spec.name;
   body.center = mean_at(made.surface.vertices, first, center);
   for (Index v = first; v < model.rest.rows(); ++v) {
     body.vertices.push_back(v);
-    area[static_cast<std::size_t>(v)] = std::max(area[static_cast<std::size_t>(v)], least_area);
+    area[v] = std::max(area[v], least_area);
   }
   weigh(c, spec, body, volume);
   for (const Marker& marker : model.markers)
@@ -243,9 +239,10 @@ void add_body(Compilation& c, const BodySpec& spec, double least_area) {
   const auto index = static_cast<Index>(model.bodies.size());
   model.rigid.push_back({spec.name, body.vertices});
   model.bodies.push_back(std::move(body));
-  add_command(c, spec.name + "_hold", ActuatorKind::hold, index, -1, spec.origin);
+  add_command(c, spec.name + "_hold", HoldCommand{index}, 1, spec.origin);
+  const double most_N = most_force * model.contact.modulus_MPa * model.diagonal_mm * model.diagonal_mm;
   for (int axis = 0; axis < 3; ++axis)
-    add_command(c, spec.name + "_f" + axis_names[axis], ActuatorKind::force, index, axis, spec.origin);
+    add_command(c, spec.name + "_f" + axis_names[axis], ForceCommand{.body = index, .axis = axis}, most_N, spec.origin);
 }
 
 }  // namespace

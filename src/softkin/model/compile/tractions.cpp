@@ -92,9 +92,8 @@ void check(const TractionSpec& spec) {
 Actuator command_of(const TractionSpec& spec, std::size_t traction) {
   Actuator command;
   command.name = spec.name;
-  command.kind = ActuatorKind::pressure;
+  command.drive = PressureCommand{static_cast<Index>(traction)};
   command.control = Control::load;
-  command.other = static_cast<Index>(traction);
   command.low = (*spec.range_kPa)[0];
   command.high = (*spec.range_kPa)[1];
   command.rest = spec.pressure_kPa;
@@ -108,7 +107,7 @@ void add_dead(Model& model, const Vec3& traction_MPa, const LoadedFace& loaded) 
     const SurfaceEdges edges(point, nodes, model.rest);
     const double area = loaded.share * point.weight * edges.u.cross(edges.v).norm();
     for (std::size_t i = 0; i < nodes.size(); ++i)
-      model.dead_load.row(nodes[i]) += area * point.shape[static_cast<Eigen::Index>(i)] * traction_MPa.transpose();
+      model.dead_load.row(nodes[i]) += area * point.shape[i] * traction_MPa.transpose();
   }
 }
 

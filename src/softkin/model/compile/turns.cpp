@@ -66,7 +66,7 @@ void turn_rigid(Model& model, const RigidRegion& rigid, const std::string& label
   if (turn == nullptr) return;
   if (otherwise)
     throw InvalidInput(origin, label + " is held by '" + turn->support + "', which turns it, and by another support");
-  SupportTurn& turned = model.turns[static_cast<std::size_t>(turn - model.turns.data())];
+  SupportTurn& turned = model.turns[turn - model.turns.data()];
   std::vector<Index> all;
   std::vector<Index> region = rigid.vertices;
   std::sort(region.begin(), region.end());
@@ -93,9 +93,8 @@ void add_turn_commands(Compilation& c) {
       if (actuator.name == command.name)
         throw InvalidInput(turn.origin, "the command '" + command.name +
                                             "' has the name of an actuator: give one of them another name");
-    command.kind = ActuatorKind::turn;
+    command.drive = TurnCommand{static_cast<Index>(t)};
     command.control = Control::load;
-    command.other = static_cast<Index>(t);
     command.low = -most_degrees;
     command.high = most_degrees;
     command.rest = turn.degrees;

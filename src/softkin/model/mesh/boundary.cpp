@@ -9,7 +9,7 @@ void append_faces(const std::array<Index, N>& element, const int (&faces)[M][K],
                   std::vector<ElementFace<K>>& all) {
   for (const auto& corners : faces) {
     ElementFace<K> face;
-    for (std::size_t i = 0; i < K; ++i) face.vertices[i] = element[static_cast<std::size_t>(corners[i])];
+    for (std::size_t i = 0; i < K; ++i) face.vertices[i] = element[corners[i]];
     face.sorted = face.vertices;
     std::sort(face.sorted.begin(), face.sorted.end());
     face.owner = owner;

@@ -38,7 +38,7 @@ void sort_faces(std::vector<ElementFace<K>>& faces) {
   }
   std::partial_sum(end.begin(), end.end(), end.begin());
   std::vector<ElementFace<K>> sorted(faces.size());
-  for (const auto& face : faces) sorted[end[static_cast<std::size_t>(face.sorted[0])]++] = face;
+  for (const auto& face : faces) sorted[end[face.sorted[0]]++] = face;
   const auto at = [&sorted](std::size_t i) { return sorted.begin() + static_cast<std::ptrdiff_t>(i); };
   for (std::size_t bucket = 0, begin = 0; bucket + 1 < end.size(); begin = end[bucket++])
     std::sort(at(begin), at(end[bucket]), [](const auto& a, const auto& b) {

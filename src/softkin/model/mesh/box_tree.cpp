@@ -39,9 +39,9 @@ void BoxTree::refit(const std::vector<Bounds>& bounds) {
     Node& node = nodes_[at];
     node.bounds.setEmpty();
     if (node.right != 0) {
-      node.bounds = nodes_[at + 1].bounds.merged(nodes_[static_cast<std::size_t>(node.right)].bounds);
+      node.bounds = nodes_[at + 1].bounds.merged(nodes_[node.right].bounds);
     } else {
-      for (Index i = node.begin; i < node.end; ++i) node.bounds.extend(bounds[static_cast<std::size_t>(items_[i])]);
+      for (Index i = node.begin; i < node.end; ++i) node.bounds.extend(bounds[items_[i]]);
     }
   }
 }

@@ -19,7 +19,7 @@ class DisjointSets {
   void join(Index a, Index b) { parent(find(a)) = find(b); }
 
  private:
-  Index& parent(Index i) { return parents_[static_cast<std::size_t>(i)]; }
+  Index& parent(Index i) { return parents_[i]; }
   std::vector<Index> parents_;
 };
 

@@ -41,7 +41,7 @@ std::optional<Projection::Foot> Projection::foot_on(const TriangleSurface& surfa
   Index triangle = -1;
   const Vec3 near = tree_->nearest(point, &triangle);
   if (triangle < 0) return std::nullopt;
-  const auto& [a, b, c] = surface.triangles[static_cast<std::size_t>(triangle)];
+  const auto& [a, b, c] = surface.triangles[triangle];
   const Vec3 at = vertex_at(surface.vertices, a);
   return Foot{near, (vertex_at(surface.vertices, b) - at).cross(vertex_at(surface.vertices, c) - at).normalized()};
 }

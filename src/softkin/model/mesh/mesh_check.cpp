@@ -71,7 +71,7 @@ Shape shape_of(const Points& points, const Prism& element) {
   std::array<Vec3, 6> p = corners_of(points, element);
   scale_to_edge(p, prism_edges);
   Points corners(6, 3);
-  for (Index i = 0; i < 6; ++i) corners.row(i) = p[static_cast<std::size_t>(i)].transpose();
+  for (Index i = 0; i < 6; ++i) corners.row(i) = p[i].transpose();
   Shape shape;
   shape.volume = signed_volume(corners, Prism{0, 1, 2, 3, 4, 5});
   const double sign = shape.volume < 0 ? -1 : 1;
@@ -354,7 +354,7 @@ class FacesByVertex {
     std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
     faces_.resize(starts_.back());
     std::vector<std::uint32_t> next(starts_.begin(), starts_.end() - 1);
-    visit_faces([&](Index smallest, std::uint64_t rest) { faces_[next[static_cast<std::size_t>(smallest)]++] = rest; });
+    visit_faces([&](Index smallest, std::uint64_t rest) { faces_[next[smallest]++] = rest; });
   }
 
   bool has_twins() {
@@ -383,8 +383,8 @@ void visit_faces(const std::vector<std::array<Index, N>>& elements, const int (&
     for (const auto& face : faces) {
       std::size_t first = 0;
       for (std::size_t i = 1; i < K; ++i)
-        if (element[static_cast<std::size_t>(face[i])] < element[static_cast<std::size_t>(face[first])]) first = i;
-      const auto corner = [&](std::size_t i) { return element[static_cast<std::size_t>(face[(first + i) % K])]; };
+        if (element[face[i]] < element[face[first]]) first = i;
+      const auto corner = [&](std::size_t i) { return element[face[(first + i) % K]]; };
       visit(corner(0), packed(corner(1), corner(K - 1)));
     }
 }

@@ -68,7 +68,7 @@ template <class Cell, class Measure>
 void add_cells(const std::vector<Cell>& cells, const std::vector<Index>& chosen, const Measure& measure_of,
                RegionMeasures& measures, std::vector<Index>& vertices) {
   for (const Index i : chosen) {
-    const Cell& cell = cells[static_cast<std::size_t>(i)];
+    const Cell& cell = cells[i];
     measures.measure += measure_of(cell);
     vertices.insert(vertices.end(), cell.begin(), cell.end());
   }
@@ -78,9 +78,7 @@ void add_cells(const std::vector<Cell>& cells, const std::vector<Index>& chosen,
 template <class Nodes>
 void add_edge_nodes(const std::vector<Nodes>& nodes, const std::vector<Index>& chosen, std::vector<Index>& vertices) {
   if (nodes.empty()) return;
-  for (const Index i : chosen)
-    vertices.insert(vertices.end(), nodes[static_cast<std::size_t>(i)].begin(),
-                    nodes[static_cast<std::size_t>(i)].end());
+  for (const Index i : chosen) vertices.insert(vertices.end(), nodes[i].begin(), nodes[i].end());
 }
 
 RegionMeasures measure_region(const Mesh& mesh, const std::vector<QuadraticTriangle>& triangles, const Region& region) {
@@ -114,7 +112,7 @@ template <class Element>
 void add_to_parts(const Mesh& mesh, const std::vector<Element>& elements, const std::vector<std::size_t>& part_of,
                   std::vector<PartMeasures>& parts) {
   for (const Element& element : elements) {
-    PartMeasures& part = parts[part_of[static_cast<std::size_t>(element[0])]];
+    PartMeasures& part = parts[part_of[element[0]]];
     const double share = volume(mesh.vertices, element);
     part.volume += share;
     part.centroid += share * mean_position(mesh, element);
@@ -282,7 +280,7 @@ CurvedMeasures measure_curved(const Mesh& mesh) {
 std::vector<PartMeasures> measure_parts(const Mesh& mesh, const MeshCheck& check) {
   std::vector<std::size_t> part_of(static_cast<std::size_t>(mesh.vertices.rows()));
   for (std::size_t part = 0; part < check.parts.size(); ++part)
-    for (const Index v : check.parts[part]) part_of[static_cast<std::size_t>(v)] = part;
+    for (const Index v : check.parts[part]) part_of[v] = part;
   std::vector<PartMeasures> parts(check.parts.size(), {0, 0, Vec3::Zero()});
   add_to_parts(mesh, mesh.tetrahedra, part_of, parts);
   add_to_parts(mesh, mesh.prisms, part_of, parts);

@@ -278,7 +278,7 @@ Vec3 SmoothSurface::fitted_normal(const Sector& sector, const Vec3& mean) const 
     const double x = offset.dot(u), y = offset.dot(v), distance2 = offset.squaredNorm();
     const double weight = distance2 > 0 ? 1 / distance2 : 0;
     rows.row(static_cast<Index>(i)) << weight * x, weight * y, weight * x * x, weight * x * y, weight * y * y;
-    heights[static_cast<Index>(i)] = weight * offset.dot(mean);
+    heights[i] = weight * offset.dot(mean);
   }
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
   solver.setThreshold(0.02);

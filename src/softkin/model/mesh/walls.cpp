@@ -51,7 +51,7 @@ std::vector<WallSample> wall_samples(const Points& vertices, const std::vector<T
     const auto thickness =
         surface.first_hit(centroid(vertices, boundary.triangles[face]), inwards, 1e-6 * std::sqrt(doubled), &other);
     if (!thickness) continue;
-    const Vec3 beyond = doubled_area(vertices, triangles[static_cast<std::size_t>(other)]);
+    const Vec3 beyond = doubled_area(vertices, triangles[other]);
     if (!(inwards.dot(beyond) > nearly_parallel * beyond.norm())) continue;
     samples.push_back({static_cast<Index>(owner), doubled / 2, *thickness, extent(vertices, tetrahedra[owner], inwards),
                        std::sqrt(doubled)});

@@ -40,7 +40,7 @@ void ActuatorLoads::stiffness(const Iterate& at, LargeVector<double>& slots, Tea
   std::vector<Eigen::VectorXd> shares(static_cast<std::size_t>(measures_.count()));
   for (Index a = 0; a < measures_.count(); ++a) {
     scale[a] = measures_.sign(a) * at.multipliers[a];
-    if (tendons_.rubs(a)) shares[static_cast<std::size_t>(a)] = tendons_.shares(a, at);
+    if (tendons_.rubs(a)) shares[a] = tendons_.shares(a, at);
   }
   measures_.second_derivatives(at.positions, scale, shares, slots, team);
 }

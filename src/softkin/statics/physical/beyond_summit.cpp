@@ -151,12 +151,11 @@ void Continuation::sort_branch() {
 
 /// "3.01 times its volume", "0.7 of its length"
 std::string Continuation::measure_text(Index a, double measure) const {
-  return number(measure, 4) +
-         (system_.model().actuators[a].kind == ActuatorKind::cable ? " of its length" : " times its volume");
+  return number(measure, 4) + (system_.model().actuators[a].is<CableDrive>() ? " of its length" : " times its volume");
 }
 
 std::string Continuation::load_text(Index a, double load) const {
-  return number(load, 5) + (system_.model().actuators[a].kind == ActuatorKind::cable ? " N" : " kPa");
+  return number(load, 5) + (system_.model().actuators[a].is<CableDrive>() ? " N" : " kPa");
 }
 
 void Continuation::tell_beyond(Index a, const Measured& last, bool asked) {

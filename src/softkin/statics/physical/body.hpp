@@ -215,8 +215,7 @@ class Body : public Term {
   template <class Visit>
   void each(const Scratch& scratch, const Visit& visit) const {
     each_set([&]<int K, int Q>(const Set<K, Q>& set) {
-      visit(set,
-            set.changed < 0 ? set.blocks : changed_of<K, Q>(scratch)[static_cast<std::size_t>(set.changed)].blocks);
+      visit(set, set.changed < 0 ? set.blocks : changed_of<K, Q>(scratch)[set.changed].blocks);
     });
   }
   template <int K, int Q>

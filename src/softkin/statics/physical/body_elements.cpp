@@ -80,10 +80,10 @@ Body::Set<K, Q>& Body::set_of(std::vector<Set<K, Q>>& sets, const Model& model, 
   set.mixed = mixed;
   set.actuator = role.actuator;
   set.grower = grower;
-  if (grower >= 0) set.growth = model.growths[static_cast<std::size_t>(grower)];
+  if (grower >= 0) set.growth = model.growths[grower];
   if (role.actuator >= 0) {
     set.charged = under_voltage(model.actuators[role.actuator]);
-    set.prestretch = model.actuators[role.actuator].prestretch;
+    if (const auto* dea = model.actuators[role.actuator].as<DeaDrive>()) set.prestretch = dea->prestretch;
   }
   return set;
 }
@@ -121,7 +121,7 @@ void Body::add(std::vector<Set<K, Q>>& sets, const Model& model, const ElementRo
   if constexpr (K == 6)
     set.frames.back()[lane] = layer_frame(rest);
   else if (mixed)
-    set_pressures(set, material.elastic, pressures->of[static_cast<std::size_t>(element)], lane);
+    set_pressures(set, material.elastic, pressures->of[element], lane);
   set.elements.push_back(element);
   ++set.count;
 }
@@ -153,9 +153,8 @@ Body::Body(const Model& model, const Pressures* pressures)
   add_elements(model, pressures);
   add_directions(model);
   for (Index a = 0; a < static_cast<Index>(model.actuators.size()); ++a) {
-    if (model.actuators[a].kind == ActuatorKind::dea)
-      (under_voltage(model.actuators[a]) ? voltages_ : ratios_).push_back(a);
-    if (model.actuators[a].kind == ActuatorKind::growth) growths_.push_back(a);
+    if (model.actuators[a].is<DeaDrive>()) (under_voltage(model.actuators[a]) ? voltages_ : ratios_).push_back(a);
+    if (model.actuators[a].is<GrowthDrive>()) growths_.push_back(a);
   }
   number_sets();
   number_pulls();

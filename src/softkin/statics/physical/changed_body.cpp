@@ -42,8 +42,7 @@ void Body::add_directions(const Model& model) {
     each_set([&](auto& set) {
       if (set.growth.get() != &growth) return;
       set.along.resize(set.blocks.size());
-      for (Index e = 0; e < set.count; ++e)
-        set.along[e / lanes][e % lanes] = of[static_cast<std::size_t>(set.elements[e])];
+      for (Index e = 0; e < set.count; ++e) set.along[e / lanes][e % lanes] = of[set.elements[e]];
     });
   }
 }
@@ -63,7 +62,7 @@ double Body::stretch_of(const Set<K, Q>& set, const Demand& demand, const Scratc
 void Body::change_elements(const Demand& demand, Scratch& scratch, Team& team) const {
   each_set([&]<int K, int Q>(const Set<K, Q>& set) {
     if (set.changed < 0) return;
-    Changed<K, Q>& changed = changed_of<K, Q>(scratch)[static_cast<std::size_t>(set.changed)];
+    Changed<K, Q>& changed = changed_of<K, Q>(scratch)[set.changed];
     const double stretch = stretch_of(set, demand, scratch);
     if (changed.stretch == stretch) return;
     changed.stretch = stretch;

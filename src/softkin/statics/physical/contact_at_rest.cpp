@@ -35,34 +35,28 @@ class RestingSurfaces {
     exclusions.group.assign(static_cast<std::size_t>(model.rest.rows()), -1);
     for (std::size_t t = 0; t < of.contact.triangles.size(); ++t) {
       const Index part = of.contact.part_of[t];
-      const ContactRank rank = of.contact.parts[static_cast<std::size_t>(part)].rank;
+      const ContactRank rank = of.contact.parts[part].rank;
       for (const Index v : of.contact.triangles[t])
-        exclusions.group[static_cast<std::size_t>(v)] = rank == ContactRank::robot      ? -1
-                                                        : rank == ContactRank::obstacle ? 0
-                                                                                        : 1 + part;
+        exclusions.group[v] = rank == ContactRank::robot ? -1 : rank == ContactRank::obstacle ? 0 : 1 + part;
     }
     broad.emplace(surface, points, std::move(exclusions));
   }
 
-  [[nodiscard]] Index part(Index triangle) const { return model.contact.part_of[static_cast<std::size_t>(triangle)]; }
-  [[nodiscard]] ContactRank rank(Index triangle) const {
-    return model.contact.parts[static_cast<std::size_t>(part(triangle))].rank;
-  }
+  [[nodiscard]] Index part(Index triangle) const { return model.contact.part_of[triangle]; }
+  [[nodiscard]] ContactRank rank(Index triangle) const { return model.contact.parts[part(triangle)].rank; }
   [[nodiscard]] bool of_robot(Index triangle) const { return rank(triangle) == ContactRank::robot; }
   /// The robot, body or obstacle whose triangle it is: the first of its parts.
   [[nodiscard]] Index solid(Index triangle) const {
-    const ContactPart& of = model.contact.parts[static_cast<std::size_t>(part(triangle))];
+    const ContactPart& of = model.contact.parts[part(triangle)];
     return of.rank == ContactRank::robot ? of.robot : part(triangle);
   }
   /// A triangle at a vertex or edge, by place.
   [[nodiscard]] static Index first_at(const contact::Lists& triangles, Index i) {
-    return triangles.items[static_cast<std::size_t>(triangles.begin[static_cast<std::size_t>(i)])];
+    return triangles.items[triangles.begin[i]];
   }
   [[nodiscard]] Index at_vertex(Index vertex) const { return first_at(surface.vertex_triangles, vertex); }
   [[nodiscard]] Index at_edge(Index edge) const { return first_at(surface.edge_triangles, edge); }
-  [[nodiscard]] const contact::Corners& corners(Index triangle) const {
-    return surface.triangles[static_cast<std::size_t>(triangle)];
-  }
+  [[nodiscard]] const contact::Corners& corners(Index triangle) const { return surface.triangles[triangle]; }
   [[nodiscard]] Vec3 rest(Index vertex) const { return vertex_at(points, vertex); }
   [[nodiscard]] bool may_touch(Index triangle, Index other) const {
     return model.contact.pair(part(triangle), part(other)).touch;
@@ -96,7 +90,7 @@ class RestingSurfaces {
 };
 
 const ContactPart& part_at(const Model& model, Index part) {
-  return model.contact.parts[static_cast<std::size_t>(part)];
+  return model.contact.parts[part];
 }
 
 /// "the robot's body", "the body of robot 'left'"
@@ -273,7 +267,7 @@ void refuse_touching(RestingSurfaces& at) {
 std::vector<Vec3> one_of_each(const Points& rest, const std::vector<Triangle>& triangles) {
   std::vector<Vec3> points;
   for (const Shell& shell : shells_of(rest, triangles))
-    points.push_back(vertex_at(rest, triangles[static_cast<std::size_t>(shell.triangles[0])][0]));
+    points.push_back(vertex_at(rest, triangles[shell.triangles[0]][0]));
   return points;
 }
 
@@ -322,7 +316,7 @@ std::vector<Vec3> vertex_normals(const RestingSurfaces& at) {
   const contact::Lists& around = at.surface.vertex_triangles;
   for (std::size_t v = 0; v < normals.size(); ++v) {
     for (Index i = around.begin[v]; i < around.begin[v + 1]; ++i) {
-      const auto& [a, b, c] = at.corners(around.items[static_cast<std::size_t>(i)]);
+      const auto& [a, b, c] = at.corners(around.items[i]);
       normals[v] += (at.rest(b) - at.rest(a)).cross(at.rest(c) - at.rest(a));
     }
     normals[v].normalize();
@@ -350,7 +344,7 @@ class SurfaceWalk {
         return true;
       const auto v = static_cast<std::size_t>(from);
       for (Index i = next_.begin[v]; i < next_.begin[v + 1]; ++i) {
-        const Index to = next_.items[static_cast<std::size_t>(i)];
+        const Index to = next_.items[i];
         const double way = gone + (at_.rest(to) - at_.rest(from)).norm();
         if (way > length) continue;
         const auto [known, fresh] = shortest.emplace(to, way);
@@ -387,8 +381,7 @@ void refuse_narrow_gaps(RestingSurfaces& at) {
     if (!(apart < gap)) continue;
     const Vec3 way = -separation.vector / apart;  // from the vertex to the triangle
     const Vec3 normal = (x.col(2) - x.col(1)).cross(x.col(3) - x.col(1)).normalized();
-    if (!(way.dot(normals[static_cast<std::size_t>(pair.first)]) > facing_cosine && -way.dot(normal) > facing_cosine))
-      continue;
+    if (!(way.dot(normals[pair.first]) > facing_cosine && -way.dot(normal) > facing_cosine)) continue;
     const double edge =
         std::max({(x.col(2) - x.col(1)).norm(), (x.col(3) - x.col(2)).norm(), (x.col(1) - x.col(3)).norm()});
     if (!walk) walk.emplace(at);

@@ -26,12 +26,11 @@ class PressedSurface {
       area_.push_back(0.5 * (b - a).cross(c - a));
     }
     place_.assign(static_cast<std::size_t>(positions.rows()), -1);
-    for (std::size_t v = 0; v < surface.vertices.size(); ++v)
-      place_[static_cast<std::size_t>(surface.vertices[v])] = static_cast<Index>(v);
+    for (std::size_t v = 0; v < surface.vertices.size(); ++v) place_[surface.vertices[v]] = static_cast<Index>(v);
   }
 
   /// Of a vertex of the model.
-  [[nodiscard]] Index place(Index vertex) const { return place_[static_cast<std::size_t>(vertex)]; }
+  [[nodiscard]] Index place(Index vertex) const { return place_[vertex]; }
   [[nodiscard]] Index size() const { return static_cast<Index>(surfaces_.surface.vertices.size()); }
 
   struct Pressures {
@@ -59,24 +58,23 @@ class PressedSurface {
     }
     for (const Index v : guards) {
       double mean = 0;
-      visit_bearers(v, forces.row(v),
-                    [&](Index by, double share) { mean += share * out.pressure_MPa[static_cast<std::size_t>(by)]; });
-      out.pressure_MPa[static_cast<std::size_t>(v)] = mean;
+      visit_bearers(v, forces.row(v), [&](Index by, double share) { mean += share * out.pressure_MPa[by]; });
+      out.pressure_MPa[v] = mean;
     }
     return out;
   }
 
  private:
   [[nodiscard]] bool is_guard(Index place) const {
-    return surfaces_.vertex_area[static_cast<std::size_t>(place)] < guards_area * surfaces_.guard_area;
+    return surfaces_.vertex_area[place] < guards_area * surfaces_.guard_area;
   }
 
   /// Corners of a triangle that share its area: those that are no guards, or all.
   [[nodiscard]] int bearers(Index triangle, std::array<Index, 3>& out) const {
     int count = 0;
     for (const bool all : {false, true}) {
-      for (const Index node : surfaces_.surface.triangles[static_cast<std::size_t>(triangle)])
-        if (const Index v = place(node); all || !is_guard(v)) out[static_cast<std::size_t>(count++)] = v;
+      for (const Index node : surfaces_.surface.triangles[triangle])
+        if (const Index v = place(node); all || !is_guard(v)) out[count++] = v;
       if (count > 0) break;
     }
     return count;
@@ -84,12 +82,11 @@ class PressedSurface {
 
   void visit_around(Index v, const auto& visit) const {
     const contact::Lists& around = surfaces_.surface.vertex_triangles;
-    for (Index i = around.begin[static_cast<std::size_t>(v)]; i < around.begin[static_cast<std::size_t>(v) + 1]; ++i)
-      visit(around.items[static_cast<std::size_t>(i)]);
+    for (Index i = around.begin[v]; i < around.begin[static_cast<std::size_t>(v) + 1]; ++i) visit(around.items[i]);
   }
 
   [[nodiscard]] double facing(Index triangle, const Vec3& direction) const {
-    return std::max(0.0, -area_[static_cast<std::size_t>(triangle)].dot(direction));
+    return std::max(0.0, -area_[triangle].dot(direction));
   }
 
   /// visit(vertex, share) of those that bear a force on a vertex; returns whether they are others.
@@ -104,7 +101,7 @@ class PressedSurface {
           const int count = bearers(t, by);
           const double share = any ? 1 : facing(t, direction);
           for (int i = 0; i < count; ++i) {
-            const Index other = by[static_cast<std::size_t>(i)];
+            const Index other = by[i];
             if (is_guard(other) || !(share > 0)) continue;
             shares[other] += share / count;
             sum += share / count;
@@ -126,7 +123,7 @@ class PressedSurface {
       const int count = bearers(t, by);
       if (std::find(by.begin(), by.begin() + count, v) == by.begin() + count) return;
       seen += facing(t, direction) / count;
-      all += area_[static_cast<std::size_t>(t)].norm() / count;
+      all += area_[t].norm() / count;
     });
     return std::max(seen, least_facing * all);
   }
@@ -143,7 +140,7 @@ struct Side {
 };
 
 std::array<Side, 2> sides_of(const ContactSurfaces& surfaces, const ContactPotential::Term& term) {
-  const auto part = [](const std::vector<Index>& parts, Index of) { return parts[static_cast<std::size_t>(of)]; };
+  const auto part = [](const std::vector<Index>& parts, Index of) { return parts[of]; };
   if (term.threshold > 0)
     return {{{part(surfaces.edge_part, term.pair.first), 0, 2}, {part(surfaces.edge_part, term.pair.second), 2, 4}}};
   return {
@@ -154,7 +151,7 @@ std::array<Side, 2> sides_of(const ContactSurfaces& surfaces, const ContactPoten
 Vec3 place_of(const Points& positions, const ContactPotential::Term& term, const Side& side) {
   Vec3 place = Vec3::Zero();
   for (int i = side.begin; i < side.end; ++i)
-    place += std::abs(term.separation.weights[i]) * positions.row(term.nodes[static_cast<std::size_t>(i)]).transpose();
+    place += std::abs(term.separation.weights[i]) * positions.row(term.nodes[i]).transpose();
   return place;
 }
 
@@ -170,7 +167,7 @@ struct PairSum {
 void add_forces(const ContactPotential::Term& term, const contact::Gradient& gradient, const Side& side,
                 const PressedSurface& surface, Points& on_vertices) {
   for (int i = side.begin; i < side.end; ++i)
-    on_vertices.row(surface.place(term.nodes[static_cast<std::size_t>(i)])) -= gradient.segment<3>(3 * i).transpose();
+    on_vertices.row(surface.place(term.nodes[i])) -= gradient.segment<3>(3 * i).transpose();
 }
 
 void add_term(const Points& positions, const ContactPotential::Term& term, const contact::Gradient& gradient,
@@ -194,7 +191,7 @@ void add_term(const Points& positions, const ContactPotential::Term& term, const
     for (int i = side.begin; !itself && i < side.end; ++i) {
       const Vec3 force = -gradient.segment<3>(3 * i);
       out.force += force;
-      sum.moment += Vec3(positions.row(term.nodes[static_cast<std::size_t>(i)])).cross(force);
+      sum.moment += Vec3(positions.row(term.nodes[i])).cross(force);
     }
   }
 }
@@ -211,7 +208,7 @@ void add_friction(const Points& positions, const Friction& friction, const Frict
   const auto [begin, end] = vertex_part == sum.forces.a ? std::pair(0, 1) : std::pair(1, 4);
   for (int i = begin; i < end; ++i) {
     sum.forces.force += hold.weights[i] * force;
-    sum.moment += Vec3(positions.row(hold.nodes[static_cast<std::size_t>(i)])).cross(hold.weights[i] * force);
+    sum.moment += Vec3(positions.row(hold.nodes[i])).cross(hold.weights[i] * force);
   }
 }
 
@@ -237,9 +234,9 @@ Points contact_changes(const ContactPotential& potential, const Points& position
   contact::Hessian block;
   const auto add = [&](const contact::Nodes& nodes) {
     contact::Gradient way;
-    for (int i = 0; i < 4; ++i) way.segment<3>(3 * i) = moves.row(nodes[static_cast<std::size_t>(i)]).transpose();
+    for (int i = 0; i < 4; ++i) way.segment<3>(3 * i) = moves.row(nodes[i]).transpose();
     const contact::Gradient pull = block * way;
-    for (int i = 0; i < 4; ++i) change.row(nodes[static_cast<std::size_t>(i)]) += pull.segment<3>(3 * i).transpose();
+    for (int i = 0; i < 4; ++i) change.row(nodes[i]) += pull.segment<3>(3 * i).transpose();
   };
   for (const ContactPotential::Term& term : terms) {
     potential.stiffness(positions, term, false, block);
@@ -258,7 +255,7 @@ ContactForces contact_forces(const ContactSurfaces& surfaces, const ContactPoten
                              const Friction& friction, const Friction::Holds& holds,
                              const std::vector<Anchor>& anchors) {
   const std::vector<ContactPart>& parts = surfaces.rules->parts;
-  const auto rank = [&](Index part) { return parts[static_cast<std::size_t>(part)].rank; };
+  const auto rank = [&](Index part) { return parts[part].rank; };
   const PressedSurface surface(surfaces, positions);
   std::map<std::pair<Index, Index>, PairSum> sums;
   Points all = Points::Zero(surface.size(), 3);
@@ -275,7 +272,7 @@ ContactForces contact_forces(const ContactSurfaces& surfaces, const ContactPoten
       if (rank(side.part) != ContactRank::obstacle) add_forces(term, gradient, side, surface, all);
   }
   for (const Friction::Hold& hold : holds) {
-    const Index own = surfaces.vertex_part[static_cast<std::size_t>(hold.pair.first)];
+    const Index own = surfaces.vertex_part[hold.pair.first];
     const bool swapped = std::pair(rank(hold.part), hold.part) < std::pair(rank(own), own);
     const auto found = sums.find(swapped ? std::pair(hold.part, own) : std::pair(own, hold.part));
     if (found != sums.end())
@@ -285,8 +282,8 @@ ContactForces contact_forces(const ContactSurfaces& surfaces, const ContactPoten
   if (friction.any()) out.slip_mm.assign(static_cast<std::size_t>(positions.rows()), 0);
   for (const Anchor& anchor : anchors) {
     if (anchor.vertex >= surface.size()) continue;  // of no surface
-    const Index vertex = surfaces.surface.vertices[static_cast<std::size_t>(anchor.vertex)];
-    double& slip = out.slip_mm[static_cast<std::size_t>(vertex)];
+    const Index vertex = surfaces.surface.vertices[anchor.vertex];
+    double& slip = out.slip_mm[vertex];
     slip = std::max(slip, anchor.slipped_mm);
   }
   for (const auto& [pair, sum] : sums)
@@ -294,8 +291,7 @@ ContactForces contact_forces(const ContactSurfaces& surfaces, const ContactPoten
   out.pressure_kPa.assign(static_cast<std::size_t>(positions.rows()), 0);
   const PressedSurface::Pressures found = surface.under(all);
   for (Index v = 0; v < surface.size(); ++v)
-    out.pressure_kPa[static_cast<std::size_t>(surfaces.surface.vertices[static_cast<std::size_t>(v)])] =
-        kPa_per_MPa * found.pressure_MPa[static_cast<std::size_t>(v)];
+    out.pressure_kPa[surfaces.surface.vertices[v]] = kPa_per_MPa * found.pressure_MPa[v];
   return out;
 }
 

@@ -12,8 +12,7 @@ constexpr double node_share = 4.0 / 3, end_share = -1.0 / 6;
 ContactPoints::ContactPoints(const Model& model) : edges_(model.contact.edges) {
   if (are_nodes()) return;
   edge_of_.assign(static_cast<std::size_t>(model.rest.rows()), -1);
-  for (std::size_t e = 0; e < edges_.size(); ++e)
-    edge_of_[static_cast<std::size_t>(edges_[e][2])] = static_cast<Index>(e);
+  for (std::size_t e = 0; e < edges_.size(); ++e) edge_of_[edges_[e][2]] = static_cast<Index>(e);
 }
 
 const Points& ContactPoints::of(const Points& nodes, Points& room) const {
@@ -44,15 +43,14 @@ ContactPoints::Carriers ContactPoints::carriers(const contact::Nodes& points) co
   const auto add = [&](int point, Index node, double share) {
     const auto end = out.nodes.begin() + out.count, found = std::find(out.nodes.begin(), end, node);
     const auto k = found - out.nodes.begin();
-    if (found == end) out.nodes[static_cast<std::size_t>(out.count++)] = node;
+    if (found == end) out.nodes[out.count++] = node;
     out.shares(point, k) += share;
   };
   for (int i = 0; i < 4; ++i) {
-    const Index node = points[static_cast<std::size_t>(i)];
-    const Index edge = are_nodes() ? -1 : edge_of_[static_cast<std::size_t>(node)];
+    const Index node = points[i];
+    const Index edge = are_nodes() ? -1 : edge_of_[node];
     add(i, node, edge < 0 ? 1 : node_share);
-    for (int end = 0; edge >= 0 && end < 2; ++end)
-      add(i, edges_[static_cast<std::size_t>(edge)][static_cast<std::size_t>(end)], end_share);
+    for (int end = 0; edge >= 0 && end < 2; ++end) add(i, edges_[edge][end], end_share);
   }
   return out;
 }

@@ -15,7 +15,7 @@ using contact::Separation;
 namespace {
 
 bool contains(const contact::Lists& lists, Index of, Index item) {
-  const auto begin = lists.items.begin() + lists.begin[static_cast<std::size_t>(of)],
+  const auto begin = lists.items.begin() + lists.begin[of],
              end = lists.items.begin() + lists.begin[static_cast<std::size_t>(of) + 1];
   return std::binary_search(begin, end, item);
 }
@@ -37,7 +37,7 @@ bool same_robot(const ContactSurfaces& surfaces, const std::vector<Index>& a_par
                 const std::vector<Index>& b_parts, Index b) {
   if (surfaces.rules == nullptr) return true;
   const auto robot = [&](const std::vector<Index>& parts, Index item) {
-    return surfaces.rules->parts[static_cast<std::size_t>(parts[static_cast<std::size_t>(item)])].robot;
+    return surfaces.rules->parts[parts[item]].robot;
   };
   return robot(a_parts, a) >= 0 && robot(a_parts, a) == robot(b_parts, b);
 }
@@ -52,19 +52,18 @@ contact::Gradient length_gradient(const Separation& separation, const Vec3& norm
 }  // namespace
 
 double ContactSurfaces::area(Index vertex, Index triangle) const {
-  const double own = vertex_area[static_cast<std::size_t>(vertex)];
+  const double own = vertex_area[vertex];
   if (rules == nullptr) return own;
-  const Index a = vertex_part[static_cast<std::size_t>(vertex)], b = triangle_part[static_cast<std::size_t>(triangle)];
+  const Index a = vertex_part[vertex], b = triangle_part[triangle];
   if (!rules->pair(a, b).touch) return 0;
-  const ContactRank rank = rules->parts[static_cast<std::size_t>(a)].rank,
-                    before = rules->parts[static_cast<std::size_t>(b)].rank;
+  const ContactRank rank = rules->parts[a].rank, before = rules->parts[b].rank;
   return rank < before ? own : rank == before ? 0.5 * own : guard_area;
 }
 
 double ContactSurfaces::area_of_edges(Index a, Index b) const {
-  const double own = std::sqrt(edge_area[static_cast<std::size_t>(a)] * edge_area[static_cast<std::size_t>(b)]);
+  const double own = std::sqrt(edge_area[a] * edge_area[b]);
   if (rules == nullptr) return own;
-  return rules->pair(edge_part[static_cast<std::size_t>(a)], edge_part[static_cast<std::size_t>(b)]).touch ? own : 0;
+  return rules->pair(edge_part[a], edge_part[b]).touch ? own : 0;
 }
 
 void sort_candidates(Candidates& candidates) {
@@ -100,14 +99,13 @@ contact::Lists lying_together(const Points& rest, contact::BroadPhase& broad, Te
   const auto add = [&](const contact::Nodes& nodes, int of_first) {
     for (int i = 0; i < of_first; ++i)
       for (int j = of_first; j < 4; ++j) {
-        const Index a = nodes[static_cast<std::size_t>(i)], b = nodes[static_cast<std::size_t>(j)];
+        const Index a = nodes[i], b = nodes[j];
         together.push_back({a, b});
         together.push_back({b, a});
       }
   };
   const auto sheet_at = [&](const contact::Lists& triangles, Index i) {
-    return surfaces.rules->sheet(
-        triangles.items[static_cast<std::size_t>(triangles.begin[static_cast<std::size_t>(i)])]);
+    return surfaces.rules->sheet(triangles.items[triangles.begin[i]]);
   };
   const Candidates close = near_at_rest(rest, broad, team, surfaces);
   for (const Pair& pair : close.vertex_triangle)
@@ -126,8 +124,7 @@ void add_lying_together(const contact::Surface& surface, const contact::Lists& t
                         std::vector<Pair>& edges) {
   if (together.items.empty()) return;
   const auto each = [](const contact::Lists& lists, Index of, const auto& visit) {
-    for (Index i = lists.begin[static_cast<std::size_t>(of)]; i < lists.begin[static_cast<std::size_t>(of) + 1]; ++i)
-      visit(lists.items[static_cast<std::size_t>(i)]);
+    for (Index i = lists.begin[of]; i < lists.begin[static_cast<std::size_t>(of) + 1]; ++i) visit(lists.items[i]);
   };
   std::vector<Pair> around, at;  // of every row its edges and triangles
   for (std::size_t e = 0; e < surface.edges.size(); ++e)
@@ -158,7 +155,7 @@ void leave_out_neighbours(const Points& rest, contact::BroadPhase& broad, Team& 
   std::vector<Pair>&triangles = close.vertex_triangle, &edges = close.edge_edge;
   for (std::size_t v = 0; v < surface.vertices.size(); ++v)
     for (Index i = surface.vertex_triangles.begin[v]; i < surface.vertex_triangles.begin[v + 1]; ++i)
-      triangles.push_back({static_cast<Index>(v), surface.vertex_triangles.items[static_cast<std::size_t>(i)]});
+      triangles.push_back({static_cast<Index>(v), surface.vertex_triangles.items[i]});
   add_lying_together(surface, together, triangles, edges);
   surfaces.unfelt_triangles = lists_of(surface.vertices.size(), triangles);
   surfaces.unfelt_edges = lists_of(surface.edges.size(), edges);
@@ -175,8 +172,7 @@ struct ContactPotential::Feature {
 ContactPotential::ContactPotential(const ContactSurfaces& surfaces, const Points& rest)
     : surfaces_(surfaces), rest_(rest), place_(static_cast<std::size_t>(rest.rows()), -1) {
   const contact::Surface& surface = surfaces.surface;
-  for (std::size_t v = 0; v < surface.vertices.size(); ++v)
-    place_[static_cast<std::size_t>(surface.vertices[v])] = static_cast<Index>(v);
+  for (std::size_t v = 0; v < surface.vertices.size(); ++v) place_[surface.vertices[v]] = static_cast<Index>(v);
 }
 
 bool ContactPotential::felt(Index vertex, Index triangle) const {
@@ -192,9 +188,8 @@ bool ContactPotential::edges_felt(const Pair& edges) const {
 Index ContactPotential::felt_at(Index vertex, Index edge) const {
   const contact::Lists& around = surfaces_.surface.edge_triangles;
   Index count = 0;
-  for (Index i = around.begin[static_cast<std::size_t>(edge)]; i < around.begin[static_cast<std::size_t>(edge) + 1];
-       ++i)
-    count += felt(vertex, around.items[static_cast<std::size_t>(i)]);
+  for (Index i = around.begin[edge]; i < around.begin[static_cast<std::size_t>(edge) + 1]; ++i)
+    count += felt(vertex, around.items[i]);
   return count;
 }
 
@@ -233,10 +228,8 @@ void ContactPotential::count(Index triangle, const Separation& separation, Index
   const auto t = static_cast<std::size_t>(triangle);
   const int corners = std::popcount(static_cast<unsigned>(separation.nodes)) - 1;
   Index place = triangle;
-  if (corners == 2) place = surface.triangle_edges[t][static_cast<std::size_t>(side_of(separation.nodes))];
-  if (corners == 1)
-    place =
-        surface.triangles[t][static_cast<std::size_t>(std::countr_zero(static_cast<unsigned>(separation.nodes) >> 1u))];
+  if (corners == 2) place = surface.triangle_edges[t][side_of(separation.nodes)];
+  if (corners == 1) place = surface.triangles[t][std::countr_zero(static_cast<unsigned>(separation.nodes) >> 1u)];
   for (Feature& feature : features)
     if (feature.corners == corners && feature.place == place) {
       feature.count += count;
@@ -248,15 +241,15 @@ void ContactPotential::count(Index triangle, const Separation& separation, Index
 /// Of a corner of a triangle: 1, less the triangles around it that are felt, plus the edges between those.
 Index ContactPotential::count_at(Index vertex, Index corner) const {
   const contact::Surface& surface = surfaces_.surface;
-  const auto place = static_cast<std::size_t>(place_[static_cast<std::size_t>(corner)]);
+  const auto place = static_cast<std::size_t>(place_[corner]);
   Index triangles = 0;
   std::vector<Index> edges;
   for (Index i = surface.vertex_triangles.begin[place]; i < surface.vertex_triangles.begin[place + 1]; ++i) {
-    const Index t = surface.vertex_triangles.items[static_cast<std::size_t>(i)];
+    const Index t = surface.vertex_triangles.items[i];
     if (!felt(vertex, t)) continue;
     ++triangles;
-    for (const Index e : surface.triangle_edges[static_cast<std::size_t>(t)]) {
-      const contact::Ends& ends = surface.edges[static_cast<std::size_t>(e)];
+    for (const Index e : surface.triangle_edges[t]) {
+      const contact::Ends& ends = surface.edges[e];
       if (ends[0] == corner || ends[1] == corner) note_once(edges, e, [] {});
     }
   }
@@ -295,12 +288,12 @@ void ContactPotential::add_vertex(const Points& positions, const Candidates& can
     const FourPoints x = points_of(positions, nodes_of_vertex_triangle(surface, pair));
     const double reach = firmness.foresight * reach_of(vertex, pair.second, firmness);
     for (int k = 0; k < 3; ++k) {
-      const Index edge = surface.triangle_edges[static_cast<std::size_t>(pair.second)][static_cast<std::size_t>(k)];
+      const Index edge = surface.triangle_edges[pair.second][k];
       note_once(edges, edge, [&] {
         const Index more = felt_at(vertex, edge) - 1;
         if (more != 0) count(pair.second, contact::vertex_side(x, k), -more, static_cast<Index>(i), reach, features);
       });
-      const Index corner = surface.triangles[static_cast<std::size_t>(pair.second)][static_cast<std::size_t>(k)];
+      const Index corner = surface.triangles[pair.second][k];
       note_once(corners, corner, [&] {
         const Index more = count_at(vertex, corner);
         if (more != 0) count(pair.second, contact::vertex_corner(x, k), more, static_cast<Index>(i), reach, features);
@@ -309,7 +302,7 @@ void ContactPotential::add_vertex(const Points& positions, const Candidates& can
   }
   for (const Feature& feature : features) {
     if (feature.count == 0) continue;
-    const Pair& pair = candidates.vertex_triangle[static_cast<std::size_t>(feature.pair)];
+    const Pair& pair = candidates.vertex_triangle[feature.pair];
     const double weight = surfaces_.modulus_MPa * surfaces_.area(vertex, pair.second);
     terms.push_back({nodes_of_vertex_triangle(surface, pair), feature.separation, feature.count * weight, 0, pair,
                      law_of(feature.separation, reach_of(vertex, pair.second, firmness), firmness)});
@@ -362,8 +355,7 @@ contact::Gradient ContactPotential::gradient(const Points& positions, const Term
 void ContactPotential::add_gradient(const Points& positions, const std::vector<Term>& terms, Points& gradient) const {
   for (const Term& term : terms) {
     const contact::Gradient of_term = this->gradient(positions, term);
-    for (int i = 0; i < 4; ++i)
-      gradient.row(term.nodes[static_cast<std::size_t>(i)]) += of_term.segment<3>(3 * i).transpose();
+    for (int i = 0; i < 4; ++i) gradient.row(term.nodes[i]) += of_term.segment<3>(3 * i).transpose();
   }
 }
 

@@ -48,9 +48,7 @@ ContactPush* same_push(std::vector<ContactPush>& sorted, const ContactPush& as) 
 
 ContactPush ContactPotential::push_of(const Term& term) const {
   const bool edges = term.threshold > 0;
-  const Index part = edges || surfaces_.triangle_part.empty()
-                         ? 0
-                         : surfaces_.triangle_part[static_cast<std::size_t>(term.pair.second)];
+  const Index part = edges || surfaces_.triangle_part.empty() ? 0 : surfaces_.triangle_part[term.pair.second];
   return {term.pair.first, edges ? term.pair.second : part, edges, -term.law.slope};
 }
 
@@ -65,7 +63,7 @@ std::vector<ContactPush> ContactPotential::pushes(const std::vector<Term>& terms
   for (const ContactPush& push : all) {
     if (!nearest.empty() && !push_before(nearest.back(), push)) continue;
     nearest.push_back(push);
-    nearest.back().stiffness = terms[static_cast<std::size_t>(push.term)].law.curvature;
+    nearest.back().stiffness = terms[push.term].law.curvature;
   }
   std::erase_if(nearest, [](const ContactPush& push) { return !(push.push > 0); });
   return nearest;
@@ -89,8 +87,7 @@ void ContactPotential::straighten(std::vector<Term>& terms, std::vector<ContactP
     if (known == nullptr && as.push > 0)
       fresh.push_back(as);
     else if (known != nullptr &&
-             (known->term < 0 ||
-              terms[i].separation.squared < terms[static_cast<std::size_t>(known->term)].separation.squared))
+             (known->term < 0 || terms[i].separation.squared < terms[known->term].separation.squared))
       known->term = as.term;
   }
   std::sort(fresh.begin(), fresh.end(), strongest_first);
@@ -103,7 +100,7 @@ void ContactPotential::straighten(std::vector<Term>& terms, std::vector<ContactP
   std::erase_if(known_pushes, [](const ContactPush& push) { return push.term < 0; });
   std::sort(known_pushes.begin(), known_pushes.end(), push_before);
   for (ContactPush& push : known_pushes) {
-    const Term& term = terms[static_cast<std::size_t>(push.term)];
+    const Term& term = terms[push.term];
     push.shift = gap_of_push(push.push, surfaces_.reach_mm, 1) - std::sqrt(term.separation.squared);
   }
   for (std::size_t i = 0; i < terms.size(); ++i) {
@@ -121,7 +118,7 @@ void ContactPotential::follow(const std::vector<Term>& terms, const Points& move
                               std::vector<ContactPush>& known_pushes) const {
   constexpr double least = 0.1;  // that one step leaves of a push
   for (ContactPush& push : known_pushes) {
-    const Term& term = terms[static_cast<std::size_t>(push.term)];
+    const Term& term = terms[push.term];
     const Vec3 normal = term.separation.vector / std::sqrt(term.separation.squared);
     const double wider = normal.dot(points_of(moves, term.nodes) * term.separation.weights);
     const double next = push.push + share * push.stiffness * (push.shift - wider);

@@ -59,7 +59,7 @@ double missed_by_pushes(const System& system, const Workspace& work) {
   double largest = 0, most = 0;
   for (const ContactPush& push : work.contacts->pushes) largest = std::max(largest, push.push);
   for (const ContactPush& push : work.contacts->pushes) {
-    const ContactPotential::Term& term = work.contacts->terms[static_cast<std::size_t>(push.term)];
+    const ContactPotential::Term& term = work.contacts->terms[push.term];
     const double by_gap =
         -energy::barrier(std::sqrt(term.separation.squared), system.contacts()->surfaces().reach_mm).slope;
     most = std::max(most, std::abs(by_gap - push.push) / (push.push + faint * largest));

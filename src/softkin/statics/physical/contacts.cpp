@@ -69,8 +69,7 @@ void Contacts::find_parts() {
   const auto last = [&](const contact::Lists& triangles, std::size_t of) {
     Index part = 0;
     for (Index i = triangles.begin[of]; i < triangles.begin[of + 1]; ++i)
-      part = std::max(part,
-                      surfaces_.triangle_part[static_cast<std::size_t>(triangles.items[static_cast<std::size_t>(i)])]);
+      part = std::max(part, surfaces_.triangle_part[triangles.items[i]]);
     return part;
   };
   for (std::size_t v = 0; v < surface.vertices.size(); ++v)
@@ -87,8 +86,7 @@ double Contacts::share_of_edge(std::size_t edge, double mean_area) const {
   std::vector<Vec3> normals;
   double spacing = 0;  // how far edges like this one are from the next, about: the mean height of the triangles
   for (Index i = surface.edge_triangles.begin[edge]; i < surface.edge_triangles.begin[edge + 1]; ++i) {
-    const auto& [a, b, c] =
-        surface.triangles[static_cast<std::size_t>(surface.edge_triangles.items[static_cast<std::size_t>(i)])];
+    const auto& [a, b, c] = surface.triangles[surface.edge_triangles.items[i]];
     const Vec3 from = vertex_at(model_.rest, a);
     normals.push_back((vertex_at(model_.rest, b) - from).cross(vertex_at(model_.rest, c) - from));
     spacing += normals.back().norm() / length;
@@ -99,11 +97,11 @@ double Contacts::share_of_edge(std::size_t edge, double mean_area) const {
 }
 
 void Contacts::choose_areas() {
-  const auto rank_of = [&](Index part) { return surfaces_.rules->parts[static_cast<std::size_t>(part)].rank; };
+  const auto rank_of = [&](Index part) { return surfaces_.rules->parts[part].rank; };
   double sum = 0;
   Index count = 0;
   for (std::size_t v = 0; v < surfaces_.surface.vertices.size(); ++v) {
-    surfaces_.vertex_area.push_back(surfaces_.rules->area[static_cast<std::size_t>(surfaces_.surface.vertices[v])]);
+    surfaces_.vertex_area.push_back(surfaces_.rules->area[surfaces_.surface.vertices[v]]);
     if (rank_of(surfaces_.vertex_part[v]) != ContactRank::robot) continue;
     sum += surfaces_.vertex_area.back();
     ++count;
@@ -121,18 +119,17 @@ contact::Exclusions Contacts::exclusions() const {
   const auto parts = static_cast<Index>(rules.parts.size());
   std::vector<Index> group_of_part;
   for (Index part = 0; part < parts; ++part) {
-    const ContactRank rank = rules.parts[static_cast<std::size_t>(part)].rank;
+    const ContactRank rank = rules.parts[part].rank;
     const bool untouched = rank == ContactRank::obstacle || !rules.pair(part, part).touch;
     group_of_part.push_back(rank == ContactRank::obstacle ? 0
                             : !untouched                  ? -1
-                            : rank == ContactRank::robot  ? 1 + rules.parts[static_cast<std::size_t>(part)].robot
+                            : rank == ContactRank::robot  ? 1 + rules.parts[part].robot
                                                           : 1 + part);
   }
   contact::Exclusions out;
   out.group.assign(static_cast<std::size_t>(model_.rest.rows()), -1);
   for (std::size_t v = 0; v < surfaces_.surface.vertices.size(); ++v)
-    out.group[static_cast<std::size_t>(surfaces_.surface.vertices[v])] =
-        group_of_part[static_cast<std::size_t>(surfaces_.vertex_part[v])];
+    out.group[surfaces_.surface.vertices[v]] = group_of_part[surfaces_.vertex_part[v]];
   return out;
 }
 
@@ -377,7 +374,7 @@ void Contacts::stiffness(const Points& positions, bool projected, const Scratch&
   const Points& points = points_.of(positions, room);
   const std::vector<std::int64_t> starts = slots_of(pairs);
   const auto slot_of = [&](Index place) {
-    return starts.empty() ? clique_slots * static_cast<std::int64_t>(place) : starts[static_cast<std::size_t>(place)];
+    return starts.empty() ? clique_slots * static_cast<std::int64_t>(place) : starts[place];
   };
   std::fill_n(slots, 9 * slot_of(static_cast<Index>(pairs.vertex_triangle.size() + pairs.edge_edge.size())), 0.0);
   contact::Hessian block;

@@ -56,7 +56,7 @@ void Derivative::ask(const Iterate& at, Index column, const Points& force, Point
   for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)
     right_.multipliers(i, column) -=
         system_.measures().sign(held_[i]) * work_.slopes[held_[i]].cwiseProduct(moves).sum();
-  moves_[static_cast<std::size_t>(column)] = std::move(moves);
+  moves_[column] = std::move(moves);
 }
 
 /// How forces change with a command that no measure answers to, and how what it moves itself does.
@@ -100,7 +100,7 @@ bool Derivative::solve(const Iterate& at, bool exact_factor) {
 Points Derivative::positions(const Iterate& at, Index column) const {
   Points positions;
   system_.freedoms().expand(found_.moves.col(column), at.positions, positions);
-  if (const Points& moves = moves_[static_cast<std::size_t>(column)]; moves.rows() > 0) positions += moves;
+  if (const Points& moves = moves_[column]; moves.rows() > 0) positions += moves;
   return positions;
 }
 
@@ -175,7 +175,7 @@ Points Derivative::ask_along(const Iterate& at, const Demand& demand, Index colu
   Points sum = pulled, way = pulled;
   for (Index a = 0; a < system_.actuators(); ++a) {
     if (change[a] == 0 || system_.measures().constrains(a)) continue;
-    if (system_.model().actuators[static_cast<std::size_t>(a)].kind == ActuatorKind::force) {
+    if (system_.model().actuators[a].is<ForceCommand>()) {
       system_.surroundings().add_force(a, change[a], sum);  // of hundreds where a force may act anywhere
       continue;
     }
@@ -196,7 +196,7 @@ ParameterSensitivity Derivative::of(const Iterate& at, const Demand& demand, con
   make_room(count);
   std::vector<Points> forces;
   for (Index p = 0; p < count; ++p) {
-    Points force = ask_along(at, demand, p, changes[static_cast<std::size_t>(p)]);
+    Points force = ask_along(at, demand, p, changes[p]);
     if (reactions) forces.push_back(std::move(force));
   }
   ParameterSensitivity result{{}, Eigen::MatrixXd::Zero(system_.actuators(), count), false};
@@ -204,14 +204,12 @@ ParameterSensitivity Derivative::of(const Iterate& at, const Demand& demand, con
   for (Index p = 0; p < count; ++p) {
     result.positions.push_back(result.regular ? positions(at, p) : nothing);
     if (reactions)
-      result.reactions.push_back(
-          result.regular ? this->reactions(at, demand, p, std::move(forces[static_cast<std::size_t>(p)])) : nothing);
+      result.reactions.push_back(result.regular ? this->reactions(at, demand, p, std::move(forces[p])) : nothing);
     if (!result.regular) continue;
     result.multipliers.col(p) = multipliers(p);
     for (Index a = 0; a < system_.actuators(); ++a)
       if (system_.measures().given_load(a))
-        result.multipliers(a, p) +=
-            changes[static_cast<std::size_t>(p)][a] * system_.measures().rate(a) / system_.measures().unit(a);
+        result.multipliers(a, p) += changes[p][a] * system_.measures().rate(a) / system_.measures().unit(a);
   }
   return result;
 }
@@ -275,20 +273,18 @@ ParameterSensitivity Derivative::of(const Iterate& at, const Demand& demand,
   hold(at, demand);
   make_room(count);
   std::vector<Direct> direct;
-  for (Index p = 0; p < count; ++p)
-    direct.push_back(ask_number(at, demand, p, perturbations[static_cast<std::size_t>(p)], history, elapsed_s));
+  for (Index p = 0; p < count; ++p) direct.push_back(ask_number(at, demand, p, perturbations[p], history, elapsed_s));
   ParameterSensitivity result{{}, Eigen::MatrixXd::Zero(system_.actuators(), count), false};
   result.regular = count == 0 || find(at, demand);
   for (Index p = 0; p < count; ++p) {
     result.positions.push_back(result.regular ? positions(at, p) : Points(Points::Zero(at.positions.rows(), 3)));
     if (result.regular) result.multipliers.col(p) = multipliers(p);
     for (Index a = 0; result.regular && a < system_.actuators(); ++a)
-      result.multipliers(a, p) += direct[static_cast<std::size_t>(p)].loads[a] / system_.measures().unit(a);
+      result.multipliers(a, p) += direct[p].loads[a] / system_.measures().unit(a);
   }
   for (Index p = 0; reactions && p < count; ++p)
-    result.reactions.push_back(
-        result.regular ? this->reactions(at, demand, p, std::move(direct[static_cast<std::size_t>(p)].force))
-                       : Points(Points::Zero(at.positions.rows(), 3)));
+    result.reactions.push_back(result.regular ? this->reactions(at, demand, p, std::move(direct[p].force))
+                                              : Points(Points::Zero(at.positions.rows(), 3)));
   return result;
 }
 
@@ -308,16 +304,16 @@ Eigen::MatrixXd Derivative::of(const Iterate& at, const Demand& demand, const st
   const auto rows = static_cast<Index>(told.size()), count = static_cast<Index>(perturbations.size());
   hold(at, demand);
   make_room(rows);
-  for (Index r = 0; r < rows; ++r) ask_adjoint(at, r, told[static_cast<std::size_t>(r)]);
+  for (Index r = 0; r < rows; ++r) ask_adjoint(at, r, told[r]);
   if (rows > 0 && !find(at, demand)) return {};
   const Columns adjoint = std::move(found_);
   Eigen::MatrixXd result(rows, count);
   for (Index p = 0; p < count; ++p) {
     make_room(1);
     moves_[0].resize(0, 3);
-    const Direct direct = ask_number(at, demand, 0, perturbations[static_cast<std::size_t>(p)], history, elapsed_s);
+    const Direct direct = ask_number(at, demand, 0, perturbations[p], history, elapsed_s);
     for (Index r = 0; r < rows; ++r) {
-      const ShapeGradient& each = told[static_cast<std::size_t>(r)];
+      const ShapeGradient& each = told[r];
       double sum =
           adjoint.moves.col(r).dot(right_.moves.col(0)) + adjoint.multipliers.col(r).dot(right_.multipliers.col(0));
       if (each.by_places.rows() > 0 && moves_[0].rows() > 0) sum += each.by_places.cwiseProduct(moves_[0]).sum();

@@ -13,11 +13,10 @@ namespace {
 Demand at_rest(const Model& model, const Actuation& wanted) {
   Demand demand{model.rest_actuation(), 0};
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
-    const ActuatorKind kind = model.actuators[a].kind;
-    if (kind == ActuatorKind::turn) demand.actuation[static_cast<Index>(a)] = wanted[static_cast<Index>(a)];
-    if (kind == ActuatorKind::force || kind == ActuatorKind::moment || kind == ActuatorKind::pressure)
-      demand.actuation[static_cast<Index>(a)] = 0;
-    if (kind == ActuatorKind::growth) demand.actuation[static_cast<Index>(a)] = model.actuators[a].rest;
+    const Actuator& of = model.actuators[a];
+    if (of.is<TurnCommand>()) demand.actuation[a] = wanted[a];
+    if (of.is<ForceCommand>() || of.is<MomentCommand>() || of.is<PressureCommand>()) demand.actuation[a] = 0;
+    if (of.is<GrowthDrive>()) demand.actuation[a] = model.actuators[a].rest;
   }
   return demand;
 }
@@ -54,14 +53,13 @@ Demand demand_of(const System& system, const Model& model, const State& start, c
   for (Index a = 0; a < system.actuators(); ++a) {
     if (system.measures().constrains(a))
       demand.actuation[a] = measured_command(system.measures(), a, start, rests, wanted[a]);
-    else if (model.actuators[a].kind == ActuatorKind::motion ||
-             (model.actuators[a].kind == ActuatorKind::turn && !rests))
+    else if (model.actuators[a].is<MotionCommand>() || (model.actuators[a].is<TurnCommand>() && !rests))
       demand.actuation[a] = system.placement().command_of(a, start.positions);
-    else if (!drives(model.actuators[a]) || model.actuators[a].kind == ActuatorKind::growth)
+    else if (!drives(model.actuators[a]) || model.actuators[a].is<GrowthDrive>())
       continue;
-    else if (model.actuators[a].kind == ActuatorKind::magnetic)
+    else if (model.actuators[a].is<MagneticDrive>())
       demand.actuation[a] = model.actuators[a].rest;
-    else if (model.actuators[a].kind == ActuatorKind::dea && !under_voltage(model.actuators[a]))
+    else if (model.actuators[a].is<DeaDrive>() && !under_voltage(model.actuators[a]))
       demand.actuation[a] = 1;
     else
       demand.actuation[a] = start.multipliers.size() > 0

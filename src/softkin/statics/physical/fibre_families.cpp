@@ -62,7 +62,7 @@ struct FamilyLaw {
 template <int K>
 Eigen::Matrix<double, 3, K> nodes_at(const Points& positions, const std::array<Index, K>& nodes) {
   Eigen::Matrix<double, 3, K> at;
-  for (int i = 0; i < K; ++i) at.col(i) = positions.row(nodes[static_cast<std::size_t>(i)]).transpose();
+  for (int i = 0; i < K; ++i) at.col(i) = positions.row(nodes[i]).transpose();
   return at;
 }
 
@@ -115,11 +115,11 @@ bool FibreFamilies::any(const Model& model) {
 template <int K, int Q, class Nodes>
 void FibreFamilies::add(Elements<K, Q>& elements, const Model& model, const Nodes& nodes, std::vector<Family> families,
                         Index number, std::int64_t slot) {
-  places_[static_cast<std::size_t>(number)] = static_cast<Index>(elements.size());
+  places_[number] = static_cast<Index>(elements.size());
   Element<K, Q>& element = elements.emplace_back();
   std::copy(nodes.begin(), nodes.end(), element.nodes.begin());
   Eigen::Matrix<double, K, 3> rest;
-  for (int i = 0; i < K; ++i) rest.row(i) = model.rest.row(element.nodes[static_cast<std::size_t>(i)]);
+  for (int i = 0; i < K; ++i) rest.row(i) = model.rest.row(element.nodes[i]);
   const energy::ElasticRest<K, Q> shape = energy::elastic_rest(rest);
   for (std::size_t q = 0; q < Q; ++q) {
     element.slopes[q] = shape.slope[q];
@@ -194,8 +194,7 @@ void FibreFamilies::evaluate(const Iterate& at, const Demand& /*demand*/, Term::
     });
     for (std::size_t e = 0; e < elements.size(); ++e) {  // by one thread: elements share vertices
       const Pulls pull(pulls.data() + first + 3 * K * e);
-      for (int i = 0; i < K; ++i)
-        sum.gradient.row(elements[e].nodes[static_cast<std::size_t>(i)]) += pull.col(i).transpose();
+      for (int i = 0; i < K; ++i) sum.gradient.row(elements[e].nodes[i]) += pull.col(i).transpose();
       sum.energy += energies[e];
     }
   });
@@ -232,12 +231,12 @@ void FibreFamilies::stiffness(const Iterate& at, const Demand& /*demand*/, bool 
 }
 
 Mat3 FibreFamilies::stress(Index element, int point, const Points& positions) const {
-  const Index place = places_[static_cast<std::size_t>(element)];
+  const Index place = places_[element];
   Mat3 stress = Mat3::Zero();
   if (place < 0) return stress;
   const auto of = [&]<int K, int Q>(const Elements<K, Q>& elements) {
-    const Element<K, Q>& own = elements[static_cast<std::size_t>(place)];
-    const Mat3 f = nodes_at<K>(positions, own.nodes) * own.slopes[static_cast<std::size_t>(point)];
+    const Element<K, Q>& own = elements[place];
+    const Mat3 f = nodes_at<K>(positions, own.nodes) * own.slopes[point];
     double energy = 0;
     if (add_force(f, own.families, stress, energy)) stress = (stress * f.transpose() / f.determinant()).eval();
   };

@@ -80,7 +80,7 @@ void Fibres::stiffness(const Iterate& at, const Demand& /*demand*/, bool project
   using Block = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
   team.pieces(static_cast<Index>(groups_.size()), [&](Index begin, Index end) {
     for (Index g = begin; g < end; ++g) {
-      const Group& group = groups_[static_cast<std::size_t>(g)];
+      const Group& group = groups_[g];
       const std::size_t count = group.vertices.size();
       double* const first = slots.data() + 9 * group.slot;
       std::fill_n(first, 9 * count * (count + 1) / 2, 0.0);

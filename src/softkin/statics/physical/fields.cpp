@@ -144,11 +144,11 @@ Fields::Setting Fields::setting(const Demand& demand) const {
     }
   }
   for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
-    const Actuator& actuator = model_.actuators[a];
-    if (actuator.kind != ActuatorKind::magnetic) continue;
-    const auto command = static_cast<FieldCommand>(actuator.axis);
-    const auto place = static_cast<std::size_t>(actuator.other);
-    const double value = demand.actuation[static_cast<Index>(a)];
+    const auto* drive = model_.actuators[a].as<MagneticDrive>();
+    if (!drive) continue;
+    const FieldCommand command = drive->command;
+    const auto place = static_cast<std::size_t>(drive->source);
+    const double value = demand.actuation[a];
     if (command == FieldCommand::current)
       setting.sources[place].current = value;
     else if (command == FieldCommand::flux_density)
@@ -165,9 +165,9 @@ Fields::Setting Fields::setting(const Demand& demand) const {
 }
 
 Fields::Setting Fields::derivative(Index actuator, const Demand& demand) const {
-  const Actuator& of = model_.actuators[static_cast<std::size_t>(actuator)];
-  const auto command = static_cast<FieldCommand>(of.axis);
-  const auto place = static_cast<std::size_t>(of.other);
+  const auto& drive = std::get<MagneticDrive>(model_.actuators[actuator].drive);
+  const FieldCommand command = drive.command;
+  const auto place = static_cast<std::size_t>(drive.source);
   Setting setting = this->setting(demand), result;
   result.sources.resize(setting.sources.size());
   if (command == FieldCommand::current) {

@@ -36,8 +36,8 @@ std::vector<Friction::Touch> Friction::touches(const Terms& terms) const {
   std::size_t first = 0;  // of the vertex at hand
   for (const ContactPotential::Term& term : terms) {
     if (term.threshold > 0) continue;
-    const Index vertex = term.pair.first, part = surfaces_.triangle_part[static_cast<std::size_t>(term.pair.second)];
-    const Index own = surfaces_.vertex_part[static_cast<std::size_t>(vertex)];
+    const Index vertex = term.pair.first, part = surfaces_.triangle_part[term.pair.second];
+    const Index own = surfaces_.vertex_part[vertex];
     if (surfaces_.rules->pair(own, part).friction == 0) continue;
     if (first < all.size() && all[first].vertex != vertex) first = all.size();
     auto found = std::find_if(all.begin() + static_cast<std::ptrdiff_t>(first), all.end(),
@@ -69,7 +69,7 @@ void Friction::hold(const Terms& terms, const std::vector<Anchor>& anchors, Hold
     hold.weights << 1, -anchor.weights;
     const double pressed = touch->force.norm();
     hold.normal = touch->force / pressed;
-    const Index own = surfaces_.vertex_part[static_cast<std::size_t>(anchor.vertex)];
+    const Index own = surfaces_.vertex_part[anchor.vertex];
     hold.limit = surfaces_.rules->pair(own, anchor.part).friction * pressed;
     holds.push_back(hold);
   }
@@ -137,7 +137,7 @@ void Friction::slide(const Points& positions, const Terms& terms, const Holds& h
     const Vec3 way = slip(positions, hold);
     const double length = way.norm();
     if (!(length > creep_mm_)) continue;
-    const Index part = surfaces_.triangle_part[static_cast<std::size_t>(hold.pair.second)];
+    const Index part = surfaces_.triangle_part[hold.pair.second];
     const auto anchor = std::find_if(anchors.begin(), anchors.end(),
                                      [&](const Anchor& a) { return a.vertex == hold.pair.first && a.part == part; });
     const auto touch = std::find_if(all.begin(), all.end(),
@@ -193,8 +193,7 @@ double Friction::energy(const Points& positions, const Holds& holds) const {
 void Friction::add_gradient(const Points& positions, const Holds& holds, Points& gradient) const {
   for (const Hold& hold : holds) {
     const Vec3 push = force(positions, hold);
-    for (int i = 0; i < 4; ++i)
-      gradient.row(hold.nodes[static_cast<std::size_t>(i)]) -= hold.weights[i] * push.transpose();
+    for (int i = 0; i < 4; ++i) gradient.row(hold.nodes[i]) -= hold.weights[i] * push.transpose();
   }
 }
 
@@ -241,19 +240,17 @@ void Friction::add_response(const ContactPotential& potential, const Points& pos
     auto term = std::lower_bound(terms.begin(), end, hold.pair.first,
                                  [](const auto& of, Index vertex) { return of.pair.first < vertex; });
     for (; term != end && term->pair.first == hold.pair.first; ++term) {
-      if (surfaces_.triangle_part[static_cast<std::size_t>(term->pair.second)] != hold.part) continue;
+      if (surfaces_.triangle_part[term->pair.second] != hold.part) continue;
       const double gap = std::sqrt(term->separation.squared);
       pressed -= term->weight * term->law.slope / gap * term->separation.vector;
       potential.stiffness(positions, *term, false, block);
-      for (int i = 0; i < 4; ++i)
-        change -= block.block<3, 3>(0, 3 * i) * moves.row(term->nodes[static_cast<std::size_t>(i)]).transpose();
+      for (int i = 0; i < 4; ++i) change -= block.block<3, 3>(0, 3 * i) * moves.row(term->nodes[i]).transpose();
     }
     const double size = pressed.norm();
     if (!(size > 0)) continue;
     const Vec3 way = contact::points_of(positions, hold.nodes) * hold.weights;
     const Vec3 more = change_of_force(hold.limit / size, creep_mm_, way, pressed, change);
-    for (int i = 0; i < 4; ++i)
-      gradient.row(hold.nodes[static_cast<std::size_t>(i)]) -= hold.weights[i] * more.transpose();
+    for (int i = 0; i < 4; ++i) gradient.row(hold.nodes[i]) -= hold.weights[i] * more.transpose();
   }
 }
 

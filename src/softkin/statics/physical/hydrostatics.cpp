@@ -98,7 +98,7 @@ void Hydrostatics::find_rims() {
       passes[{std::min(a, b), std::max(a, b)}] += a < b ? face.share : -face.share;
     }
   const auto still = [&](Index v) {
-    const auto& fixed = model_.fixed[static_cast<std::size_t>(v)];
+    const auto& fixed = model_.fixed[v];
     return fixed[0] && fixed[1] && fixed[2];
   };
   closed_ = std::all_of(passes.begin(), passes.end(), [&](const auto& edge) {
@@ -138,8 +138,8 @@ void Hydrostatics::each_place(const Face& face, const Points& positions, const V
       place.weight = 0.5 * doubled * point.weight * face.share;
       place.pressure = std::max(0.0, depths.of(place.shape));
       for (std::size_t i = 0; i < count; ++i) {
-        place.u += place.along_u[static_cast<Eigen::Index>(i)] * vertex_at(positions, face.nodes[i]);
-        place.v += place.along_v[static_cast<Eigen::Index>(i)] * vertex_at(positions, face.nodes[i]);
+        place.u += place.along_u[i] * vertex_at(positions, face.nodes[i]);
+        place.v += place.along_v[i] * vertex_at(positions, face.nodes[i]);
       }
       visit(place, Vec3(place.weight * place.u.cross(place.v)));
     }
@@ -167,7 +167,7 @@ void Hydrostatics::evaluate(const Iterate& at, const Demand& demand, Term::Scrat
     each_place(face, at.positions, [&](const Place& place, const Vec3& area) {
       const Vec3 push = demand.share * place.pressure * area;
       for (std::size_t i = 0; i < face.nodes.size(); ++i)
-        sum.gradient.row(face.nodes[i]) += place.shape[static_cast<Eigen::Index>(i)] * push.transpose();
+        sum.gradient.row(face.nodes[i]) += place.shape[i] * push.transpose();
       energy += 0.5 * place.pressure * place.pressure * face.deeper.dot(area) / face.deeper.squaredNorm();
     });
   sum.energy += demand.share * energy;
@@ -185,7 +185,7 @@ Hydrostatics::Blocks Hydrostatics::slopes(std::size_t number, const Points& posi
     for (std::size_t j = 0; j < count; ++j) {
       const auto k = static_cast<Eigen::Index>(j);
       const Mat3 change = place.shape[k] * by_depth + place.along_v[k] * by_v - place.along_u[k] * by_u;
-      for (std::size_t i = 0; i < count; ++i) blocks[i][j] += place.shape[static_cast<Eigen::Index>(i)] * change;
+      for (std::size_t i = 0; i < count; ++i) blocks[i][j] += place.shape[i] * change;
     }
   });
   return blocks;
@@ -198,8 +198,7 @@ void Hydrostatics::add_change(const Demand& from, const Demand& to, const Points
   for (const Face& face : faces_)
     each_place(face, positions, [&](const Place& place, const Vec3& area) {
       const Vec3 push = change * place.pressure * area;
-      for (std::size_t i = 0; i < face.nodes.size(); ++i)
-        force.row(face.nodes[i]) += place.shape[static_cast<Eigen::Index>(i)] * push.transpose();
+      for (std::size_t i = 0; i < face.nodes.size(); ++i) force.row(face.nodes[i]) += place.shape[i] * push.transpose();
     });
 }
 

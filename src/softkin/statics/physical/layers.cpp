@@ -107,15 +107,15 @@ Layers::Layers(const Model& model) : model_(model) {
   }
   std::vector<bool> held = vertices_of_elements(model);
   // what bends has a shape of its own, but a bag that is flat begins swollen: there the film has far to go
-  if (std::none_of(model.actuators.begin(), model.actuators.end(), [](const Actuator& each) { return each.flat; }))
+  if (std::none_of(model.actuators.begin(), model.actuators.end(), flat_at_rest))
     for (const auto& layer : model.layers) {
       if (layer->bends.empty()) continue;
       for (const CavityFace& face : layer->faces)
-        for (const Index v : nodes_of(face)) held[static_cast<std::size_t>(v)] = true;
+        for (const Index v : nodes_of(face)) held[v] = true;
     }
   for (const Face& face : faces_)
     std::copy_if(face.vertices.begin(), face.vertices.end(), std::back_inserter(alone_),
-                 [&](Index v) { return !held[static_cast<std::size_t>(v)]; });
+                 [&](Index v) { return !held[v]; });
   sort_unique(alone_);
 }
 
@@ -178,8 +178,7 @@ void Layers::add_bending(const Layer& layer) {
     for (std::size_t s = 0; s < 2; ++s)
       for (std::size_t i = 0; i < of.sides[s].vertices.size(); ++i) {
         const auto at = std::lower_bound(joint.vertices.begin(), joint.vertices.end(), of.sides[s].vertices[i]);
-        joint.parts[static_cast<std::size_t>(at - joint.vertices.begin())].segment<3>(
-            3 * static_cast<Eigen::Index>(s)) = of.sides[s].parts[i];
+        joint.parts[at - joint.vertices.begin()].segment<3>(3 * static_cast<Eigen::Index>(s)) = of.sides[s].parts[i];
       }
     joints_.push_back(std::move(joint));
   }
@@ -270,7 +269,7 @@ void Layers::stiffness(const Iterate& at, const Demand& /*demand*/, bool project
   };
   team.pieces(static_cast<Index>(faces_.size()), [&](Index begin, Index end) {
     for (Index n = begin; n < end; ++n) {
-      const Face& face = faces_[static_cast<std::size_t>(n)];
+      const Face& face = faces_[n];
       double* const first = room(face.slot, face.vertices.size());
       for (std::size_t p = 0; p < face.places.size(); ++p) {
         const Sheet f = sheet_gradient(*face.places[p], at.positions);
@@ -284,10 +283,10 @@ void Layers::stiffness(const Iterate& at, const Demand& /*demand*/, bool project
     put_stiffness(bent, projected ? positive(response.hessian) : response.hessian, slots.data() + 9 * bent.slot);
   };
   team.pieces(static_cast<Index>(places_.size()), [&](Index begin, Index end) {
-    for (Index n = begin; n < end; ++n) put(places_[static_cast<std::size_t>(n)]);
+    for (Index n = begin; n < end; ++n) put(places_[n]);
   });
   team.pieces(static_cast<Index>(joints_.size()), [&](Index begin, Index end) {
-    for (Index n = begin; n < end; ++n) put(joints_[static_cast<std::size_t>(n)]);
+    for (Index n = begin; n < end; ++n) put(joints_[n]);
   });
 }
 

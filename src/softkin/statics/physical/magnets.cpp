@@ -120,15 +120,15 @@ Magnets::Magnets(const Model& model, const std::vector<std::int64_t>& slots)
     }
   }
   for (Index a = 0; a < static_cast<Index>(model.actuators.size()); ++a)
-    if (model.actuators[a].kind == ActuatorKind::magnetic) commands_.push_back(a);
+    if (model.actuators[a].is<MagneticDrive>()) commands_.push_back(a);
   std::vector<double> sums(static_cast<std::size_t>(vertices_));
   each([&]<int K, int Q>(const Set<K, Q>& set) {
     for (std::size_t e = 0; e < set.nodes.size(); ++e)
       for (const auto& poles : set.poles[e])
-        for (int i = 0; i < K; ++i) sums[static_cast<std::size_t>(set.nodes[e][i])] += poles[i];
+        for (int i = 0; i < K; ++i) sums[set.nodes[e][i]] += poles[i];
   });
   for (Index v = 0; v < vertices_; ++v)
-    if (sums[static_cast<std::size_t>(v)] != 0) poles_.emplace_back(v, sums[static_cast<std::size_t>(v)]);
+    if (sums[v] != 0) poles_.emplace_back(v, sums[v]);
 }
 
 std::optional<double> Magnets::add_gradient(const Fields::Setting& setting, const Points& positions, Points& gradient,

@@ -50,12 +50,12 @@ Moments::Moments(const Model& model) : model_(model) {
   for (const RegionMoment& of : model.moments)
     for (int axis = 0; axis < 3; ++axis) components_.push_back({of, axis});
   for (Index a = 0; a < static_cast<Index>(model.actuators.size()); ++a)
-    if (const Actuator& command = model.actuators[static_cast<std::size_t>(a)]; loads(a))
-      components_[3 * static_cast<std::size_t>(command.other) + static_cast<std::size_t>(command.axis)].command = a;
+    if (const auto* command = model.actuators[a].as<MomentCommand>())
+      components_[3 * static_cast<std::size_t>(command->moment) + static_cast<std::size_t>(command->axis)].command = a;
 }
 
 bool Moments::loads(Index command) const {
-  return model_.actuators[static_cast<std::size_t>(command)].kind == ActuatorKind::moment;
+  return model_.actuators[command].is<MomentCommand>();
 }
 
 bool Moments::grows() const {

@@ -90,7 +90,7 @@ double Newton::merit(const Balance& balance) const {
   double missed = constraint_weights_.dot(balance.constraint.cwiseAbs());
   const std::vector<Index>& pressures = system_.freedoms().scalar_unknowns();
   for (std::size_t p = 0; p < pressures.size(); ++p)
-    missed += pressure_weights_[static_cast<Index>(p)] * std::abs(balance.force[pressures[p]]);
+    missed += pressure_weights_[p] * std::abs(balance.force[pressures[p]]);
   return balance.energy + balance.load_energy + missed;
 }
 
@@ -123,7 +123,7 @@ double Newton::weigh_pressures(const Iterate& at, double above) {
   pressure_weights_.resize(static_cast<Index>(unknowns.size()));
   double slope = system_.pressure_work(at.positions, balance_.force);
   for (std::size_t p = 0; p < unknowns.size(); ++p) {
-    const double weight = pressure_weights_[static_cast<Index>(p)] = above * weights[unknowns[p]];
+    const double weight = pressure_weights_[p] = above * weights[unknowns[p]];
     slope -= weight * std::abs(balance_.force[unknowns[p]]);
   }
   return slope;

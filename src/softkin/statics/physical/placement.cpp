@@ -20,42 +20,42 @@ Placement::Placement(const Model& model, const Body& body, const supports::Freed
       supports_(model),
       turning_(like ? like->turning_
                     : std::make_shared<const supports::GlobalStep>(model, body.laplacian(), freedoms.vertex_order())) {
-  for (const Actuator& actuator : model.actuators)
-    vertices_of_.push_back(actuator.kind == ActuatorKind::motion ? model.vertices_of_part(actuator.other)
-                                                                 : std::array<Index, 2>{0, 0});
+  for (const Actuator& actuator : model.actuators) {
+    const auto* motion = actuator.as<MotionCommand>();
+    moved_.push_back(motion ? Moved{model.vertices_of_part(motion->part), motion->axis} : Moved{});
+  }
 }
 
 void Placement::hold(const Demand& demand, Points& positions) const {
   freedoms_.hold(demand.share, positions);
   supports_.place(demand.actuation, demand.share, positions);
-  for (std::size_t a = 0; a < vertices_of_.size(); ++a)
-    for (Index v = vertices_of_[a][0]; v < vertices_of_[a][1]; ++v)
-      positions(v, model_.actuators[a].axis) += demand.actuation[static_cast<Index>(a)];
+  for (std::size_t a = 0; a < moved_.size(); ++a)
+    for (Index v = moved_[a].vertices[0]; v < moved_[a].vertices[1]; ++v)
+      positions(v, moved_[a].axis) += demand.actuation[a];
 }
 
 bool Placement::changes(const Demand& from, const Demand& to) const {
   if (from.share != to.share) return true;
   for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
-    const ActuatorKind kind = model_.actuators[a].kind;
+    const Actuator& command = model_.actuators[a];
     const Index i = static_cast<Index>(a);
-    if ((kind == ActuatorKind::motion || kind == ActuatorKind::turn) && from.actuation[i] != to.actuation[i])
-      return true;
+    if ((command.is<MotionCommand>() || command.is<TurnCommand>()) && from.actuation[i] != to.actuation[i]) return true;
   }
   return false;
 }
 
 void Placement::velocity(Index actuator, const Demand& demand, Points& moves) const {
   moves.setZero(model_.rest.rows(), 3);
-  const auto& [first, end] = vertices_of_[static_cast<std::size_t>(actuator)];
-  if (end > first)
-    moves.col(model_.actuators[static_cast<std::size_t>(actuator)].axis).segment(first, end - first).setOnes();
+  const Moved& moved = moved_[actuator];
+  const auto& [first, end] = moved.vertices;
+  if (end > first) moves.col(moved.axis).segment(first, end - first).setOnes();
   supports_.add_velocity(actuator, demand.actuation, demand.share, moves);
 }
 
 double Placement::command_of(Index actuator, const Points& positions) const {
-  const Actuator& moved = model_.actuators[static_cast<std::size_t>(actuator)];
-  if (moved.kind == ActuatorKind::turn) return supports_.angle(actuator, positions);
-  const Index first = vertices_of_[static_cast<std::size_t>(actuator)][0];
+  if (model_.actuators[actuator].is<TurnCommand>()) return supports_.angle(actuator, positions);
+  const Moved& moved = moved_[actuator];
+  const Index first = moved.vertices[0];
   return positions(first, moved.axis) - model_.rest(first, moved.axis);
 }
 

@@ -45,7 +45,13 @@ class Placement {
   bool contact_;  // things may touch
   supports::Turning supports_;
   std::shared_ptr<const supports::GlobalStep> turning_;
-  std::vector<std::array<Index, 2>> vertices_of_;  // per actuator: of the obstacle that it moves
+  /// Of the obstacle that an actuator moves; of another none.
+  struct Moved {
+    std::array<Index, 2> vertices{0, 0};
+    int axis = 0;
+  };
+
+  std::vector<Moved> moved_;  // per actuator
 };
 
 }  // namespace softkin::physical

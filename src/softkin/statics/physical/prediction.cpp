@@ -13,7 +13,7 @@ bool are_of(const Slopes& slopes, const Iterate& at) {
 
 std::vector<bool> held(const Slopes& slopes, Index actuators) {
   std::vector<bool> active(static_cast<std::size_t>(actuators));
-  for (const Index a : slopes.held) active[static_cast<std::size_t>(a)] = true;
+  for (const Index a : slopes.held) active[a] = true;
   return active;
 }
 
@@ -27,7 +27,7 @@ struct Tangent {
     const Eigen::VectorXd multipliers = slopes.multipliers * way;
     step = slopes.moves * way;
     change.setZero(way.size());
-    for (std::size_t i = 0; i < slopes.held.size(); ++i) change[slopes.held[i]] = multipliers[static_cast<Index>(i)];
+    for (std::size_t i = 0; i < slopes.held.size(); ++i) change[slopes.held[i]] = multipliers[i];
   }
 
   Tangent(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,

@@ -18,7 +18,7 @@ std::unique_ptr<const Pressures> pressures_of(const Model& model, const Pressure
   std::map<std::array<Index, 3>, Index> known;  // by material, what lets it grow, and corner
   for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
     const Index material = model.tetrahedron_roles[e].material;
-    const Material& of = model.materials[static_cast<std::size_t>(material)];
+    const Material& of = model.materials[material];
     if (!of.mixed) continue;
     shear = std::max(shear, shear_modulus(of.elastic));
     const Index grower = growers.tetrahedra.empty() ? -1 : growers.tetrahedra[e];

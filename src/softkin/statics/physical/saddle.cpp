@@ -164,8 +164,8 @@ int Saddle::negative_with_tendons(const Eigen::MatrixXd& rates) const {
   Eigen::MatrixXd vectors(eigen.vectors.rows(), static_cast<Eigen::Index>(kept.size()));
   Eigen::VectorXd inverse(vectors.cols());
   for (Eigen::Index i = 0; i < vectors.cols(); ++i) {
-    vectors.col(i) = eigen.vectors.col(kept[static_cast<std::size_t>(i)]);
-    inverse[i] = 1 / eigen.values[kept[static_cast<std::size_t>(i)]];
+    vectors.col(i) = eigen.vectors.col(kept[i]);
+    inverse[i] = 1 / eigen.values[kept[i]];
   }
   Eigen::MatrixXd inner = vectors.transpose() * stretches_ * vectors;
   inner = -0.5 * (inner + inner.transpose()).eval();
@@ -178,7 +178,7 @@ int Saddle::negative_with_tendons(const Eigen::MatrixXd& rates) const {
 void Saddle::grow(const Eigen::VectorXd& change, Eigen::VectorXd& growth) const {
   for (const TendonColumns::Tendon& tendon : tendons_.tendons)
     for (std::size_t i = 0; i < active_.size(); ++i)
-      if (active_[i] == tendon.actuator) growth[active_[i]] = 1 + change[static_cast<Index>(i)] / tendon.tension;
+      if (active_[i] == tendon.actuator) growth[active_[i]] = 1 + change[i] / tendon.tension;
 }
 
 void Saddle::close_constraints() {

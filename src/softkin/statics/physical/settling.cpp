@@ -26,7 +26,7 @@ Newton::Outcome Continuation::settle_here(const Demand& demand, Iterate& at) {
 /// commands misses them, and no equation would tell.
 void Continuation::give_loads(const Demand& demand, Iterate& at) const {
   for (Index a = 0; a < system_.actuators(); ++a)
-    if (!active_[static_cast<std::size_t>(a)] && system_.measures().given_load(a))
+    if (!active_[a] && system_.measures().given_load(a))
       at.multipliers[a] = system_.measures().given(a, demand.actuation[a]);
 }
 

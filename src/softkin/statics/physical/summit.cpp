@@ -293,7 +293,7 @@ double Continuation::share_of(Index a, const Demand& from, const Demand& to, dou
 
 void Continuation::tell_summit(Index a, const Demand& from, const Demand& to, const Measured& summit) {
   const Actuator& actuator = system_.model().actuators[a];
-  const bool cable = actuator.kind == ActuatorKind::cable;
+  const bool cable = actuator.is<CableDrive>();
   report_.remark = std::string(cable ? "the tension of cable '" : "the pressure of chamber '") + actuator.name +
                    "' has its " + (to.actuation[a] > from.actuation[a] ? "maximum" : "minimum") + " there, " +
                    load_text(a, summit.load) + " at " + measure_text(a, summit.measure);

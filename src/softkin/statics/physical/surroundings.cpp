@@ -27,8 +27,8 @@ Surroundings::Surroundings(const Model& model)
 }
 
 bool Surroundings::loads(Index command) const {
-  const ActuatorKind kind = model_.actuators[static_cast<std::size_t>(command)].kind;
-  return kind == ActuatorKind::force || kind == ActuatorKind::hold;
+  const Actuator& actuator = model_.actuators[command];
+  return actuator.is<ForceCommand>() || actuator.is<HoldCommand>();
 }
 
 /// Adds what a body's springs pull with.
@@ -37,10 +37,10 @@ void Surroundings::add_spring(const FreeBody& body, double stiffness, const Poin
   for (const Index v : body.vertices) gradient.row(v) += each * (positions.row(v) - model_.rest.row(v));
 }
 
-void Surroundings::add_force(const Actuator& actuator, double newtons, Points& gradient) const {
-  const EmbeddedPoint& place = place_of(actuator);
+void Surroundings::add_force(const ForceCommand& force, double newtons, Points& gradient) const {
+  const EmbeddedPoint& place = place_of(force);
   for (std::size_t i = 0; i < place.vertices.size(); ++i)
-    gradient(place.vertices[i], actuator.axis) -= newtons * place.weights[i];
+    gradient(place.vertices[i], force.axis) -= newtons * place.weights[i];
 }
 
 void Surroundings::evaluate(const Iterate& at, const Demand& demand, Scratch& /*scratch*/, Sum& sum,
@@ -49,21 +49,20 @@ void Surroundings::evaluate(const Iterate& at, const Demand& demand, Scratch& /*
   const Points& positions = at.positions;
   double energy = 0;
   for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
-    const Actuator& actuator = model_.actuators[a];
-    const double command = demand.actuation[static_cast<Index>(a)];
-    if (actuator.kind == ActuatorKind::hold) {
-      const FreeBody& body = model_.bodies[static_cast<std::size_t>(actuator.other)];
+    const double command = demand.actuation[a];
+    if (const auto* hold = model_.actuators[a].as<HoldCommand>()) {
+      const FreeBody& body = model_.bodies[hold->body];
       const double stiffness = stiffest_ * firm_share(command);
       add_spring(body, stiffness, positions, sum.gradient);
       for (const Index v : body.vertices)
         energy += 0.5 * stiffness / static_cast<double>(body.vertices.size()) *
                   (positions.row(v) - model_.rest.row(v)).squaredNorm();
-    } else if (actuator.kind == ActuatorKind::force && command != 0) {
-      add_force(actuator, command, sum.gradient);
-      const EmbeddedPoint& place = place_of(actuator);
+    } else if (const auto* force = model_.actuators[a].as<ForceCommand>(); force && command != 0) {
+      add_force(*force, command, sum.gradient);
+      const EmbeddedPoint& place = place_of(*force);
       for (std::size_t i = 0; i < place.vertices.size(); ++i) {
         const Index v = place.vertices[i];
-        energy -= command * place.weights[i] * (positions(v, actuator.axis) - model_.rest(v, actuator.axis));
+        energy -= command * place.weights[i] * (positions(v, force->axis) - model_.rest(v, force->axis));
       }
     }
   }
@@ -81,9 +80,8 @@ void Surroundings::stiffness(const Iterate& /*at*/, const Demand& demand, bool /
   if (!any_body()) return;
   std::vector<double> of_body(model_.bodies.size());
   for (std::size_t a = 0; a < model_.actuators.size(); ++a)
-    if (model_.actuators[a].kind == ActuatorKind::hold)
-      of_body[static_cast<std::size_t>(model_.actuators[a].other)] =
-          stiffest_ * firm_share(demand.actuation[static_cast<Index>(a)]);
+    if (const auto* hold = model_.actuators[a].as<HoldCommand>())
+      of_body[hold->body] = stiffest_ * firm_share(demand.actuation[a]);
   double* slot = slots.data() + 9 * first_slot_;
   for (std::size_t b = 0; b < of_body.size(); ++b) {
     const std::size_t count = model_.bodies[b].vertices.size();
@@ -98,9 +96,8 @@ void Surroundings::add_change(const Demand& from, const Demand& to, const Points
   for (Index a = 0; a < static_cast<Index>(model_.actuators.size()); ++a) {
     const double change = to.actuation[a] - from.actuation[a];
     if (change == 0 || !loads(a)) continue;
-    if (const Actuator& actuator = model_.actuators[static_cast<std::size_t>(a)];
-        actuator.kind == ActuatorKind::force) {
-      add_force(actuator, change, force);
+    if (const auto* command = model_.actuators[a].as<ForceCommand>()) {
+      add_force(*command, change, force);
       continue;
     }
     slope.setZero(positions.rows(), 3);
@@ -111,12 +108,10 @@ void Surroundings::add_change(const Demand& from, const Demand& to, const Points
 
 void Surroundings::add_derivative(Index command, const Demand& demand, const Points& positions, Scratch& /*scratch*/,
                                   Points& force, Team& /*team*/) const {
-  if (!loads(command)) return;
-  const Actuator& actuator = model_.actuators[static_cast<std::size_t>(command)];
-  if (actuator.kind == ActuatorKind::hold)
-    return add_spring(model_.bodies[static_cast<std::size_t>(actuator.other)],
-                      stiffest_ * firm_slope(demand.actuation[command]), positions, force);
-  add_force(actuator, 1, force);
+  const Actuator& actuator = model_.actuators[command];
+  if (const auto* hold = actuator.as<HoldCommand>())
+    add_spring(model_.bodies[hold->body], stiffest_ * firm_slope(demand.actuation[command]), positions, force);
+  if (const auto* newtons = actuator.as<ForceCommand>()) add_force(*newtons, 1, force);
 }
 
 }  // namespace softkin::physical

@@ -28,12 +28,10 @@ class Surroundings : public Term {
 
   /// A force, or what holds a body.
   [[nodiscard]] bool loads(Index command) const override;
-  [[nodiscard]] bool holds(Index command) const {
-    return model_.actuators[static_cast<std::size_t>(command)].kind == ActuatorKind::hold;
-  }
+  [[nodiscard]] bool holds(Index command) const { return model_.actuators[command].is<HoldCommand>(); }
   /// What a command of a force adds to the gradient, linear in it [N].
   void add_force(Index command, double newtons, Points& gradient) const {
-    add_force(model_.actuators[static_cast<std::size_t>(command)], newtons, gradient);
+    add_force(std::get<ForceCommand>(model_.actuators[command].drive), newtons, gradient);
   }
   /// To first order, from the first demand on.
   void add_change(const Demand& from, const Demand& to, const Points& positions, Scratch& scratch, Points& force,
@@ -44,10 +42,10 @@ class Surroundings : public Term {
 
  private:
   void add_spring(const FreeBody& body, double stiffness, const Points& positions, Points& gradient) const;
-  void add_force(const Actuator& actuator, double newtons, Points& gradient) const;
+  void add_force(const ForceCommand& force, double newtons, Points& gradient) const;
   /// Where a force acts: at a body's center, or at a place of the robot.
-  [[nodiscard]] const EmbeddedPoint& place_of(const Actuator& force) const {
-    return force.points.empty() ? model_.bodies[static_cast<std::size_t>(force.other)].center : force.points.front();
+  [[nodiscard]] const EmbeddedPoint& place_of(const ForceCommand& force) const {
+    return force.place ? *force.place : model_.bodies[force.body].center;
   }
 
   const Model& model_;

@@ -30,7 +30,7 @@ Eigen::VectorXd push_of(const System& system, const Demand& there, const std::ve
   const Imbalance imbalance = system.imbalance(balance, work, team);
   if (imbalance.residual <= imbalance.rounding) push.setZero();
   for (Index a = 0; a < system.actuators(); ++a) {
-    if (!active[static_cast<std::size_t>(a)] || system.measures().sign(a) > 0) continue;
+    if (!active[a] || system.measures().sign(a) > 0) continue;
     system.freedoms().reduce(system.pull(a, at), at.positions, unit);
     push += unit;
   }
@@ -42,7 +42,7 @@ class Drum {
  public:
   Drum(const System& system, const Points& positions) : system_(system), positions_(positions) {
     alone_.assign(static_cast<std::size_t>(positions.rows()), false);
-    for (const Index v : system.layers()->alone()) alone_[static_cast<std::size_t>(v)] = true;
+    for (const Index v : system.layers()->alone()) alone_[v] = true;
   }
 
   /// Conjugate gradients.
@@ -69,12 +69,12 @@ class Drum {
     Points moves;
     system_.freedoms().expand(unknowns, positions_, moves);
     for (Index v = 0; v < moves.rows(); ++v)
-      if (!alone_[static_cast<std::size_t>(v)]) moves.row(v).setZero();
+      if (!alone_[v]) moves.row(v).setZero();
     return moves;
   }
   [[nodiscard]] Eigen::VectorXd reduced(Points forces) const {
     for (Index v = 0; v < forces.rows(); ++v)
-      if (!alone_[static_cast<std::size_t>(v)]) forces.row(v).setZero();
+      if (!alone_[v]) forces.row(v).setZero();
     Eigen::VectorXd out(system_.freedoms().size());
     system_.freedoms().reduce(forces, positions_, out);
     return out;
@@ -116,7 +116,7 @@ std::optional<Swelling> swell(const System& system, const Demand& there, const s
                               Workspace& work, Team& team) {
   Iterate begin = at;
   for (Index a = 0; a < system.actuators(); ++a)
-    if (!active[static_cast<std::size_t>(a)] && system.measures().given_load(a))
+    if (!active[a] && system.measures().given_load(a))
       begin.multipliers[a] = system.measures().given(a, there.actuation[a]);
   system.placement().hold(there, begin.positions);
   const Eigen::VectorXd push = push_of(system, there, active, begin, work, team);

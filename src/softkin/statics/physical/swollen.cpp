@@ -15,8 +15,7 @@ constexpr double narrowest_barrier = 1e-11, narrower = 0.1, hardly_narrower = 0.
 /// A demand whose pressures are so many times as large.
 Demand Continuation::pressed(Demand demand, double times) const {
   for (Index a = 0; a < system_.actuators(); ++a) {
-    if (active_[static_cast<std::size_t>(a)] || !system_.measures().given_load(a) || system_.measures().sign(a) > 0)
-      continue;
+    if (active_[a] || !system_.measures().given_load(a) || system_.measures().sign(a) > 0) continue;
     demand.actuation[a] *= times;
   }
   return demand;

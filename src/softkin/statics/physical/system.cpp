@@ -270,7 +270,7 @@ void System::measure(const Iterate& at, const Demand& demand, Workspace& work, E
   for (Index a = 0; a < actuators(); ++a) {
     if (!tendons().rubs(a)) continue;
     out.tendons.resize(static_cast<std::size_t>(actuators()));
-    out.tendons[static_cast<std::size_t>(a)] = tendons().forces(a, at.multipliers[a], at);
+    out.tendons[a] = tendons().forces(a, at.multipliers[a], at);
   }
 }
 

@@ -57,17 +57,21 @@ Tendons::Tendons(const Model& model) : model_(model), cables_(model.actuators.si
   for (std::size_t a = 0; a < cables_.size(); ++a) {
     const Actuator& actuator = model.actuators[a];
     if (!softkin::rubs(actuator)) continue;
-    cables_[a] = {remembered_, static_cast<Index>(actuator.points.size()) - 1, actuator.friction, actuator.sheath,
+    const auto& cable = std::get<CableDrive>(actuator.drive);
+    cables_[a] = {remembered_, static_cast<Index>(cable.points.size()) - 1, cable.friction, cable.sheath,
                   creep_share * actuator.rest_measure};
     remembered_ += cables_[a].count;
   }
 }
 
+const std::vector<EmbeddedPoint>& Tendons::points_of(Index actuator) const {
+  return std::get<CableDrive>(model_.actuators[actuator].drive).points;
+}
+
 Tendons::Way Tendons::way(Index actuator, const Points& positions) const {
-  const Cable& cable = cables_[static_cast<std::size_t>(actuator)];
+  const Cable& cable = cables_[actuator];
   Way way;
-  for (const EmbeddedPoint& point : model_.actuators[static_cast<std::size_t>(actuator)].points)
-    way.points.push_back(point.at(positions));
+  for (const EmbeddedPoint& point : points_of(actuator)) way.points.push_back(point.at(positions));
   const auto count = static_cast<Index>(way.points.size()) - 1;
   way.lengths.resize(count);
   way.beyond.resize(count);
@@ -96,14 +100,13 @@ Tendons::Way Tendons::way(Index actuator, const Points& positions) const {
 
 Tendons::Way Tendons::way(Index actuator, const Iterate& at) const {
   Way found = way(actuator, at.positions);
-  const Cable& cable = cables_[static_cast<std::size_t>(actuator)];
+  const Cable& cable = cables_[actuator];
   const Index count = static_cast<Index>(found.lengths.size());
   found.slips.setZero(count);
   found.share.resize(count);
   double exponent = 0;
   for (Index j = 0; j < count; ++j) {
-    if (!at.eyelets.empty())
-      found.slips[j] = (at.eyelets[static_cast<std::size_t>(cable.memory + j)] - found.beyond[j]) / cable.creep;
+    if (!at.eyelets.empty()) found.slips[j] = (at.eyelets[cable.memory + j] - found.beyond[j]) / cable.creep;
     exponent += found.limits[j] * friction_share(found.slips[j]);
     found.share[j] = std::exp(-exponent);
   }
@@ -111,7 +114,7 @@ Tendons::Way Tendons::way(Index actuator, const Iterate& at) const {
 }
 
 void Tendons::spread(Index actuator, const std::vector<Vec3>& vectors, Points& force) const {
-  const auto& points = model_.actuators[static_cast<std::size_t>(actuator)].points;
+  const std::vector<EmbeddedPoint>& points = points_of(actuator);
   for (std::size_t i = 0; i < points.size(); ++i)
     for (std::size_t k = 0; k < points[i].vertices.size(); ++k)
       force.row(points[i].vertices[k]) += points[i].weights[k] * vectors[i].transpose();
@@ -126,8 +129,7 @@ std::vector<double> Tendons::lengths(const Points& positions, const Eigen::Vecto
   for (Index a = 0; a < static_cast<Index>(cables_.size()); ++a) {
     if (!rubs(a)) continue;
     for (const double beyond : way(a, positions).beyond)
-      all.push_back(beyond + cables_[static_cast<std::size_t>(a)].creep *
-                                 (slips.size() == remembered_ ? slips[static_cast<Index>(all.size())] : 1));
+      all.push_back(beyond + cables_[a].creep * (slips.size() == remembered_ ? slips[all.size()] : 1));
   }
   return all;
 }
@@ -148,7 +150,7 @@ Eigen::VectorXd Tendons::slips(const Iterate& at) const {
   for (Index a = 0; a < static_cast<Index>(cables_.size()); ++a) {
     if (!rubs(a)) continue;
     const Way found = way(a, at);
-    all.segment(cables_[static_cast<std::size_t>(a)].memory, found.slips.size()) = found.slips;
+    all.segment(cables_[a].memory, found.slips.size()) = found.slips;
   }
   return all;
 }
@@ -171,11 +173,10 @@ void Tendons::pull(Index actuator, const Iterate& at, Points& force) const {
 void Tendons::add_response(Index actuator, double tension, const Iterate& at, const Points& moves,
                            Points& force) const {
   const Way found = way(actuator, at);
-  const double creep = cables_[static_cast<std::size_t>(actuator)].creep;
+  const double creep = cables_[actuator].creep;
   const auto count = static_cast<Index>(found.share.size());
   std::vector<Vec3> steps, vectors(found.points.size(), Vec3::Zero());
-  for (const EmbeddedPoint& point : model_.actuators[static_cast<std::size_t>(actuator)].points)
-    steps.push_back(point.at(moves));
+  for (const EmbeddedPoint& point : points_of(actuator)) steps.push_back(point.at(moves));
   Eigen::VectorXd slip(count);  // of the moves
   double shorter = 0;
   for (Index j = count; j-- > 0;) slip[j] = shorter -= found.directions[j].dot(steps[j + 1] - steps[j]);
@@ -184,7 +185,7 @@ void Tendons::add_response(Index actuator, double tension, const Iterate& at, co
     double turn = 0;
     if (j > 0)
       for (int k = 0; k < 3; ++k) turn += found.turns[j][k].dot(steps[j - 1 + k]);
-    change -= cables_[static_cast<std::size_t>(actuator)].friction * turn * friction_share(found.slips[j]) +
+    change -= cables_[actuator].friction * turn * friction_share(found.slips[j]) +
               found.limits[j] * friction_slope(found.slips[j]) * slip[j] / creep;
     const Vec3 more = tension * found.share[j] * change * found.directions[j];
     vectors[j] -= more;
@@ -207,7 +208,7 @@ TendonColumns Tendons::columns(const Iterate& at, const supports::Freedoms& free
   Index count = 0;
   for (Index a = 0; a < static_cast<Index>(cables_.size()); ++a) {
     if (!rubs(a) || at.multipliers[a] == 0) continue;
-    const Cable& cable = cables_[static_cast<std::size_t>(a)];
+    const Cable& cable = cables_[a];
     columns.tendons.push_back({count, cable.count, a, cable.memory, cable.creep, at.multipliers[a]});
     count += cable.count;
   }
@@ -218,7 +219,7 @@ TendonColumns Tendons::columns(const Iterate& at, const supports::Freedoms& free
   for (const TendonColumns::Tendon& tendon : columns.tendons) {
     const Index a = tendon.actuator;
     const Way found = way(a, at);
-    const double friction = cables_[static_cast<std::size_t>(a)].friction;
+    const double friction = cables_[a].friction;
     columns.tensions.segment(tendon.begin, tendon.count) = at.multipliers[a] * found.share;
     columns.limits.segment(tendon.begin, tendon.count) = found.limits;
     std::vector<Vec3> vectors(found.points.size());
@@ -273,8 +274,7 @@ Eigen::MatrixXd TendonColumns::rates(const Eigen::VectorXd& slips, const Eigen::
       sums.push_back(sum += stiffness[j]);
       const double secant = std::abs(exponent) > small ? std::expm1(exponent) / exponent : 1;
       const double scale = grown * tensions[tendon.begin + j] * secant;
-      for (Index k = 0; k < tendon.count; ++k)
-        rates(tendon.begin + j, tendon.begin + k) = scale * sums[static_cast<std::size_t>(std::min(j, k))];
+      for (Index k = 0; k < tendon.count; ++k) rates(tendon.begin + j, tendon.begin + k) = scale * sums[std::min(j, k)];
     }
   }
   return rates;

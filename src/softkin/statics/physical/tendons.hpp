@@ -51,7 +51,7 @@ class Tendons {
   explicit Tendons(const Model& model);
 
   [[nodiscard]] bool any() const { return remembered_ > 0; }
-  [[nodiscard]] bool rubs(Index actuator) const { return cables_[static_cast<std::size_t>(actuator)].memory >= 0; }
+  [[nodiscard]] bool rubs(Index actuator) const { return cables_[actuator].memory >= 0; }
   /// Numbers that are remembered: per eyelet of every cable that rubs.
   [[nodiscard]] std::size_t remembered() const { return static_cast<std::size_t>(remembered_); }
 
@@ -84,6 +84,7 @@ class Tendons {
     double friction = 0, sheath = 0, creep = 1;
   };
   struct Way;
+  [[nodiscard]] const std::vector<EmbeddedPoint>& points_of(Index actuator) const;
   [[nodiscard]] Way way(Index actuator, const Points& positions) const;
   [[nodiscard]] Way way(Index actuator, const Iterate& at) const;
   void spread(Index actuator, const std::vector<Vec3>& vectors, Points& force) const;

@@ -67,8 +67,8 @@ bool Tractions::act(const Model& model) {
 Tractions::Tractions(const Model& model) : model_(model) {
   std::vector<Index> commands(model.tractions.size(), -1);
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
-    if (model.actuators[a].kind == ActuatorKind::pressure)
-      commands[static_cast<std::size_t>(model.actuators[a].other)] = static_cast<Index>(a);
+    if (const auto* pressure = model.actuators[a].as<PressureCommand>())
+      commands[pressure->traction] = static_cast<Index>(a);
   double count = 0;
   for (std::size_t t = 0; t < model.tractions.size(); ++t) {
     const FollowingTraction& traction = model.tractions[t];
@@ -110,7 +110,7 @@ void Tractions::evaluate(const Iterate& at, const Demand& demand, Term::Scratch&
     const Vec3 force = scale * place.area_mm2 * load.whole();
     Vec3 x = -middle_, move = Vec3::Zero();
     for (std::size_t i = 0; i < face.nodes.size(); ++i) {
-      const double shape = place.point->shape[static_cast<Eigen::Index>(i)];
+      const double shape = place.point->shape[i];
       sum.gradient.row(face.nodes[i]) -= shape * force.transpose();
       x += shape * vertex_at(at.positions, face.nodes[i]);
       move += shape * (vertex_at(at.positions, face.nodes[i]) - vertex_at(model_.rest, face.nodes[i]));
@@ -139,8 +139,7 @@ Tractions::Blocks Tractions::slopes(std::size_t number, const Points& positions)
       const auto k = static_cast<Eigen::Index>(j);
       const Eigen::RowVector2d slope = Eigen::RowVector2d(point.along_u[k], point.along_v[k]) * place.to_frame;
       const Mat3 change = slope[0] * by[0] + slope[1] * by[1];
-      for (std::size_t i = 0; i < face.nodes.size(); ++i)
-        blocks[i][j] -= point.shape[static_cast<Eigen::Index>(i)] * change;
+      for (std::size_t i = 0; i < face.nodes.size(); ++i) blocks[i][j] -= point.shape[i] * change;
     }
   }
   return blocks;
@@ -153,12 +152,12 @@ void Tractions::add_change(const Demand& from, const Demand& to, const Points& p
     if (change == 0) return;
     const Vec3 more = change * place.area_mm2 * load.whole();
     for (std::size_t i = 0; i < face.nodes.size(); ++i)
-      force.row(face.nodes[i]) -= place.point->shape[static_cast<Eigen::Index>(i)] * more.transpose();
+      force.row(face.nodes[i]) -= place.point->shape[i] * more.transpose();
   });
 }
 
 bool Tractions::loads(Index command) const {
-  return model_.actuators[static_cast<std::size_t>(command)].kind == ActuatorKind::pressure;
+  return model_.actuators[command].is<PressureCommand>();
 }
 
 void Tractions::add_derivative(Index command, const Demand& /*demand*/, const Points& positions,
@@ -168,7 +167,7 @@ void Tractions::add_derivative(Index command, const Demand& /*demand*/, const Po
     if (face.command != command) return;
     const Vec3 push = place.area_mm2 * load.whole();
     for (std::size_t i = 0; i < face.nodes.size(); ++i)
-      force.row(face.nodes[i]) -= place.point->shape[static_cast<Eigen::Index>(i)] * push.transpose();
+      force.row(face.nodes[i]) -= place.point->shape[i] * push.transpose();
   });
 }
 

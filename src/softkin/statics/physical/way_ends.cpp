@@ -29,12 +29,12 @@ std::string Continuation::instead_of_loads() const {
   bool pressures = false, tensions = false, fillings = false;
   for (Index a = 0; a < system_.actuators(); ++a) {
     const Actuator& actuator = system_.model().actuators[a];
-    fillings = fillings || (actuator.filling && way_.from.actuation[a] != way_.to.actuation[a]);
+    fillings = fillings || (filling_of(actuator) && way_.from.actuation[a] != way_.to.actuation[a]);
     if (actuator.control != Control::load || !system_.measures().measures(a) ||
         way_.from.actuation[a] == way_.to.actuation[a])
       continue;
-    tensions = tensions || actuator.kind == ActuatorKind::cable;
-    pressures = pressures || actuator.kind == ActuatorKind::pneumatic;
+    tensions = tensions || actuator.is<CableDrive>();
+    pressures = pressures || actuator.is<ChamberDrive>();
   }
   if (fillings) return "; where what fills a chamber has its maximum, command its volume (control: volume) to go on";
   if (!pressures && !tensions) return "";

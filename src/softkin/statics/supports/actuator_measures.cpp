@@ -124,13 +124,16 @@ ActuatorMeasures::ActuatorMeasures(const Model& model)
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const Actuator& actuator = model.actuators[a];
     const Index first = vertices_ + static_cast<Index>(points_.size());
-    if (actuator.kind == ActuatorKind::dea || !drives(actuator)) continue;
-    for (const EmbeddedPoint& point : actuator.points) points_.push_back(&point);
-    if (actuator.kind == ActuatorKind::cable)
-      for (Index i = 0; i + 1 < static_cast<Index>(actuator.points.size()); ++i)
+    if (const auto* cable = actuator.as<CableDrive>()) {
+      for (const EmbeddedPoint& point : cable->points) points_.push_back(&point);
+      for (Index i = 0; i + 1 < static_cast<Index>(cable->points.size()); ++i)
         terms_[a].push_back({2, {first + i, first + i + 1}, {}});
-    for (const Triangle& t : actuator.surface) terms_[a].push_back({3, {first + t[0], first + t[1], first + t[2]}, {}});
-    for (const CavityFace& face : actuator.cavity) {
+    }
+    const auto* chamber = actuator.as<ChamberDrive>();
+    if (!chamber) continue;
+    for (const EmbeddedPoint& point : chamber->points) points_.push_back(&point);
+    for (const Triangle& t : chamber->surface) terms_[a].push_back({3, {first + t[0], first + t[1], first + t[2]}, {}});
+    for (const CavityFace& face : chamber->cavity) {
       const Triangle& c = face.corners;
       if (face.edges[0] < 0)
         terms_[a].push_back({3, {c[0], c[1], c[2]}, {}});
@@ -139,17 +142,18 @@ ActuatorMeasures::ActuatorMeasures(const Model& model)
     }
   }
   for (Index a = 0; a < static_cast<Index>(terms_.size()); ++a)
-    rest_.push_back(measures(a) && !model.actuators[a].flat ? value(a, model.rest) : model.actuators[a].rest_measure);
+    rest_.push_back(measures(a) && !flat_at_rest(model.actuators[a]) ? value(a, model.rest)
+                                                                     : model.actuators[a].rest_measure);
   for (Index a = 0; a < static_cast<Index>(terms_.size()); ++a) {
     const Actuator& actuator = model.actuators[a];
-    const bool cable = actuator.kind == ActuatorKind::cable;
-    const bool stretches = actuator.kind == ActuatorKind::dea || actuator.kind == ActuatorKind::growth;
+    const auto* cable = actuator.as<CableDrive>();
+    const bool stretches = actuator.is<DeaDrive>() || actuator.is<GrowthDrive>();
     const bool constrains = !stretches && drives(actuator) && actuator.control != Control::load;
     const bool given_load = !constrains && (measures(a) || under_voltage(actuator));
-    roles_.push_back({constrains, given_load, cable && !actuator.pushes, cable ? 1.0 : -1.0,
-                      actuator.kind == ActuatorKind::pneumatic ? 1e-3 : 1.0, actuator.factor, actuator.offset,
-                      actuator.filling ? &*actuator.filling : nullptr});
-    any_filling_ = any_filling_ || actuator.filling;
+    roles_.push_back({constrains, given_load, cable && !cable->pushes, cable ? 1.0 : -1.0,
+                      actuator.is<ChamberDrive>() ? 1e-3 : 1.0, actuator.factor, actuator.offset,
+                      filling_of(actuator)});
+    any_filling_ = any_filling_ || filling_of(actuator);
   }
 }
 
@@ -250,7 +254,7 @@ void ActuatorMeasures::second_derivatives(const Points& positions, const Eigen::
   team.pieces(static_cast<Index>(cliques_.size()), [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i) {
       const Index a = cliques_[i].actuator;
-      second_derivative(cliques_[i], positions, scale[a], shares[static_cast<std::size_t>(a)], slots);
+      second_derivative(cliques_[i], positions, scale[a], shares[a], slots);
     }
   });
 }

@@ -34,8 +34,8 @@ std::vector<Index> last_links(const Graph& graph, const Others& others, const st
   std::vector<Index> last(static_cast<std::size_t>(others.end - others.first), -1);
   const auto link = [&](Index scalar, Index node) {
     if (others.has(scalar) || !others.has(node)) return;
-    Index& found = last[static_cast<std::size_t>(scalar - others.first)];
-    found = std::max(found, place[static_cast<std::size_t>(others.place(node))]);
+    Index& found = last[scalar - others.first];
+    found = std::max(found, place[others.place(node)]);
   };
   for (Index j = 0; j < graph.cols(); ++j)
     for (Graph::InnerIterator it(graph, j); it; ++it) {
@@ -65,25 +65,23 @@ linear::Ordering Freedoms::ordering_of(const Model& model, const Graph& graph) c
     std::vector<std::array<Index, 2>> ends(static_cast<std::size_t>(links.cols()), {-1, -1});
     for (Index node = 0; node < static_cast<Index>(of_all.size()); ++node)
       for (std::size_t i = 0; others.has(node) && i < 2; ++i)
-        if (const Index at = of_all[static_cast<std::size_t>(node)][i]; at >= 0)
-          ends[static_cast<std::size_t>(others.place(node))][i] = others.place(at);
+        if (const Index at = of_all[node][i]; at >= 0) ends[others.place(node)][i] = others.place(at);
     ordering = linear::nested_dissection(links, ends);
   } else {
     ordering = linear::nested_dissection(links);
   }
   std::vector<Index> place(ordering.order.size());
-  for (std::size_t k = 0; k < place.size(); ++k)
-    place[static_cast<std::size_t>(ordering.order[k])] = static_cast<Index>(k);
+  for (std::size_t k = 0; k < place.size(); ++k) place[ordering.order[k]] = static_cast<Index>(k);
 
   std::vector<Index> behind_edges(static_cast<std::size_t>(rest_.rows()), -1);  // by corner
   const auto own_place = [&](Index vertex) {
     const Index node = node_of_[vertex];
-    return node < 0 || region_of_[vertex] >= 0 ? -1 : place[static_cast<std::size_t>(others.place(node))];
+    return node < 0 || region_of_[vertex] >= 0 ? -1 : place[others.place(node)];
   };
   for (std::size_t t = 0; t < model.edge_nodes.size(); ++t)
     for (std::size_t e = 0; e < 6; ++e)
       for (const int i : tetrahedron_edges[e]) {
-        Index& last = behind_edges[model.tetrahedra[t][static_cast<std::size_t>(i)]];
+        Index& last = behind_edges[model.tetrahedra[t][i]];
         last = std::max(last, own_place(model.edge_nodes[t][e]));
       }
   const std::vector<Index> behind_all = last_links(graph, others, place);
@@ -92,7 +90,7 @@ linear::Ordering Freedoms::ordering_of(const Model& model, const Graph& graph) c
     const Index corner = scalars_[s], edges = behind_edges[corner], own = own_place(corner);
     const bool answered = own >= 0 && (edges >= 0 || !quadratic);
     const Index last = answered ? std::max(edges, own) : behind_all[s];
-    behind[static_cast<std::size_t>(last + 1)].push_back(others.first + static_cast<Index>(s));
+    behind[last + 1].push_back(others.first + static_cast<Index>(s));
   }
   std::vector<Index> order = behind[0];
   for (std::size_t k = 0; k < place.size(); ++k) {

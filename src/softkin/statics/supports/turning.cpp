@@ -19,8 +19,8 @@ Mat3 rotation_by(const SupportTurn& turn, double degrees) {
 }  // namespace
 
 const SupportTurn* Turning::turn_of(Index actuator) const {
-  const Actuator& command = model_.actuators[static_cast<std::size_t>(actuator)];
-  return command.kind == ActuatorKind::turn ? &model_.turns[static_cast<std::size_t>(command.other)] : nullptr;
+  const auto* command = model_.actuators[actuator].as<TurnCommand>();
+  return command ? &model_.turns[command->turn] : nullptr;
 }
 
 void Turning::place(const Eigen::VectorXd& actuation, double share, Points& positions) const {

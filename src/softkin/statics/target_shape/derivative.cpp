@@ -50,8 +50,8 @@ Sensitivity Newton::sensitivity(const State& at, bool reuse_factor, double accur
   const supports::Turning turning(unknowns_.model);
   std::vector<Points> turned(static_cast<std::size_t>(actuators));  // what is held, of commands that turn it
   for (Index a = 0; a < actuators; ++a) {
-    if (unknowns_.model.actuators[static_cast<std::size_t>(a)].kind == ActuatorKind::turn) {
-      Points& moves = turned[static_cast<std::size_t>(a)];
+    if (unknowns_.model.actuators[a].is<TurnCommand>()) {
+      Points& moves = turned[a];
       moves.setZero(at.positions.rows(), 3);
       turning.add_velocity(a, at.actuation, 1, moves);
       unknowns_.system.residual_change(local, moves, workspace->work, team);
@@ -76,7 +76,7 @@ Sensitivity Newton::sensitivity(const State& at, bool reuse_factor, double accur
   }
   for (Index a = 0; result.regular && a < actuators; ++a) {
     unknowns_.freedoms.expand(steps.col(a), at.positions, result.positions[a]);
-    if (const Points& moves = turned[static_cast<std::size_t>(a)]; moves.rows() > 0) result.positions[a] += moves;
+    if (const Points& moves = turned[a]; moves.rows() > 0) result.positions[a] += moves;
   }
   put_back(std::move(workspace));
   return result;

@@ -117,7 +117,8 @@ double own_volume(const RestShape<3>& rest) {
   return edge * edge * edge / std::sqrt(72.0);
 }
 
-ActuationSet<3> cable_set(const Model& model, const Actuator& actuator, std::vector<const EmbeddedPoint*>& points) {
+ActuationSet<3> cable_set(const Model& model, const CableDrive& cable, double weight,
+                          std::vector<const EmbeddedPoint*>& points) {
   ActuationSet<3> set;
   const bool printed = model.weights == ElementWeights::printed;
   const double mean = printed ? mean_volume(model) : 0;
@@ -125,16 +126,16 @@ ActuationSet<3> cable_set(const Model& model, const Actuator& actuator, std::vec
     points.push_back(&point);
     return static_cast<Index>(model.rest.rows() + static_cast<Index>(points.size()) - 1);
   };
-  std::vector<Index> along(actuator.points.size(), -1);
-  const auto node_along = [&](Index i) { return along[i] >= 0 ? along[i] : along[i] = node(actuator.points[i]); };
-  for (const CableGap& gap : actuator.gaps) {
+  std::vector<Index> along(cable.points.size(), -1);
+  const auto node_along = [&](Index i) { return along[i] >= 0 ? along[i] : along[i] = node(cable.points[i]); };
+  for (const CableGap& gap : cable.gaps) {
     RestShape<3> rest;
-    rest.row(0) = actuator.points[gap.segment].at(model.rest).transpose();
-    rest.row(1) = actuator.points[gap.segment + 1].at(model.rest).transpose();
+    rest.row(0) = cable.points[gap.segment].at(model.rest).transpose();
+    rest.row(1) = cable.points[gap.segment + 1].at(model.rest).transpose();
     rest.row(2) = gap.apex.at(model.rest).transpose();
     const Index first = node_along(gap.segment), second = node_along(gap.segment + 1);
     add_actuation<3>(model, set, {first, second, node(gap.apex)}, split_cable(rest), (rest.row(1) - rest.row(0)).norm(),
-                     element_weight<3>(model, actuator.weight, printed ? mean : own_volume(rest), rest));
+                     element_weight<3>(model, weight, printed ? mean : own_volume(rest), rest));
   }
   return set;
 }
@@ -153,22 +154,22 @@ ElementSets make_element_sets(const Model& model) {
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const Actuator& actuator = model.actuators[a];
     const Index index = static_cast<Index>(a);
-    if (actuator.kind == ActuatorKind::cable) {
-      sets.cables.push_back(cable_set(model, actuator, sets.points));
+    if (const auto* cable = actuator.as<CableDrive>()) {
+      sets.cables.push_back(cable_set(model, *cable, actuator.weight, sets.points));
       sets.cables.back().actuator = index;
-    } else if (actuator.kind == ActuatorKind::pneumatic) {
+    } else if (const auto* chamber = actuator.as<ChamberDrive>()) {
       ActuationSet<4>& set = sets.pneumatic.emplace_back();
       set.actuator = index;
-      for (const Index e : actuator.tetrahedra) {
+      for (const Index e : chamber->tetrahedra) {
         const double volume = model.tetrahedron_volumes[e];
         const RestShape<4> rest = rest_shape<4>(model.rest, model.tetrahedra[e]);
         add_actuation<4>(model, set, model.tetrahedra[e], split_pneumatic(rest), volume,
                          element_weight<4>(model, actuator.weight, volume, rest));
       }
-    } else {
+    } else if (const auto* dea = actuator.as<DeaDrive>()) {
       ActuationSet<6>& set = sets.dea.emplace_back();
       set.actuator = index;
-      for (const Index e : actuator.prisms) {
+      for (const Index e : dea->prisms) {
         const RestShape<6> rest = rest_shape<6>(model.rest, model.prisms[e]);
         add_actuation<6>(model, set, model.prisms[e], split_dea(rest), mean_area(rest),
                          element_weight<6>(model, actuator.weight, model.prism_volumes[e], rest));

@@ -1,0 +1,144 @@
+#include <algorithm>
+#include <cmath>
+#include <softkin/model/layer.hpp>
+#include <softkin/runs/findings.hpp>
+
+namespace softkin::runs {
+
+namespace {
+
+// What is found implausible of a shape. None of them is wrong for certain: they are warnings.
+constexpr double unmoved = 1e-6;    // of the diagonal: 0.1 um of a finger, below what any sensor of a robot tells
+constexpr double far_strained = 5;  // [-]: most silicones break below it, and few robots come near
+constexpr double far_moved = 3;     // of the diagonal: what is held somewhere swings by twice its size at most
+
+/// Does the record ask for anything but the rest shape?
+bool asks_for_motion(const Model& model, const StepRecord& record) {
+  for (std::size_t a = 0; a < model.actuators.size(); ++a) {
+    const Actuator& actuator = model.actuators[a];
+    const double from_rest = record.actuation[a] - actuator.rest;
+    const bool may_hang = actuator.is<CableDrive>() && actuator.control == Control::ratio && from_rest > 0;
+    if (from_rest != 0 && !may_hang) return true;
+  }
+  const auto turns = [](const SupportTurn& turn) { return turn.degrees != 0; };
+  return model.loaded() || model.held != model.rest || std::any_of(model.turns.begin(), model.turns.end(), turns);
+}
+
+void add_implausible(const Model& model, const StepRecord& record, std::vector<Finding>& found) {
+  if (record.self_overlap.points > 0) found.emplace_back(record.self_overlap);
+  const double moved = record.largest_displacement_mm;
+  if (record.status == Status::converged && moved < unmoved * model.diagonal_mm && asks_for_motion(model, record))
+    found.emplace_back(finding::Motionless{moved});
+  if (!record.strain.shares.empty() && record.strain.greatest > far_strained)
+    found.emplace_back(finding::FarStrained{record.strain.greatest});
+  if (moved > far_moved * model.diagonal_mm) found.emplace_back(finding::FarMoved{moved, model.diagonal_mm});
+}
+
+/// Of a force, its moment and their centre without what is but rounding.
+template <class Forces>
+Forces without_rounding(Forces forces, const Model& model, const StepRecord& record) {
+  const double rounding = 1e-9 * record.pull_N;
+  if (!(forces.force.norm() > rounding)) forces.force.setZero();
+  if (!(forces.moment.norm() > rounding * model.diagonal_mm)) forces.moment.setZero();
+  if (!(forces.center.norm() > 0)) forces.center.setZero();
+  return forces;
+}
+
+void add_contacts(const Model& model, const StepRecord& record, std::vector<Finding>& found) {
+  if (!record.contacts) return;
+  bool any = false;
+  for (const PairForces& pair : *record.contacts) {
+    if (!(pair.normal_N > 1e-9 * record.pull_N)) continue;
+    any = true;
+    found.emplace_back(finding::Contact{model.contact.label(pair.b),
+                                        pair.a == pair.b ? std::string() : model.contact.label(pair.a),
+                                        without_rounding(pair, model, record)});
+  }
+  if (!any) found.emplace_back(finding::Untouched{});
+}
+
+/// A choice of the points, evenly by their places.
+void add_branch(const StepRecord& record, std::vector<Finding>& found) {
+  constexpr std::size_t most = 12;
+  const auto& points = record.branch.points;
+  if (points.size() < 2) return;
+  LoadBranch chosen{record.branch.actuator};
+  const auto top = std::max_element(points.begin(), points.end(),
+                                    [](const auto& a, const auto& b) { return std::abs(a.load) < std::abs(b.load); });
+  const std::size_t stride = 1 + (points.size() - 1) / most, last = points.size() - 1;
+  for (std::size_t i = 0; i < points.size(); ++i)
+    if (i % stride == 0 || i == last || points.begin() + static_cast<std::ptrdiff_t>(i) == top)
+      chosen.points.push_back(points[i]);
+  found.emplace_back(std::move(chosen));
+}
+
+void add_forces(const Model& model, const StepRecord& record, std::vector<Finding>& found) {
+  if (record.stress) found.emplace_back(*record.stress);
+  for (std::size_t s = 0; s < record.reactions.size(); ++s)
+    found.emplace_back(finding::Support{model.supports[s].name, without_rounding(record.reactions[s], model, record)});
+  if (record.magnetic) found.emplace_back(without_rounding(*record.magnetic, model, record));
+  add_contacts(model, record, found);
+  if (record.buckled > 0) found.emplace_back(finding::Buckled{record.buckled, record.buckled_mm});
+  if (record.snapped_mm > 0) found.emplace_back(finding::Snapped{record.snapped_mm, record.snapped_from});
+  if (record.unstable_modes > 0)
+    found.emplace_back(finding::Unstable{record.unstable_modes});
+  else if (record.unstable_from > 0)
+    found.emplace_back(finding::UnstableWay{record.unstable_from});
+  add_branch(record, found);
+}
+
+/// How far the body is strained.
+void add_strain(const StepRecord& record, std::vector<Finding>& found) {
+  const StrainHistogram& strain = record.strain;
+  if (!strain.shares.empty()) found.emplace_back(finding::Strain{strain.least, strain.greatest, strain.percentile_95});
+  constexpr double least_shown = 0.0005;  // what is shown as 0.0 % is nothing to tell
+  for (const auto& beyond : strain.beyond)
+    if (beyond.share >= least_shown) found.emplace_back(beyond);
+}
+
+void add_actuators(const Model& model, const StepRecord& record, std::vector<Finding>& found) {
+  for (std::size_t a = 0; a < model.actuators.size(); ++a)
+    if (const ActuatorRecord& actuator = record.actuators[a]; actuator.slack)
+      found.emplace_back(finding::Slack{model.actuators[a].name, actuator.achieved, actuator.requested});
+  for (std::size_t a = 0; a < model.actuators.size(); ++a)
+    if (const auto& layer = record.actuators[a].layer; layer && layer->charge_nC > 0)
+      found.emplace_back(finding::Charged{model.actuators[a].name, *layer});
+  for (std::size_t a = 0; a < model.actuators.size(); ++a)
+    if (const ActuatorRecord& actuator = record.actuators[a]; actuator.tendon && actuator.multiplier != 0)
+      found.emplace_back(finding::Rubbing{model.actuators[a].name, actuator.multiplier, *actuator.tendon});
+}
+
+void add_reinforcements(const Model& model, const StepRecord& record, std::vector<Finding>& found) {
+  for (std::size_t f = 0; f < record.fibres.size(); ++f)
+    found.emplace_back(finding::Fibre{model.fibres[f].name, record.fibres[f]});
+  for (std::size_t l = 0; l < record.layers.size(); ++l)
+    found.emplace_back(finding::Layer{model.layers[l]->name, record.layers[l]});
+}
+
+/// How near the iteration came to the equilibrium.
+void add_accuracy(const Model& model, const StepRecord& record, std::vector<Finding>& found) {
+  const bool physical = model.formulation == Formulation::physical;
+  if (physical && record.status != Status::converged) return;  // the iteration was of another shape
+  if (record.answered()) return;
+  if (std::isfinite(record.step_mm) && std::isfinite(record.estimated_error_mm))
+    found.emplace_back(
+        finding::Accuracy{record.step_mm, record.estimated_error_mm, physical, record.residual_N, record.pull_N});
+  else
+    found.emplace_back(finding::Diverged{});
+}
+
+}  // namespace
+
+std::vector<Finding> findings(const Model& model, const StepRecord& record) {
+  std::vector<Finding> found;
+  add_strain(record, found);
+  if (record.inverted_elements > 0) found.emplace_back(finding::Inverted{record.inverted_elements});
+  add_actuators(model, record, found);
+  add_reinforcements(model, record, found);
+  add_forces(model, record, found);
+  add_implausible(model, record, found);
+  add_accuracy(model, record, found);
+  return found;
+}
+
+}  // namespace softkin::runs
