@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <softkin/core/text.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/finding_text.hpp>
