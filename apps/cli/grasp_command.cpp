@@ -120,7 +120,7 @@ class GraspRun {
     bool stopped = false, lost = false;
     for (const PullDirection& direction : directions) {
       const Pull found =
-          largest_pull(model_, statics_, grasp, body_, direction, options_.most_N, options_.statics(), shown());
+          largest_pull(model_, statics_, grasp, {body_, direction, options_.most_N}, options_.statics(), shown());
       line_.clear();
       stopped = found.last.report.stopped;
       lost = lost || found.status == Status::not_converged;

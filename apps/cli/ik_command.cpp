@@ -124,8 +124,9 @@ class IkRun {
       print((found.empty() ? "" : found + "\n") + sliding_text(record) + std::string(name_of(found_.status)) + ": " +
             runs::inverse_summary(found_, record.misses) + "\n");
     }
-    runs::RecordLog report = runs::inverse_report(model_, options_.scene, options_.report, options_.inverse(),
-                                                  search_.asked, found_, record, answers_.map());
+    const InverseOptions how = options_.inverse();
+    runs::RecordLog report = runs::inverse_report(model_, options_.scene, options_.report,
+                                                  {how, search_.asked, found_, record}, answers_.map());
     report.finish();
     if (options_.json) report.report(print_piece);
     print(std::string());

@@ -111,7 +111,7 @@ std::string report_of(const Answer& answer) {
   const runs::InverseRecord record =
       runs::inverse_record(model, answer.goals.plain(), answer.found, answer.shape->deformation());
   const runs::RecordLog log =
-      runs::inverse_report(model, model.name, {}, answer.options, answer.goals.named, answer.found, record);
+      runs::inverse_report(model, model.name, {}, {answer.options, answer.goals.named, answer.found, record});
   std::string text;
   log.report([&](std::string_view piece) { text += piece; });
   return text;

@@ -8,10 +8,10 @@ namespace softkin::energy {
 
 namespace {
 
-using Law = std::function<LengthLaw(double)>;
+using LengthLawOf = std::function<LengthLaw(double)>;
 
 /// Slope and curvature against central differences of value and slope.
-void expect_differences(const Law& law, double x, double step) {
+void expect_differences(const LengthLawOf& law, double x, double step) {
   const LengthLaw at = law(x), low = law(x - step), high = law(x + step);
   EXPECT_NEAR(at.slope, (high.value - low.value) / (2 * step), 1e-6 * std::max(1.0, std::abs(at.slope))) << x;
   EXPECT_NEAR(at.curvature, (high.slope - low.slope) / (2 * step), 1e-6 * std::max(1.0, std::abs(at.curvature))) << x;
@@ -21,7 +21,7 @@ void expect_differences(const Law& law, double x, double step) {
 
 TEST(ContactLaws, DerivativesOfTheBarrier) {
   constexpr double reach = 0.3;
-  const Law law = [](double gap) { return barrier(gap, reach); };
+  const LengthLawOf law = [](double gap) { return barrier(gap, reach); };
   for (const double share : {1e-3, 0.01, 0.1, 0.5, 0.9, 0.999, 1.2})
     expect_differences(law, share * reach, 1e-5 * share);
 }
@@ -60,7 +60,7 @@ TEST(ContactLaws, TheBarrierEndsSmoothly) {
 
 TEST(ContactLaws, DerivativesOfFriction) {
   constexpr double creep = 1e-2;
-  const Law law = [](double slip) { return friction(slip, creep); };
+  const LengthLawOf law = [](double slip) { return friction(slip, creep); };
   for (const double share : {1e-3, 0.1, 0.5, 0.99, 1.1, 7.0}) expect_differences(law, share * creep, 1e-7);
 }
 

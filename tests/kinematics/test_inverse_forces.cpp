@@ -65,13 +65,21 @@ struct Pressing {
 
 constexpr std::array<bool, 3> only_x{true, false, false}, only_z{false, false, true};
 
+/// The derivatives of what is exerted at an equilibrium.
+std::vector<inverse::ExertionSlopes> slopes_at(const Pressing& robot, const std::vector<Goal>& goals,
+                                               const Equilibrium& found, Sensitivity& sensitivity) {
+  inverse::Pose pose;
+  pose.equilibrium = found;
+  pose.exertions = inverse::exertions_of(robot.model, robot.statics, goals, found.state);
+  return inverse::exertion_slopes(robot.model, robot.statics, goals, pose, tight(), 1e-10, sensitivity);
+}
+
 /// Terms of forces by the commands, against those of equilibria beside.
 void expect_slopes(const Pressing& robot, const std::vector<Goal>& goals, const Actuation& at, double accuracy) {
   const Equilibrium found = settled(robot.statics, at);
   const auto exertions = inverse::exertions_of(robot.model, robot.statics, goals, found.state);
   Sensitivity sensitivity = robot.statics.sensitivity(found.state, tight(), 1e-10);
-  const auto changes =
-      inverse::exertion_slopes(robot.model, robot.statics, goals, found.state, exertions, tight(), 1e-10, sensitivity);
+  const auto changes = slopes_at(robot, goals, found, sensitivity);
   const Eigen::MatrixXd slopes =
       inverse::goal_slopes(robot.model, goals, found.state.positions, sensitivity, exertions, changes);
   constexpr double reach = 1e-4;
@@ -129,8 +137,7 @@ TEST(InverseForces, SlopesOfAForceThatRubsAreThoseForSlidingOn) {
   const auto exertions = inverse::exertions_of(robot.model, robot.statics, goals, found.state);
   EXPECT_GT(std::abs(exertions[0].force.x()), 0.1);
   Sensitivity sensitivity = robot.statics.sensitivity(found.state, tight(), 1e-10);
-  const auto changes =
-      inverse::exertion_slopes(robot.model, robot.statics, goals, found.state, exertions, tight(), 1e-10, sensitivity);
+  const auto changes = slopes_at(robot, goals, found, sensitivity);
   constexpr double step = 1e-4;
   const Equilibrium further = robot.statics.solve(values({1, 1, 3 + step}), found.state, tight(1e-11));
   const Vec3 difference =

@@ -123,15 +123,15 @@ std::vector<Exertion> inverse::exertions_of(const Model& model, const Statics& s
 }
 
 std::vector<ExertionSlopes> inverse::exertion_slopes(const Model& model, const Statics& statics,
-                                                     const std::vector<Goal>& goals, const State& at,
-                                                     const std::vector<Exertion>& exertions,
+                                                     const std::vector<Goal>& goals, const Pose& at,
                                                      const StaticsOptions& options, double accuracy,
                                                      Sensitivity& sensitivity) {
   std::vector<ExertionSlopes> slopes;
-  if (exertions.empty()) return slopes;
+  if (at.exertions.empty()) return slopes;
+  const State& state = at.equilibrium.state;
   std::vector<Points> held;
   if (any_on_support(goals)) {
-    ParameterSensitivity all = statics.sensitivity_along(at, unit_changes(model), options, accuracy, true);
+    ParameterSensitivity all = statics.sensitivity_along(state, unit_changes(model), options, accuracy, true);
     held = std::move(all.reactions);
     sensitivity = {std::move(all.positions), std::move(all.multipliers), all.regular};
   }
@@ -144,11 +144,11 @@ std::vector<ExertionSlopes> inverse::exertion_slopes(const Model& model, const S
     if (force == nullptr) continue;
     slope.force.setZero(3, m);
     slope.gap.setZero(m);
-    if (is_part(*force) && pressed.empty()) pressed = statics.pressing_changes(at, sensitivity.positions);
+    if (is_part(*force) && pressed.empty()) pressed = statics.pressing_changes(state, sensitivity.positions);
     for (Index a = 0; a < m; ++a) {
       const auto by = static_cast<std::size_t>(a);
       slope.force.col(a) = is_part(*force) ? pressed[by][force->index] : on_support(model, force->index, held[by]);
-      if (exertions[i].gap) slope.gap[a] = change_of(*exertions[i].gap, model, sensitivity.positions[by]);
+      if (at.exertions[i].gap) slope.gap[a] = change_of(*at.exertions[i].gap, model, sensitivity.positions[by]);
     }
   }
   return slopes;

@@ -230,9 +230,9 @@ class Pulling {
 
 }  // namespace
 
-Pull largest_pull(const Model& model, const Statics& statics, const State& grasp, Index body,
-                  const PullDirection& direction, std::optional<double> most_N, const StaticsOptions& options,
-                  const GraspProgress& progress) {
+Pull largest_pull(const Model& model, const Statics& statics, const State& grasp, const PullTask& task,
+                  const StaticsOptions& options, const GraspProgress& progress) {
+  const auto& [body, direction, most_N] = task;
   const FreeBody& held = body_at(model, body);
   if (!(direction.along.norm() > 0) || !direction.along.allFinite())
     throw InvalidInput("the direction of a pull has no length");

@@ -49,6 +49,13 @@ struct PullDirection {
   Vec3 along{0, 0, 0};  // its direction; of length 1 where it is pulled along
 };
 
+/// What is pulled at, and how.
+struct PullTask {
+  Index body = -1;                 // of model.bodies
+  PullDirection direction;         // of any length
+  std::optional<double> most_N{};  // > 0: no larger force is tried; none: most_pull()
+};
+
 /// x, -x, y, -y, z, -z.
 [[nodiscard]] std::vector<PullDirection> axes_to_pull_along();
 
@@ -78,11 +85,10 @@ struct Pull {
 /// is not met, and shrink where one is not. That costs most, as a body that nothing holds flies off: a step is left
 /// where the body moves far, or where 25 iterations lead no farther.
 ///
-/// grasp    an equilibrium that solve() returned, the body free
-/// most_N   > 0: no larger force is tried; none: most_pull()
-/// throws   InvalidInput as above, on a direction without length, and as Statics::solve does
-[[nodiscard]] Pull largest_pull(const Model& model, const Statics& statics, const State& grasp, Index body,
-                                const PullDirection& direction, std::optional<double> most_N = {},
+/// grasp   an equilibrium that solve() returned, the body free
+/// throws  InvalidInput as above, on a direction without length, a largest force that is not > 0, and as Statics::solve
+///         does
+[[nodiscard]] Pull largest_pull(const Model& model, const Statics& statics, const State& grasp, const PullTask& task,
                                 const StaticsOptions& options = {}, const GraspProgress& progress = {});
 
 /// Of the commands along the axes, the largest that a body may be pulled with [N].

@@ -69,13 +69,12 @@ class Response {
 [[nodiscard]] std::vector<Exertion> exertions_of(const Model& model, const Statics& statics,
                                                  const std::vector<Goal>& goals, const State& at);
 
-/// Their derivatives, of the same length, and the sensitivity with which they go: the one that is given, but where the
-/// supports' reactions have to be asked for with it.
+/// The derivatives of a pose's, of the same length, and the sensitivity with which they go: the one that is given, but
+/// where the supports' reactions have to be asked for with it.
 ///
 /// equation  of what is touched: dF = -sum over its vertices of K_contact dx, with what friction's normal forces change
 [[nodiscard]] std::vector<ExertionSlopes> exertion_slopes(const Model& model, const Statics& statics,
-                                                          const std::vector<Goal>& goals, const State& at,
-                                                          const std::vector<Exertion>& exertions,
+                                                          const std::vector<Goal>& goals, const Pose& at,
                                                           const StaticsOptions& options, double accuracy,
                                                           Sensitivity& sensitivity);
 

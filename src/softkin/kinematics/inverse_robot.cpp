@@ -168,8 +168,8 @@ bool RobotResponse::slopes(const Pose& at, Slopes& slopes) {
     slopes.sensitivity = *options_.start_sensitivity;
   else if (!any_on_support(goals_))  // else it is asked for with the reactions
     slopes.sensitivity = statics_.sensitivity(state, options_.statics, slope_accuracy);
-  const std::vector<ExertionSlopes> exertions = exertion_slopes(model_, statics_, goals_, state, at.exertions,
-                                                                options_.statics, slope_accuracy, slopes.sensitivity);
+  const std::vector<ExertionSlopes> exertions =
+      exertion_slopes(model_, statics_, goals_, at, options_.statics, slope_accuracy, slopes.sensitivity);
   if (!slopes.sensitivity.regular) return false;
   const Eigen::MatrixXd all = goal_slopes(model_, goals_, state.positions, slopes.sensitivity, at.exertions, exertions);
   const auto free = static_cast<Index>(free_.size());

@@ -202,8 +202,8 @@ Json history_json(const std::vector<InverseTrial>& history) {
   return json;
 }
 
-Json inverse_json(const Model& model, const InverseOptions& options, const std::vector<NamedGoal>& goals,
-                  const InverseResult& found, const InverseRecord& record) {
+Json inverse_json(const Model& model, const InverseAnswer& answer) {
+  const auto& [options, goals, found, record] = answer;
   const bool newton = options.method == InverseMethod::newton;
   Json json = {{"method", name_of(options.method)},
                {"tolerance_mm", options.tolerance_mm},
@@ -348,10 +348,10 @@ InverseRecord inverse_record(const Model& model, const std::vector<Goal>& goals,
 }
 
 RecordLog inverse_report(const Model& model, const std::string& scene, const std::filesystem::path& file,
-                         const InverseOptions& options, const std::vector<NamedGoal>& goals, const InverseResult& found,
-                         const InverseRecord& record, const UsedMap* map) {
-  Json head = Json::parse(report_head(model, scene, options.statics, map));
-  head["ik"] = inverse_json(model, options, goals, found, record);
+                         const InverseAnswer& answer, const UsedMap* map) {
+  const InverseRecord& record = answer.record;
+  Json head = Json::parse(report_head(model, scene, answer.options.statics, map));
+  head["ik"] = inverse_json(model, answer);
   Json step = to_json(model, record);
   if (record.misses.mm) step["error_mm"] = *record.misses.mm;
   if (record.misses.N) step["error_N"] = *record.misses.N;

@@ -55,11 +55,17 @@ struct InverseRecord : StepRecord {
 /// Where the marker of a goal is, the unit vector between its markers, or the force that is exerted [mm, -, N].
 [[nodiscard]] Vec3 found_of(const Model& model, const Goal& goal, const Points& positions, const StepRecord& record);
 
-/// The report of it: what was asked and what came of it, and the record; to be written to file at its finish().
+/// A search: what was asked and how, and what came of it.
+struct InverseAnswer {
+  const InverseOptions& options;        // of the search
+  const std::vector<NamedGoal>& goals;  // that were asked for
+  const InverseResult& found;           // what it came to
+  const InverseRecord& record;          // what is kept of it
+};
+
+/// The report of it, to be written to file at its finish().
 [[nodiscard]] RecordLog inverse_report(const Model& model, const std::string& scene, const std::filesystem::path& file,
-                                       const InverseOptions& options, const std::vector<NamedGoal>& goals,
-                                       const InverseResult& found, const InverseRecord& record,
-                                       const UsedMap* map = nullptr);
+                                       const InverseAnswer& answer, const UsedMap* map = nullptr);
 
 /// The report of softkin drive, JSON.
 ///

@@ -71,18 +71,21 @@ bool Continuation::lead(const Demand& here, const Demand& there, Iterate& trial)
                                 work_.trail.lead(here, there, active_, tolerance_mm_, trial));
 }
 
+/// One step from limp sheets that lie flat, where no tangent leads anywhere.
+Newton::Outcome Continuation::step_from_flat(const Demand& there, const Iterate& at, Iterate& trial) {
+  if (runs_into_flat(there, at)) return Newton::Outcome::blocked;
+  const std::optional<Swelling> swelling = swell(system_, there, active_, trial, work_, team_);
+  unforetold_ = swelling.has_value();
+  predicted_ = begun_ = trial.positions;
+  move_mm_ = system_.largest_move(at.positions, predicted_);
+  return swelling ? settle_swollen(there, *swelling, trial) : settle(there, Newton::Policy::descend, trial);
+}
+
 /// One step; trial begins at `at` and ends at the equilibrium.
 Newton::Outcome Continuation::step(const Demand& here, const Demand& there, double length, const Iterate& at,
                                    Iterate& trial) {
   unforetold_ = false;
-  if (system_.limp() && system_.layers()->flat(at.positions)) {
-    if (runs_into_flat(there, at)) return Newton::Outcome::blocked;
-    const std::optional<Swelling> swelling = swell(system_, there, active_, trial, work_, team_);
-    unforetold_ = swelling.has_value();
-    predicted_ = begun_ = trial.positions;
-    move_mm_ = system_.largest_move(at.positions, predicted_);
-    return swelling ? settle_swollen(there, *swelling, trial) : settle(there, Newton::Policy::descend, trial);
-  }
+  if (system_.limp() && system_.layers()->flat(at.positions)) return step_from_flat(there, at, trial);
   const bool whole = way_.done == 0 && length == 1;  // steps of a way are short where it is difficult
   bool led = false, cut = false;
   const auto prediction = [&] {

@@ -173,6 +173,7 @@ class Continuation {
   [[nodiscard]] Demand pressed(Demand demand, double times) const;
   void give_loads(const Demand& demand, Iterate& at) const;
   bool lead(const Demand& here, const Demand& there, Iterate& trial);
+  Newton::Outcome step_from_flat(const Demand& there, const Iterate& at, Iterate& trial);
   Newton::Outcome step(const Demand& here, const Demand& there, double length, const Iterate& at, Iterate& trial);
   bool leads_beyond(const Iterate& at);
   void take_beyond(Iterate& at);

@@ -1,8 +1,9 @@
-#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
 #include <algorithm>
 #include <cmath>
 #include <map>
 #include <numeric>
+#include <softkin/core/dense.hpp>
 #include <softkin/statics/physical/layers.hpp>
 
 namespace softkin::physical {
@@ -45,9 +46,10 @@ energy::SheetResponse respond(const SheetLaw& law, const Vec3& strain, double ba
 
 /// The nearest symmetric matrix that presses nowhere.
 Eigen::Matrix2d pulling(const Eigen::Matrix2d& stress) {
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver;
-  solver.computeDirect(stress);
-  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * solver.eigenvectors().transpose();
+  const double mean = stress.trace() / 2, apart = std::hypot((stress(0, 0) - stress(1, 1)) / 2, stress(1, 0));
+  if (mean >= apart) return stress;
+  if (mean <= -apart) return Eigen::Matrix2d::Zero();
+  return (mean + apart) / (2 * apart) * (stress - (mean - apart) * Eigen::Matrix2d::Identity());
 }
 
 /// The places of sorted vertices in an order of their own.
@@ -75,25 +77,24 @@ void add_pull(const Bent& bent, const Response& response, Term::Sum& sum) {
     sum.gradient.row(bent.vertices[i]) += (by_columns * bent.parts[i]).transpose();
 }
 
-template <int N>
-Eigen::Matrix<double, N, N> positive(const Eigen::Matrix<double, N, N>& matrix) {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, N, N>> solver(matrix);
-  return solver.eigenvectors() * solver.eigenvalues().cwiseMax(0.0).asDiagonal() * solver.eigenvectors().transpose();
+Eigen::MatrixXd positive(const Eigen::MatrixXd& matrix) {
+  const SymmetricEigen parts = symmetric_eigen(matrix);
+  return parts.vectors * parts.values.cwiseMax(0.0).asDiagonal() * parts.vectors.transpose();
 }
 
 /// Blocks of the vertices, of which each is the sum over pairs of columns.
-template <class Bent, int N>
-void put_stiffness(const Bent& bent, const Eigen::Matrix<double, N, N>& hessian, double* out) {
-  constexpr int columns = N / 3;
-  std::vector<Eigen::Matrix<double, 3, N>> left;
+template <class Bent>
+void put_stiffness(const Bent& bent, const Eigen::MatrixXd& hessian, double* out) {
+  const Eigen::Index columns = hessian.cols() / 3;
+  std::vector<Eigen::Matrix3Xd> left;
   for (const auto& parts : bent.parts) {
-    left.emplace_back(Eigen::Matrix<double, 3, N>::Zero());
-    for (int c = 0; c < columns; ++c) left.back() += parts[c] * hessian.template middleRows<3>(3 * c);
+    left.emplace_back(3, hessian.cols()).setZero();
+    for (Eigen::Index c = 0; c < columns; ++c) left.back() += parts[c] * hessian.middleRows<3>(3 * c);
   }
   for (std::size_t i = 0; i < left.size(); ++i)
     for (std::size_t j = 0; j <= i; ++j, out += 9) {
       Mat3 block = Mat3::Zero();
-      for (int c = 0; c < columns; ++c) block += bent.parts[j][c] * left[i].template middleCols<3>(3 * c);
+      for (Eigen::Index c = 0; c < columns; ++c) block += bent.parts[j][c] * left[i].middleCols<3>(3 * c);
       Block3(out, 3, 3) = block;
     }
 }
@@ -237,21 +238,29 @@ void Layers::add_cliques(linear::Cliques& cliques) {
 
 namespace {
 
-/// Of a place, added to blocks of its vertices: those in order have these places among the place's own.
-void add_sheet_stiffness(const LayerPlace& place, const SheetLaw& law, double barrier, const Sheet& f,
-                         double thickness_mm, bool projected, const std::vector<std::size_t>& order, double* out) {
-  const double volume = place.area_mm2 * thickness_mm;
+/// What its stiffness is made of, projected or not.
+struct SheetStress {
+  Eigen::Matrix2d stress;
+  Mat3 tangent;
+};
+
+SheetStress stress_of(const SheetLaw& law, const Sheet& f, double barrier, bool projected) {
   const energy::SheetResponse response = respond(law, green_strain(f), barrier);
-  Eigen::Matrix2d stress = as_matrix(response.stress);
-  if (projected) stress = pulling(stress);
-  const Mat3 tangent = projected && law.rubber ? positive(response.tangent) : response.tangent;
+  const Eigen::Matrix2d stress = as_matrix(response.stress);
+  if (!projected) return {stress, response.tangent};
+  return {pulling(stress), law.rubber ? Mat3(positive(response.tangent)) : response.tangent};
+}
+
+/// Of a place, added to blocks of its vertices: those in order have these places among the place's own.
+void add_sheet_stiffness(const LayerPlace& place, const Sheet& f, const SheetStress& of, double volume,
+                         const std::vector<std::size_t>& order, double* out) {
   std::vector<Mat3> slopes;
   for (const std::size_t i : order) slopes.push_back(strain_slope(f, place.slopes[i]));
   for (std::size_t i = 0; i < order.size(); ++i) {
-    const Mat3 left = volume * slopes[i].transpose() * tangent;
+    const Mat3 left = volume * slopes[i].transpose() * of.tangent;
     for (std::size_t j = 0; j <= i; ++j, out += 9) {
       Mat3 block = left * slopes[j];
-      block.diagonal().array() += volume * place.slopes[order[i]].dot(stress * place.slopes[order[j]]);
+      block.diagonal().array() += volume * place.slopes[order[i]].dot(of.stress * place.slopes[order[j]]);
       Block3(out, 3, 3) += block;
     }
   }
@@ -272,15 +281,16 @@ void Layers::stiffness(const Iterate& at, const Demand& /*demand*/, bool project
       const Face& face = faces_[n];
       double* const first = room(face.slot, face.vertices.size());
       for (std::size_t p = 0; p < face.places.size(); ++p) {
-        const Sheet f = sheet_gradient(*face.places[p], at.positions);
-        add_sheet_stiffness(*face.places[p], *face.law, barrier, f, face.thickness_mm, projected, face.orders[p],
-                            first);
+        const LayerPlace& place = *face.places[p];
+        const Sheet f = sheet_gradient(place, at.positions);
+        add_sheet_stiffness(place, f, stress_of(*face.law, f, barrier, projected), place.area_mm2 * face.thickness_mm,
+                            face.orders[p], first);
       }
     }
   });
   const auto put = [&](const auto& bent) {
-    const auto response = bend(bent, at.positions, true);
-    put_stiffness(bent, projected ? positive(response.hessian) : response.hessian, slots.data() + 9 * bent.slot);
+    const Eigen::MatrixXd hessian = bend(bent, at.positions, true).hessian;
+    put_stiffness(bent, projected ? positive(hessian) : hessian, slots.data() + 9 * bent.slot);
   };
   team.pieces(static_cast<Index>(places_.size()), [&](Index begin, Index end) {
     for (Index n = begin; n < end; ++n) put(places_[n]);

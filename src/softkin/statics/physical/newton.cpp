@@ -228,18 +228,23 @@ bool Newton::rests() {
   return true;
 }
 
-Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
-  system_.evaluate(at, *demand_, *active_, work_, balance_, team_);
-  why_ = "the law has no energy at its begin";
-  if (balance_.forbidden || !balance_.force.allFinite()) return Outcome::stuck;
+/// Nothing is known of steps yet.
+void Newton::begin_steps() {
   why_ = "its iterations were not enough";
-  Advance advance = Advance::made;
-  double damping = 1;
   secants_.clear();
   poor_ = same_ = downhill_ = 0;
   steepest_ = 0;
   refines_ = rounding_looked_at_ = false;
   slow_ = system_.limp();
+}
+
+Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
+  system_.evaluate(at, *demand_, *active_, work_, balance_, team_);
+  why_ = "the law has no energy at its begin";
+  if (balance_.forbidden || !balance_.force.allFinite()) return Outcome::stuck;
+  begin_steps();
+  Advance advance = Advance::made;
+  double damping = 1;
   if (system_.limp() && system_.layers()->flat(at.positions) && rests()) return Outcome::converged;
   imbalance_.residual = missed_ = std::numeric_limits<double>::infinity();
   const int most = brief_ ? std::min(settings_.max_iterations, most_briefly) : settings_.max_iterations;

@@ -83,6 +83,7 @@ class Newton {
   };
   enum class Advance { none, made, arrived, interrupted };
 
+  void begin_steps();
   Outcome descend(Policy policy, bool factorised, Iterate& at);
   [[nodiscard]] bool goes_on() const;
   bool rests();
