@@ -1,8 +1,7 @@
-#include <Eigen/Geometry>
+#include <Eigen/Dense>
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <softkin/core/dense.hpp>
 #include <softkin/model/mesh/boundary.hpp>
 #include <softkin/model/mesh/smooth_surface.hpp>
 
@@ -281,7 +280,9 @@ Vec3 SmoothSurface::fitted_normal(const Sector& sector, const Vec3& mean) const 
     rows.row(static_cast<Index>(i)) << weight * x, weight * y, weight * x * x, weight * x * y, weight * y * y;
     heights[i] = weight * offset.dot(mean);
   }
-  const Eigen::VectorXd fit = MinimumNorm(rows, 0.02).solve(heights);
+  Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;
+  solver.setThreshold(0.02);
+  const Eigen::VectorXd fit = solver.compute(rows).solve(heights);
   if (!(std::hypot(fit[0], fit[1]) < steepest)) return mean;
   const Vec3 normal = (mean - fit[0] * u - fit[1] * v).normalized();
   for (std::size_t at = sector.begin; at < sector.end; ++at)

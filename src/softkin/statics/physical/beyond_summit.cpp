@@ -35,8 +35,9 @@ Continuation::Passed Continuation::go_along(Index a, double way, double end, dou
     const double left = way * (end - last.measure);
     if (!(left > 1e-9 * std::abs(end))) return Passed::end;
     const double there = length > 0.9 * left ? end : last.measure + way * length;
-    next = at_measure(a, there, to, last, false, before ? &*before : nullptr);
-    if (interrupted_) return Passed::interrupted;
+    Search<Measured> step = at_measure(a, there, to, last, false, before ? &*before : nullptr);
+    if (step.interrupted) return Passed::interrupted;
+    next = std::move(step.found);
     if (!next) {
       length *= 0.4;
       if (length < shortest_beyond * last.measure || ++missed > most_missed_beyond) return Passed::nowhere;
@@ -57,9 +58,9 @@ Continuation::Climb Continuation::arrive_between(Index a, const Demand& to, Meas
   double low_miss = low.load - asked, high_miss = high.load - asked;  // as the false position weighs them
   for (int i = 0; i < most_halvings && std::abs(high.load - asked) > reach; ++i) {
     const double share = std::clamp(low_miss / (low_miss - high_miss), 0.05, 0.95);
-    std::optional<Measured> middle =
+    auto [middle, interrupted] =
         at_measure(a, low.measure + share * (high.measure - low.measure), to, low, false, &high);
-    if (interrupted_) return Climb::interrupted;
+    if (interrupted) return Climb::interrupted;
     if (!middle) return Climb::lost;
     note_branch(a, *middle);
     const double miss = middle->load - asked;

@@ -81,6 +81,12 @@ class Continuation {
     [[nodiscard]] const Measured* beside() const { return high ? &*high : passed ? &*passed : nullptr; }
     void take(Measured&& next);
   };
+  /// What was looked for, where there is one and nobody stopped it.
+  template <class What>
+  struct Search {
+    std::optional<What> found{};
+    bool interrupted = false;
+  };
   enum class Climb { lost, arrived, summit, interrupted };
   /// What stopped a way along a measure: the load that was asked, the measure, or nothing that follows.
   enum class Passed { asked, end, nowhere, interrupted };
@@ -117,8 +123,8 @@ class Continuation {
   [[nodiscard]] Index only_load(const Demand& from, const Demand& to) const;
   bool loads_at_last(const Iterate& at);
   void go_together(Iterate& at);
-  std::optional<Measured> at_measure(Index a, double measure, const Demand& load, const Measured& from, bool prepared,
-                                     const Measured* beside);
+  Search<Measured> at_measure(Index a, double measure, const Demand& load, const Measured& from, bool prepared,
+                              const Measured* beside);
   void bend(Index a, const Demand& here, const Demand& there, const Measured& from, const Measured& beside,
             Iterate& trial);
   bool leads_too_far(const Demand& here, const Demand& there, const Iterate& at);
@@ -182,8 +188,8 @@ class Continuation {
   Status arrive(const Demand& demand, Iterate& at);
   void tell_stability(const Demand& demand, const Iterate& at);
   bool buckle(const Demand& demand, Iterate& at);
-  std::optional<Pushed> lower(const Demand& demand, const Iterate& from, const LowestMode& mode);
-  std::optional<Pushed> pushed(const Demand& demand, const Iterate& from, const LowestMode& mode, double share);
+  Search<Pushed> lower(const Demand& demand, const Iterate& from, const LowestMode& mode);
+  Search<Pushed> pushed(const Demand& demand, const Iterate& from, const LowestMode& mode, double share);
   int prepare(const Demand& here, const Iterate& at);
   double renew_anchors(Iterate& at);
   [[nodiscard]] bool weighs(const Demand& here, const Demand& there) const;
@@ -220,7 +226,7 @@ class Continuation {
   Judgement last_;                    // of the last good shape
   int rounds_ = 1;                    // of normal forces, for the last equilibrium
   std::optional<Together> together_;
-  bool interrupted_ = false, at_summit_ = false;
+  bool at_summit_ = false;
 };
 
 }  // namespace softkin::physical

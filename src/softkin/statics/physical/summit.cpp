@@ -56,16 +56,17 @@ bool Continuation::leads_too_far(const Demand& here, const Demand& there, const 
 ///
 /// prepared  the workspace is as slope_at(from) left it
 /// beside    another equilibrium, by which the prediction bends
-std::optional<Continuation::Measured> Continuation::at_measure(Index a, double measure, const Demand& load,
-                                                               const Measured& from, bool prepared,
-                                                               const Measured* beside) {
+Continuation::Search<Continuation::Measured> Continuation::at_measure(Index a, double measure, const Demand& load,
+                                                                      const Measured& from, bool prepared,
+                                                                      const Measured* beside) {
   Demand here = load, there = load;
   here.actuation[a] = from.measure;
   here.share = from.share;
   there.actuation[a] = measure;
   active_[a] = true;
   from_ = from.at.positions;
-  std::optional<Measured> found;
+  Search<Measured> search;
+  std::optional<Measured>& found = search.found;
   if (prepared || prepare(here, from.at) >= 0) {
     Iterate trial = from.at;
     tracer_.begin(from.measure, measure, std::abs(measure - from.measure), system_.model().actuators[a].name);
@@ -75,7 +76,7 @@ std::optional<Continuation::Measured> Continuation::at_measure(Index a, double m
     if (clear && beside && beside->share == there.share) bend(a, here, there, from, *beside, trial);
     const Points begun = trial.positions;
     const auto outcome = clear ? settle(there, Newton::Policy::descend, trial) : Newton::Outcome::stuck;
-    interrupted_ = outcome == Newton::Outcome::interrupted;
+    search.interrupted = outcome == Newton::Outcome::interrupted;
     if (outcome == Newton::Outcome::converged && (!newton_.inverted() || last_.inverted)) {
       slide_friction(system_, trial, work_, team_);
       found = Measured{measure,    system_.measures().command(a, trial.multipliers[a]), std::move(trial), judged(), 0,
@@ -91,7 +92,7 @@ std::optional<Continuation::Measured> Continuation::at_measure(Index a, double m
                 system_.largest_move(from.at.positions, predicted_), system_.largest_move(begun, end));
   }
   active_[a] = false;
-  return found;
+  return search;
 }
 
 /// Adds to a first-order prediction what one back to another equilibrium misses, which grows with the square of the
@@ -199,8 +200,8 @@ Continuation::Climb Continuation::climb(Index a, const Demand& from, const Deman
   int missed = 0;
   for (int i = 0; i < most_steps && ascent.length > shortest_step * begin; ++i) {
     if (report_.iterations >= max_iterations_) return Climb::lost;
-    std::optional<Measured> next = at_measure(a, low.measure + way * ascent.length, to, low, prepared, ascent.beside());
-    if (interrupted_) {
+    auto [next, interrupted] = at_measure(a, low.measure + way * ascent.length, to, low, prepared, ascent.beside());
+    if (interrupted) {
       keep(a, from, to, low, at);
       return Climb::interrupted;
     }
@@ -265,8 +266,8 @@ Continuation::Climb Continuation::stop_at(Index a, double way, double begin, con
   }
   const InPrecision twice(work_.saddle,
                           linear::MixedLdlt::Precision::twice);  // so short a step is near what rounding hides
-  const std::optional<Measured> kept = at_measure(a, summit.measure - way * before, to, summit, false, nullptr);
-  if (interrupted_) {
+  const auto [kept, interrupted] = at_measure(a, summit.measure - way * before, to, summit, false, nullptr);
+  if (interrupted) {
     keep(a, from, to, summit, at);
     return Climb::interrupted;
   }
