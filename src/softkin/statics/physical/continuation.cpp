@@ -84,7 +84,6 @@ Newton::Outcome Continuation::step_from_flat(const Demand& there, const Iterate&
 /// One step; trial begins at `at` and ends at the equilibrium.
 Newton::Outcome Continuation::step(const Demand& here, const Demand& there, double length, const Iterate& at,
                                    Iterate& trial) {
-  unforetold_ = false;
   if (system_.limp() && system_.layers()->flat(at.positions)) return step_from_flat(there, at, trial);
   const bool whole = way_.done == 0 && length == 1;  // steps of a way are short where it is difficult
   bool led = false, cut = false;
@@ -269,6 +268,7 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   work_.left_field = false;
   tracer_.begin(whole(way_.done), whole(next), length);
   tangent_mm_ = 0;
+  unforetold_ = false;
   const auto outcome = [&] {
     const Newton::Brief scope(newton_, !way_.thorough && may_turn_back());
     return step(way_.here, there, length, at, trial);
