@@ -52,7 +52,7 @@ struct PullDirection {
 /// What is pulled at, and how.
 struct PullTask {
   Index body = -1;                 // of model.bodies
-  PullDirection direction;         // of any length
+  PullDirection direction;         // of any length > 0
   std::optional<double> most_N{};  // > 0: no larger force is tried; none: most_pull()
 };
 
