@@ -10,7 +10,7 @@
 
 namespace softkin::python {
 
-// The members of results. Found by the archive's namespace.
+// The members of results, taken apart so that the compiler finds one that is missing. Found by the archive's namespace.
 
 template <class A, class First, class Second>
 void members(A& archive, std::pair<First, Second>& p) {
@@ -18,18 +18,39 @@ void members(A& archive, std::pair<First, Second>& p) {
 }
 template <class A>
 void members(A& archive, IterationRecord& r) {
-  archive(r.energy, r.step_mm, r.gradient_norm);
+  auto& [energy, step_mm, gradient_norm] = r;
+  archive(energy, step_mm, gradient_norm);
+}
+template <class A>
+void members(A& archive, TracedStep& s) {
+  auto& [from, to, length, along, predicted_mm, corrected_mm, iterations, factorisations, in_double, projections,
+         shifts, taken, why] = s;
+  archive(from, to, length, along, predicted_mm, corrected_mm, iterations, factorisations, in_double, projections,
+          shifts, taken, why);
+}
+template <class A>
+void members(A& archive, LoadBranch::Point& p) {
+  auto& [measure, load] = p;
+  archive(measure, load);
+}
+template <class A>
+void members(A& archive, LoadBranch& b) {
+  auto& [actuator, points] = b;
+  archive(actuator, points);
 }
 template <class A>
 void members(A& archive, SolveReport& r) {
-  archive(r.status, r.solver, r.iterations, r.factorisations, r.factorisations_in_double, r.projections, r.shifts,
-          r.continuation_steps, r.reached, r.remark, r.energy, r.step_mm, r.tolerance_mm, r.gradient_norm, r.residual_N,
-          r.pull_N, r.unstable_modes, r.buckled, r.buckled_mm, r.snapped_mm, r.snapped_from, r.friction_change,
-          r.unstable_from, r.estimated_error_mm, r.history, r.seconds);
+  auto& [status, stopped, solver, iterations, factorisations, in_double, projections, shifts, steps, reached, remark,
+         energy, step_mm, tolerance_mm, gradient_norm, residual_N, pull_N, unstable_modes, buckled, buckled_mm,
+         snapped_mm, snapped_from, friction_change, unstable_from, error_mm, history, trace, branch, seconds] = r;
+  archive(status, stopped, solver, iterations, factorisations, in_double, projections, shifts, steps, reached, remark,
+          energy, step_mm, tolerance_mm, gradient_norm, residual_N, pull_N, unstable_modes, buckled, buckled_mm,
+          snapped_mm, snapped_from, friction_change, unstable_from, error_mm, history, trace, branch, seconds);
 }
 template <class A>
 void members(A& archive, Anchor& a) {
-  archive(a.vertex, a.part, a.triangle, a.weights, a.slipped_mm);
+  auto& [vertex, part, triangle, weights, slipped_mm] = a;
+  archive(vertex, part, triangle, weights, slipped_mm);
 }
 /// What a material remembers, which may be nothing.
 template <class A>
@@ -39,54 +60,74 @@ void remembered(A& archive, std::shared_ptr<const ViscousHistory>& history) {
   if (!history && !strains.empty()) history = std::make_shared<ViscousHistory>(ViscousHistory{std::move(strains)});
 }
 template <class A>
-void members(A& archive, Equilibrium& e) {
-  archive(e.state.positions, e.state.actuation, e.state.multipliers, e.state.share, e.state.anchors, e.actuation,
-          e.report, e.state.elapsed_s);
-  remembered(archive, e.state.history);
-  archive(e.state.eyelets);
+void members(A& archive, State& s) {
+  auto& [positions, actuation, multipliers, share, anchors, eyelets, pressures, history, elapsed_s] = s;
+  archive(positions, actuation, multipliers, share, anchors, eyelets, pressures, elapsed_s);
+  remembered(archive, history);
 }
 template <class A>
+void members(A& archive, Equilibrium& e) {
+  auto& [state, actuation, report] = e;
+  archive(state, actuation, report);
+}
+/// But for the deadline, which is past when a pickle is read.
+template <class A>
 void members(A& archive, StaticsOptions& o) {
-  archive(o.solver, o.step_tolerance_mm, o.max_iterations, o.anderson, o.threads, o.keep_history, o.stable,
-          o.reuse_factor, o.elapsed_s, o.as_published);
-  remembered(archive, o.history);
+  auto& [solver, step_tolerance_mm, max_iterations, anderson, as_published, threads, keep_history, trace, deadline,
+         stable, beyond, reuse_factor, history, elapsed_s] = o;
+  (void)deadline;
+  archive(solver, step_tolerance_mm, max_iterations, anderson, as_published, threads, keep_history, trace, stable,
+          beyond, reuse_factor, elapsed_s);
+  remembered(archive, history);
 }
 
 template <class A>
 void members(A& archive, Sensitivity& s) {
-  archive(s.positions, s.multipliers, s.regular);
+  auto& [positions, multipliers, regular] = s;
+  archive(positions, multipliers, regular);
 }
 template <class A>
 void members(A& archive, InverseTrial& t) {
-  archive(t.actuation, t.status, t.error_mm, t.iterations);
+  auto& [actuation, status, error_mm, iterations] = t;
+  archive(actuation, status, error_mm, iterations);
 }
 template <class A>
 void members(A& archive, InverseResult& r) {
-  archive(r.status, r.equilibrium, r.errors_mm, r.active, r.slope, r.sensitivity, r.iterations, r.equilibria, r.history,
-          r.remark, r.seconds);
+  auto& [status, stopped, equilibrium, errors_mm, active, slope, sensitivity, iterations, equilibria, history, remark,
+         seconds] = r;
+  archive(status, stopped, equilibrium, errors_mm, active, slope, sensitivity, iterations, equilibria, history, remark,
+          seconds);
 }
+/// But for the sensitivity of the start, which is not of the options alone.
 template <class A>
 void members(A& archive, InverseOptions& o) {
-  std::vector<char> free(o.free.begin(), o.free.end());
-  archive(o.method, o.tolerance_mm, o.max_equilibria, o.max_iterations, o.other_starts, o.preferred,
-          o.preferred_tolerance, free, o.statics);
-  o.free.assign(free.begin(), free.end());
+  auto& [method, tolerance_mm, max_equilibria, max_iterations, other_starts, preferred, preferred_tolerance, free,
+         start_sensitivity, statics] = o;
+  (void)start_sensitivity;
+  std::vector<char> may_change(free.begin(), free.end());
+  archive(method, tolerance_mm, max_equilibria, max_iterations, other_starts, preferred, preferred_tolerance,
+          may_change, statics);
+  free.assign(may_change.begin(), may_change.end());
 }
 template <class A>
 void members(A& archive, PositionGoal& g) {
-  archive(g.marker, g.target, g.axes);
+  auto& [marker, target, axes] = g;
+  archive(marker, target, axes);
 }
 template <class A>
 void members(A& archive, PlaneGoal& g) {
-  archive(g.marker, g.point, g.normal);
+  auto& [marker, point, normal] = g;
+  archive(marker, point, normal);
 }
 template <class A>
 void members(A& archive, DirectionGoal& g) {
-  archive(g.from, g.to, g.direction, g.lever_mm);
+  auto& [from, to, direction, lever_mm] = g;
+  archive(from, to, direction, lever_mm);
 }
 template <class A>
 void members(A& archive, ForceGoal& g) {
-  archive(g.on, g.index, g.force, g.axes, g.mm_per_N);
+  auto& [on, index, force, axes, mm_per_N] = g;
+  archive(on, index, force, axes, mm_per_N);
 }
 template <class A>
 void members(A& archive, runs::NamedGoal& g) {
@@ -99,23 +140,28 @@ void members(A& archive, runs::NamedGoal& g) {
 }
 template <class A>
 void members(A& archive, Pressed& p) {
-  archive(p.normal_N, p.slipping);
+  auto& [normal_N, slipping] = p;
+  archive(normal_N, slipping);
 }
 template <class A>
 void members(A& archive, PullDirection& d) {
-  archive(d.name, d.along);
+  auto& [name, along] = d;
+  archive(name, along);
 }
 template <class A>
 void members(A& archive, Pull& p) {
-  archive(p.direction, p.status, p.force_N, p.moved_mm, p.pressed, p.last);
+  auto& [direction, status, force_N, moved_mm, pressed, last] = p;
+  archive(direction, status, force_N, moved_mm, pressed, last);
 }
 template <class A>
 void members(A& archive, Grasp& g) {
-  archive(g.held, g.remark, g.last);
+  auto& [held, remark, last] = g;
+  archive(held, remark, last);
 }
 template <class A>
 void members(A& archive, WorkspaceSample& s) {
-  archive(s.number, s.actuation, s.markers, s.multipliers, s.status, s.reached, s.iterations);
+  auto& [number, actuation, markers, multipliers, status, reached, iterations] = s;
+  archive(number, actuation, markers, multipliers, status, reached, iterations);
 }
 
 }  // namespace softkin::python

@@ -232,6 +232,14 @@ def test_pickle(shape: softkin.Shape) -> None:
     assert other[0].robot is other[1]
 
 
+def test_a_pickle_keeps_what_a_limit_tells() -> None:
+    """The points of the way along the chamber's volume, with the maximum of its pressure."""
+    air = {"name": "air", "kind": "pneumatic", "region": "chamber1", "control": "pressure", "range": (0, 5000)}
+    shape = beam(4, 5, actuators=[air]).solve(air=5000)
+    assert shape.status == "limit" and len(shape.report["steps"][0]["branch"]["ratio"]) > 2
+    assert pickle.loads(pickle.dumps(shape)).report == shape.report
+
+
 def test_solver_options(robot: softkin.Robot, shape: softkin.Shape) -> None:
     np.testing.assert_array_equal(robot.solve([1.3, 1, 1]).positions, shape.positions)
     np.testing.assert_array_equal(robot.solve({"air1": 1.3}).positions, shape.positions)
