@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <softkin/core/text.hpp>
+#include <softkin/statics/physical/buckling.hpp>
 #include <softkin/statics/physical/contact_steps.hpp>
 #include <softkin/statics/physical/continuation.hpp>
 #include <softkin/statics/physical/pull_in.hpp>
@@ -33,8 +34,6 @@ constexpr double most_turn = 30;
 constexpr double before_fold = 0.8;
 /// Share of a step that is not worth another one at the end of a way.
 constexpr double least_left = 0.1;
-/// Steps are tried with the stiffness of a shape that is nearer than this share of the diagonal.
-constexpr double nearby = 1e-3;
 /// In steps shorter than this an equilibrium is followed where it is unstable.
 constexpr double follow_below = 0.05;
 /// Under a growing load an equilibrium this many times as far from the predicted shape as that is from the last one
@@ -53,32 +52,27 @@ Continuation::Continuation(const System& system, Workspace& work, Team& team, co
     : system_(system),
       work_(work),
       team_(team),
-      newton_(system, work, team,
-              {options.tolerance_mm, options.force_share, system.contact() || system.limp() ? 100 : 30,
-               options.keep_history},
-              progress, report),
-      tolerance_mm_(options.tolerance_mm),
-      max_iterations_(options.max_iterations),
-      stable_(options.stable),
-      beyond_(options.beyond),
+      options_(options),
       report_(report),
+      settler_(system, work, team, options, progress, report),
       tracer_(options.trace, report) {}
 
 /// Moves to the end of a whole way where it is known without a tangent: foretold, foreseen or as the last ones led.
 bool Continuation::lead(const Demand& here, const Demand& there, Iterate& trial) {
   return !system_.contact() && (follow_foretold(here, there, work_, trial) ||
-                                follow_foreseen(system_, here, there, active_, work_, team_, trial) ||
-                                work_.trail.lead(here, there, active_, tolerance_mm_, trial));
+                                follow_foreseen(system_, here, there, settler_.active, work_, team_, trial) ||
+                                work_.trail.lead(here, there, settler_.active, options_.tolerance_mm, trial));
 }
 
 /// One step from limp sheets that lie flat, where no tangent leads anywhere.
 Newton::Outcome Continuation::step_from_flat(const Demand& there, const Iterate& at, Iterate& trial) {
-  if (runs_into_flat(there, at)) return Newton::Outcome::blocked;
-  const std::optional<Swelling> swelling = swell(system_, there, active_, trial, work_, team_);
-  unforetold_ = swelling.has_value();
-  predicted_ = begun_ = trial.positions;
-  move_mm_ = system_.largest_move(at.positions, predicted_);
-  return swelling ? settle_swollen(there, *swelling, trial) : settle(there, Newton::Policy::descend, trial);
+  if (settler_.runs_into_flat(there, at)) return Newton::Outcome::blocked;
+  const std::optional<Swelling> swelling = swell(system_, there, settler_.active, trial, work_, team_);
+  step_.unforetold = swelling.has_value();
+  step_.predicted = step_.begun = trial.positions;
+  step_.move_mm = system_.largest_move(at.positions, step_.predicted);
+  return swelling ? settler_.settle_swollen(there, *swelling, trial)
+                  : settler_.settle(there, Newton::Policy::descend, trial);
 }
 
 /// One step; trial begins at `at` and ends at the equilibrium.
@@ -91,44 +85,44 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
     led = whole && !led && lead(here, there, trial);
     if (led) {
       system_.placement().hold(there, trial.positions);
-      predicted_ = begun_ = trial.positions;
-      move_mm_ = system_.largest_move(at.positions, predicted_);
+      step_.predicted = step_.begun = trial.positions;
+      step_.move_mm = system_.largest_move(at.positions, step_.predicted);
       return true;
     }
-    const ClearPrediction clear = predict_clear(system_, here, there, active_, work_, team_, trial);
-    predicted_ = clear.predicted;
-    if (system_.friction()) free_way_ = {clear.straight, clear.predicted};
-    move_mm_ = clear.move_mm.value_or(system_.largest_move(at.positions, predicted_));
-    cut = clear.cut && weighs(here, there) &&
-          system_.largest_move(at.positions, predicted_) > far * system_.model().diagonal_mm;
-    begun_ = trial.positions;
+    const ClearPrediction clear = predict_clear(system_, here, there, settler_.active, work_, team_, trial);
+    step_.predicted = clear.predicted;
+    if (system_.friction()) settler_.free_way = {clear.straight, clear.predicted};
+    step_.move_mm = clear.move_mm.value_or(system_.largest_move(at.positions, step_.predicted));
+    cut = clear.cut && settler_.weighs(here, there) &&
+          system_.largest_move(at.positions, step_.predicted) > far * system_.model().diagonal_mm;
+    step_.begun = trial.positions;
     return clear.move_mm.has_value();
   };
   if (!prediction()) return whole ? fall_onto(here, there, at, trial) : Newton::Outcome::blocked;
-  tangent_mm_ = led ? 0 : move_mm_ / length;
+  step_.tangent_mm = led ? 0 : step_.move_mm / length;
   if (leads_over_fold(length)) return Newton::Outcome::over_fold;
   if (whole && !led && leads_too_far(here, there, at)) return Newton::Outcome::too_far;
-  const bool follows = last_.modes > 0 && !stable_ && length <= 1.001 * follow_below;
+  const bool follows = settler_.last.modes > 0 && !options_.stable && length <= 1.001 * follow_below;
   const auto policy = follows ? Newton::Policy::follow : led ? Newton::Policy::near : Newton::Policy::descend;
   const bool again = system_.contact() && !follows, first = again && whole && cut;
   const Iterate begun = again ? trial : Iterate{};
   const auto settle_foreseen = [&] {
     trial = begun;
-    const auto foreseen = foresee_contact(there, at, false, trial);
-    if (foreseen == Newton::Outcome::converged) return settle(there, policy, trial);
+    const auto foreseen = settler_.foresee_contact(there, at, false, trial);
+    if (foreseen == Newton::Outcome::converged) return settler_.settle(there, policy, trial);
     return foreseen == Newton::Outcome::interrupted ? foreseen : Newton::Outcome::stuck;
   };
   auto outcome = first ? settle_foreseen() : Newton::Outcome::stuck;
   if (outcome == Newton::Outcome::stuck) {
     if (first) trial = begun;
-    outcome = settle(there, policy, trial, whole && factorised_nearby(trial.positions));
+    outcome = settler_.settle(there, policy, trial, whole && settler_.factorised_nearby(trial.positions));
   }
   if (outcome == Newton::Outcome::stuck && again && !first) outcome = settle_foreseen();
   if (outcome == Newton::Outcome::converged && !led && whole)
-    work_.trail.note_tangent(here, there, system_.largest_move(begun_, trial.positions));
-  if (outcome == Newton::Outcome::stuck && !follows && length < follow_below && prepare(here, at) >= 0) {
+    work_.trail.note_tangent(here, there, system_.largest_move(step_.begun, trial.positions));
+  if (outcome == Newton::Outcome::stuck && !follows && length < follow_below && settler_.prepare(here, at) >= 0) {
     trial = at;
-    if (prediction()) outcome = settle(there, Newton::Policy::follow, trial);
+    if (prediction()) outcome = settler_.settle(there, Newton::Policy::follow, trial);
   }
   return outcome;
 }
@@ -140,39 +134,54 @@ bool Continuation::leads_over_fold(double length) const {
          before_fold * left > least_advance;
 }
 
+/// Where weights would lead far through something: what is held comes to its place, and the body onto what is near.
+Newton::Outcome Continuation::fall_onto(const Demand& here, const Demand& there, const Iterate& at, Iterate& trial) {
+  if (!settler_.weighs(here, there) || settler_.touches(at)) return Newton::Outcome::blocked;
+  trial = at;
+  if (!carry_held(system_, here, there, settler_.active, work_, team_, trial)) return Newton::Outcome::blocked;
+  settler_.give_loads(there, trial);
+  step_.predicted = step_.begun = trial.positions;
+  step_.unforetold = true;
+  const auto outcome = settler_.foresee_contact(there, at, true, trial);
+  if (outcome == Newton::Outcome::interrupted) return outcome;
+  step_.begun = trial.positions;
+  return outcome == Newton::Outcome::converged ? settler_.settle(there, Newton::Policy::descend, trial)
+                                               : Newton::Outcome::stuck;  // blocked is what was not tried
+}
+
 /// Does a step leave the way? Where a way bends, the tangent at its end, followed back, misses its begin on the side on
 /// which the one at its begin misses its end, and by about as much; where it jumps, on the other side.
 bool Continuation::jumped(const Demand& here, const Demand& there, const Iterate& at, const Iterate& trial) {
-  if (unforetold_) return false;
-  const double correction = system_.largest_move(predicted_, trial.positions);
+  if (step_.unforetold) return false;
+  const double correction = system_.largest_move(step_.predicted, trial.positions);
   const auto jumps = [&] {
     Iterate back = trial;
-    (void)predict(system_, there, here, active_, work_, team_, back);
-    const Points ahead = predicted_ - trial.positions, behind = back.positions - at.positions;
-    jump_mm_ = 0.5 * system_.largest_move(ahead, behind);
+    (void)predict(system_, there, here, settler_.active, work_, team_, back);
+    const Points ahead = step_.predicted - trial.positions, behind = back.positions - at.positions;
+    step_.jump_mm = 0.5 * system_.largest_move(ahead, behind);
     // where the way has a corner, at which something begins to touch, both miss on the same side, by any lengths
-    return !(jump_mm_ <= least_jump * correction) && !(system_.contact() && ahead.cwiseProduct(behind).sum() > 0);
+    return !(step_.jump_mm <= least_jump * correction) && !(system_.contact() && ahead.cwiseProduct(behind).sum() > 0);
   };
   if (correction <= least_snap * system_.model().diagonal_mm) return false;
   // the factor at hand is of a shape nearby, and mostly good enough
-  return jumps() && (prepare(there, trial) < 0 || jumps());
+  return jumps() && (settler_.prepare(there, trial) < 0 || jumps());
 }
 
 Status Continuation::follow(const Demand& from, const Demand& to, Iterate& at) {
   const Status end = follow_whole(from, to, at);
-  sort_branch();
+  sort_branch(system_, report_);
   return end;
 }
 
 Status Continuation::follow_whole(const Demand& from, const Demand& to, Iterate& at) {
-  active_.resize(static_cast<std::size_t>(system_.actuators()));
-  for (Index a = 0; a < system_.actuators(); ++a) active_[a] = system_.measures().constrains(a);
+  settler_.active.resize(static_cast<std::size_t>(system_.actuators()));
+  for (Index a = 0; a < system_.actuators(); ++a) settler_.active[a] = system_.measures().constrains(a);
   set_out(from, to);
-  (void)release(to, at, false);
-  from_ = at.positions;
-  (void)renew_anchors(at);
+  (void)settler_.release(to, at, false);
+  settler_.good_shape = at.positions;
+  (void)settler_.renew_anchors(at);
   if (!same_shape(work_.home, at.positions)) work_.trail.clear();
-  way_.factorised = same_shape(work_.home, at.positions) && factor_holds_active();
+  way_.factorised = same_shape(work_.home, at.positions) && settler_.factor_holds_active();
   work_.home.resize(0, 3);
   if (!way_.factorised && from.actuation == to.actuation && from.share == to.share && from.fading == to.fading) {
     const auto outcome = settle_here(to, at);
@@ -191,6 +200,24 @@ Status Continuation::follow_whole(const Demand& from, const Demand& to, Iterate&
   return arrive(to, at);
 }
 
+/// Newton at once, where the start is as near to the equilibrium asked for as any prediction from it.
+Newton::Outcome Continuation::settle_here(const Demand& demand, Iterate& at) {
+  const std::vector<bool> before = settler_.active;
+  Iterate trial = at;
+  auto outcome = settler_.settle(demand, Newton::Policy::descend, trial);
+  if (settler_.newton().inverted() || (system_.surroundings().any_body() && !settler_.newton().balanced()))
+    outcome = Newton::Outcome::stuck;
+  if (outcome == Newton::Outcome::converged) {
+    settler_.take(at, std::move(trial));
+    settler_.last = settler_.judged();
+    ++report_.continuation_steps;
+    report_.reached = 1;
+  } else {
+    settler_.active = before;
+  }
+  return outcome;
+}
+
 /// Another way, from where the last one ended.
 void Continuation::set_out(const Demand& from, const Demand& to) {
   way_ = {.from = from, .to = to, .here = from, .before = way_.before};
@@ -201,9 +228,14 @@ void Continuation::set_out(const Demand& from, const Demand& to) {
   way_.marked_iterations = report_.iterations;
 }
 
-/// Share of all that was asked.
-double Continuation::whole(double done) const {
-  return way_.then ? way_.before : way_.before + (1 - way_.before) * done;
+/// Along what a load does.
+Climb::End Continuation::climb(Climb::End (Climb::*along)(Iterate&), Index load, Iterate& at) {
+  Climb climb(settler_, tracer_, options_, {load, way_.from, way_.to, way_.here, way_.done, way_.whole()});
+  const Climb::End end = (climb.*along)(at);
+  way_.here = climb.route().here;
+  way_.done = climb.route().done;
+  at_summit_ = at_summit_ || climb.at_summit();
+  return end;
 }
 
 /// Where the next step ends. One that leaves hardly anything is as long as what is left.
@@ -216,15 +248,15 @@ double Continuation::next_share() {
 
 /// Makes ready for a step; a status where the way ends without one.
 std::optional<Status> Continuation::start_step(const Demand& there, Iterate& at) {
-  if (release(there, at, false)) way_.factorised = false;
-  const int modes = way_.factorised ? last_.modes : prepare(way_.here, at);
+  if (settler_.release(there, at, false)) way_.factorised = false;
+  const int modes = way_.factorised ? settler_.last.modes : settler_.prepare(way_.here, at);
   if (modes < 0) return limit(way_.done, "the stiffness at the start is not stable", at);
   way_.factorised = true;
-  if (beyond_ > 0 && modes > 0 && way_.load >= 0 && way_.done == 0) {
-    const Climb back = go_back(way_.load, way_.from, way_.to, at);
-    if (back == Climb::interrupted) return Status::interrupted;
-    if (back == Climb::arrived) return arrive(way_.to, at);
-    way_.factorised = prepare(way_.here, at) >= 0;
+  if (options_.beyond > 0 && modes > 0 && way_.load >= 0 && way_.done == 0) {
+    const Climb::End back = climb(&Climb::back, way_.load, at);
+    if (back == Climb::End::interrupted) return Status::interrupted;
+    if (back == Climb::End::arrived) return arrive(way_.to, at);
+    way_.factorised = settler_.prepare(way_.here, at) >= 0;
   }
   return std::nullopt;
 }
@@ -232,7 +264,7 @@ std::optional<Status> Continuation::start_step(const Demand& there, Iterate& at)
 /// What a step of this length that ended so is worth.
 Continuation::StepEnd Continuation::judge(Newton::Outcome outcome, const Demand& there, double length,
                                           const Iterate& at, const Iterate& trial) {
-  StepEnd end{.why = outcome == Newton::Outcome::stuck       ? newton_.why_stuck()
+  StepEnd end{.why = outcome == Newton::Outcome::stuck       ? settler_.newton().why_stuck()
                      : outcome == Newton::Outcome::blocked   ? "something is in the way"
                      : outcome == Newton::Outcome::too_far   ? "it is far more than the load can be foretold for"
                      : outcome == Newton::Outcome::over_fold ? "the way is foretold to turn back before its end"
@@ -241,19 +273,21 @@ Continuation::StepEnd Continuation::judge(Newton::Outcome outcome, const Demand&
   end.blocked = outcome == Newton::Outcome::blocked || outcome == Newton::Outcome::too_far ||
                 outcome == Newton::Outcome::over_fold;
   end.found = outcome != Newton::Outcome::stuck && !end.blocked;
-  end.hurried = outcome == Newton::Outcome::stuck && newton_.hurried();
+  end.hurried = outcome == Newton::Outcome::stuck && settler_.newton().hurried();
   const auto reject = [&](const char* because) {
     end.found = false;
     end.why = because;
   };
-  if (end.found && way_.loads_change && snapped(move_mm_, system_.largest_move(begun_, trial.positions)) &&
+  if (end.found && way_.loads_change && snapped(step_.move_mm, system_.largest_move(step_.begun, trial.positions)) &&
       jumped(way_.here, there, at, trial))
     reject("the equilibrium lies beyond a jump");
   end.snap = end.found && !way_.loads_change && jumped(way_.here, there, at, trial);
   end.unstable = end.found && outcome == Newton::Outcome::unstable;
-  if (newton_.inverted() && !last_.inverted && length > most_inverting) reject("an element is inverted");
+  if (settler_.newton().inverted() && !settler_.last.inverted && length > most_inverting)
+    reject("an element is inverted");
   // a body that nothing holds has no stiffness, and so no step
-  if (end.found && system_.surroundings().any_body() && !newton_.balanced()) reject("a body is out of balance");
+  if (end.found && system_.surroundings().any_body() && !settler_.newton().balanced())
+    reject("a body is out of balance");
   return end;
 }
 
@@ -264,40 +298,43 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   Iterate trial = at;
   if (const std::optional<Status> end = start_step(there, at)) return end;
   const int before = report_.iterations;
-  const std::vector<bool> active = active_;
+  const std::vector<bool> active = settler_.active;
   work_.left_field = false;
   tracer_.begin(whole(way_.done), whole(next), length);
-  tangent_mm_ = 0;
-  unforetold_ = false;
+  step_.tangent_mm = 0;
+  step_.unforetold = false;
   const auto outcome = [&] {
-    const Newton::Brief scope(newton_, !way_.thorough && may_turn_back());
+    const Newton::Brief scope(settler_.newton(), !way_.thorough && may_turn_back());
     return step(way_.here, there, length, at, trial);
   }();
-  free_way_ = {};
+  settler_.free_way = {};
   if (outcome == Newton::Outcome::interrupted) return Status::interrupted;
   const StepEnd came = judge(outcome, there, length, at, trial);
   const double longest = longest_step(came.snap, came.unstable);
-  const double corrected_mm = came.found ? system_.largest_move(begun_, trial.positions) : 0;
-  const auto trace = [&](bool taken, const std::string& told) { tracer_.end(taken, told, move_mm_, corrected_mm); };
+  const double corrected_mm = came.found ? system_.largest_move(step_.begun, trial.positions) : 0;
+  const auto trace = [&](bool taken, const std::string& told) {
+    tracer_.end(taken, told, step_.move_mm, corrected_mm);
+  };
   std::optional<Status> end;
   if (!came.found) {
     trace(false, came.why);
     way_.factorised = came.blocked;
-    active_ = active;
+    settler_.active = active;
     if (!came.blocked) way_.failed = way_.failed > way_.done ? std::min(way_.failed, next) : next;
     end = shorten(length, came.hurried, at);
   } else if (length > 1.001 * longest) {
     trace(false,
           came.snap ? "it jumps: shorter ones may not" : "it is unstable: a shorter one shows where it becomes so");
-    if (came.snap) way_.beyond = Beyond{std::move(trial), there, next, active_, judged(), jump_mm_};
+    if (came.snap)
+      way_.beyond = Beyond{std::move(trial), there, next, settler_.active, settler_.judged(), step_.jump_mm};
     way_.factorised = false;
-    active_ = active;
+    settler_.active = active;
     way_.advance = std::max(longest, 0.4 * length);
   } else {
     trace(true, came.snap ? "it jumps" : came.unstable ? "unstable" : came.why);
-    if (came.snap) tell_snap(jump_mm_, whole(way_.done));
-    take(at, std::move(trial));
-    way_.tangent_mm = tangent_mm_;
+    if (came.snap) tell_snap(step_.jump_mm, whole(way_.done), report_);
+    settler_.take(at, std::move(trial));
+    way_.tangent_mm = step_.tangent_mm;
     way_.tangent_at = way_.done;
     if (!come_to(there, next, came.unstable, at)) return Status::interrupted;
     lengthen(report_.iterations - before, came.unstable, at);
@@ -307,7 +344,7 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
 
 /// Chooses the next step after one that was taken, in so many iterations.
 void Continuation::lengthen(int iterations, bool unstable, Iterate& at) {
-  way_.advance *= lengthened(iterations / rounds_);  // those for new normal forces are as many each
+  way_.advance *= lengthened(iterations / settler_.rounds());  // those for new normal forces are as many each
   if (unstable) way_.advance = std::min(way_.advance, follow_below);
   if (leads_beyond(at)) {
     take_beyond(at);
@@ -325,13 +362,13 @@ double Continuation::lengthened(int iterations) const {
 
 /// After a step that led to no equilibrium. Before a limit is told, one that hurried has every iteration.
 std::optional<Status> Continuation::shorten(double length, bool hurried, Iterate& at) {
-  const std::vector<bool> active = active_;
+  const std::vector<bool> active = settler_.active;
   if (way_.load >= 0) {  // along what the load does
-    const Climb end = climb(std::exchange(way_.load, -1), way_.from, way_.here, way_.to, at);
-    if (end == Climb::interrupted) return Status::interrupted;
-    if (end == Climb::arrived) return arrive(way_.to, at);
-    if (end == Climb::summit) return limit(way_.done, report_.remark, at);
-    active_ = active;
+    const Climb::End end = climb(&Climb::up, std::exchange(way_.load, -1), at);
+    if (end == Climb::End::interrupted) return Status::interrupted;
+    if (end == Climb::End::arrived) return arrive(way_.to, at);
+    if (end == Climb::End::summit) return limit(way_.done, report_.remark, at);
+    settler_.active = active;
     way_.factorised = false;
     report_.reached = whole(way_.done);
   }
@@ -340,14 +377,14 @@ std::optional<Status> Continuation::shorten(double length, bool hurried, Iterate
   way_.advance = folds ? std::max(0.1 * length, before_fold * left_to_fold()) : 0.4 * length;
   if (folds) return std::nullopt;
   if (way_.beyond && way_.advance < finest) {
-    tell_snap(way_.beyond->jump_mm, whole(way_.done));
+    tell_snap(way_.beyond->jump_mm, whole(way_.done), report_);
     take_beyond(at);
     way_.advance = follow_below;
     return std::nullopt;
   }
-  double least = least_move * tolerance_mm_;
+  double least = least_move * options_.tolerance_mm;
   if (system_.contact()) least = std::min(least, least_contact_move * system_.model().contact.distance_mm);
-  const bool leads_nowhere = !way_.releases && move_mm_ < least;
+  const bool leads_nowhere = !way_.releases && step_.move_mm < least;
   const bool ends = way_.advance < least_advance || leads_nowhere;
   if (ends && hurried) {
     way_.advance = length;
@@ -366,11 +403,11 @@ std::optional<Status> Continuation::shorten(double length, bool hurried, Iterate
 
 /// An equilibrium on the way; false: interrupted.
 bool Continuation::come_to(const Demand& there, double next, bool unstable, Iterate& at) {
-  last_ = judged();
-  if (unstable && stable_ && next < 1) {
-    if (!buckle(there, at)) return false;
+  settler_.last = settler_.judged();
+  if (unstable && options_.stable && next < 1) {
+    if (!buckle(settler_, there, at)) return false;
     way_.factorised = false;
-  } else if (unstable && next < 1 && report_.unstable_from == 0 && prepare(there, at) > 0) {
+  } else if (unstable && next < 1 && report_.unstable_from == 0 && settler_.prepare(there, at) > 0) {
     report_.unstable_from = whole(next);  // in the shape itself: the last factorisation was of one close to it
   }
   if (way_.beyond && next >= way_.beyond->done) way_.beyond.reset();
@@ -395,20 +432,10 @@ std::optional<Status> Continuation::out_of_patience(const Iterate& at) {
                      " iterations brought less than 1 % of it",
                  at);
   }
-  if (way_.done == 1 || report_.iterations < max_iterations_) return std::nullopt;
+  if (way_.done == 1 || report_.iterations < options_.max_iterations) return std::nullopt;
   tell_balance();
   report_.remark = "the limit of iterations was reached";
   return Status::not_converged;
-}
-
-/// Does the workspace hold the stable stiffness of a shape close by?
-bool Continuation::factorised_nearby(const Points& shape) const {
-  return work_.exact && work_.saddle.spectrum().unstable == 0 && work_.factorised.rows() == shape.rows() &&
-         system_.largest_move(work_.factorised, shape) <= nearby * system_.model().diagonal_mm;
-}
-
-Continuation::Judgement Continuation::judged() const {
-  return {newton_.imbalance(), newton_.balanced(), newton_.inverted(), newton_.unstable_modes()};
 }
 
 bool Continuation::snapped(double predicted_mm, double correction_mm) const {
@@ -417,32 +444,7 @@ bool Continuation::snapped(double predicted_mm, double correction_mm) const {
 
 /// Of a step that came to an equilibrium: a shorter one may not leave the way, or leave it where it becomes unstable.
 double Continuation::longest_step(bool snap, bool unstable) const {
-  return snap ? finest : unstable && stable_ ? follow_below : 1;
-}
-
-/// Slackens cables that may be longer than they are and carry nothing: held to their length they would push the body
-/// there before they are found to be slack. contradicting: those too that carry something, against another one.
-bool Continuation::release(const Demand& there, Iterate& at, bool contradicting) {
-  bool changed = false;
-  for (Index a = 0; a < system_.actuators(); ++a) {
-    if (!active_[a] || !system_.measures().only_pulls(a) || (at.multipliers[a] > 0 && !contradicting)) continue;
-    if (system_.measures().value(a, at.positions) >= system_.measures().target(a, there.actuation, 0)) continue;
-    active_[a] = false;
-    at.multipliers[a] = 0;
-    changed = true;
-  }
-  return changed;
-}
-
-/// Factorises at an equilibrium, for the predictor. Returns in how many ways it is unstable; -1: it is none.
-int Continuation::prepare(const Demand& here, const Iterate& at) {
-  Balance balance;
-  hold_friction(system_, at, work_, team_);
-  system_.evaluate(at, here, active_, work_, balance, team_);
-  ++report_.factorisations;
-  const int modes = system_.factorise(at, here, active_, balance, {}, work_, team_);
-  report_.factorisations_in_double += work_.saddle.factor().in_double();
-  return balance.force.allFinite() ? modes : -1;
+  return snap ? finest : unstable && options_.stable ? follow_below : 1;
 }
 
 }  // namespace softkin::physical

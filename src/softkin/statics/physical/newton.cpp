@@ -54,9 +54,9 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
   const auto attempted = [&](Stiffness kind, double shift, Precision precision) {
     if (!goes_on()) return Advance::interrupted;  // of a large robot each takes as long as many iterations
     ++report_.factorisations;
-    factored_ = at.positions;
+    factor_.shape = at.positions;
     secants_.clear();
-    rounding_looked_at_ = false;
+    factor_.looked_at = false;
     const InPrecision scope(work_.saddle, precision);
     negative = system_.factorise(at, *demand_, *active_, balance_, {kind, shift, true}, work_, team_);
     report_.factorisations_in_double += work_.saddle.factor().in_double();
@@ -64,16 +64,16 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
   };
   Advance end = attempted(Stiffness::exact, 0, guess ? Precision::sign : usual);
   if (end == Advance::interrupted) return end;
-  negative_ = negative;
-  doubtful_ = !work_.saddle.factor().trusted();
-  const Precision closer = doubtful_ ? Precision::good : usual;
+  factor_.negative = negative;
+  factor_.doubtful = !work_.saddle.factor().trusted();
+  const Precision closer = factor_.doubtful ? Precision::good : usual;
   if (end == Advance::made || policy != Policy::descend) return Advance::made;
-  for (double shift = std::max(slight_shift, last_shift_); slow_ && end == Advance::none && shift < clear_shift;
+  for (double shift = std::max(slight_shift, factor_.shift); pace_.slow && end == Advance::none && shift < clear_shift;
        shift *= 8) {
     ++report_.shifts;
     // pressed sheets buckle in many ways, of which none leads to where they wrinkle
     end = attempted(system_.limp() ? Stiffness::projected : Stiffness::exact, shift, closer);
-    last_shift_ = shift / 3;
+    factor_.shift = shift / 3;
   }
   if (end != Advance::none) return end;
   ++report_.projections;
@@ -184,10 +184,10 @@ void Newton::settle_gases(Iterate& at) const {
 /// Is the count of negative eigenvalues one of rounding, or of a shape that is too far from an equilibrium? Where the
 /// count is 0 the softest change of shape tells. The workspace is left as it was.
 bool Newton::doubts_stability(const Iterate& at) {
-  if (negative_ != 0 && doubtful_) return true;
-  const double moved = (at.positions - factored_).rowwise().norm().maxCoeff();
+  if (factor_.negative != 0 && factor_.doubtful) return true;
+  const double moved = (at.positions - factor_.shape).rowwise().norm().maxCoeff();
   if (!(moved > near_factor * system_.model().diagonal_mm)) return false;
-  if (negative_ != 0) return true;
+  if (factor_.negative != 0) return true;
   const bool as_stiff = as_stiff_as_factorised(system_, at, *demand_, *active_, balance_, work_, team_);
   (void)reject(at);
   return !as_stiff;
@@ -196,10 +196,10 @@ bool Newton::doubts_stability(const Iterate& at) {
 /// The number of negative eigenvalues at an iterate, without a doubt.
 void Newton::make_sure(const Iterate& at) {
   const InPrecision twice(work_.saddle, linear::MixedLdlt::Precision::twice);
-  negative_ = system_.factorise(at, *demand_, *active_, balance_, {}, work_, team_);
+  factor_.negative = system_.factorise(at, *demand_, *active_, balance_, {}, work_, team_);
   ++report_.factorisations;
   ++report_.factorisations_in_double;
-  doubtful_ = false;
+  factor_.doubtful = false;
 }
 
 Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& active, Policy policy, bool factorised,
@@ -224,7 +224,7 @@ bool Newton::rests() {
   imbalance_ = system_.imbalance(balance_, work_, team_);
   if (!(imbalance_.residual <= imbalance_.rounding) || !balance_.constraint.isZero(0)) return false;
   missed_ = 0;
-  negative_ = 0;
+  factor_.negative = 0;
   return true;
 }
 
@@ -232,10 +232,8 @@ bool Newton::rests() {
 void Newton::begin_steps() {
   why_ = "its iterations were not enough";
   secants_.clear();
-  poor_ = same_ = downhill_ = 0;
-  steepest_ = 0;
-  refines_ = rounding_looked_at_ = false;
-  slow_ = system_.limp();
+  pace_ = {.slow = system_.limp()};
+  factor_.refines = factor_.looked_at = false;
 }
 
 Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
@@ -250,8 +248,8 @@ Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
   const int most = brief_ ? std::min(settings_.max_iterations, most_briefly) : settings_.max_iterations;
   for (int iteration = 0; advance == Advance::made && iteration < most; ++iteration) {
     if (factorised && iteration == 0) {
-      negative_ = 0;
-      factored_ = at.positions;
+      factor_.negative = 0;
+      factor_.shape = at.positions;
       advance = steps_from_nearby(at);
     } else {
       const Advance ready = factorise(at, policy);
@@ -260,7 +258,8 @@ Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
         why_ = "no shift makes the stiffness positive";
         return Outcome::stuck;
       }
-      advance = policy == Policy::near && negative_ > 0 ? step_to_stable(at, damping) : steps_from_here(at, damping);
+      advance =
+          policy == Policy::near && factor_.negative > 0 ? step_to_stable(at, damping) : steps_from_here(at, damping);
       if (policy == Policy::near) policy = Policy::descend;
     }
     if (advance == Advance::arrived && (improve_balance() || improve_constraints())) {
@@ -283,7 +282,7 @@ Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
   work_.saddle.correct_multipliers(balance_, at.multipliers, team_);
   settle_gases(at);
   if (doubts_stability(at)) make_sure(at);
-  return negative_ == 0 ? Outcome::converged : Outcome::unstable;
+  return factor_.negative == 0 ? Outcome::converged : Outcome::unstable;
 }
 
 }  // namespace softkin::physical

@@ -60,7 +60,7 @@ class Newton {
   Outcome settle_pushes(const Demand& demand, const std::vector<bool>& active, Iterate& at);
 
   /// Negative eigenvalues that the constraints leave, at the last equilibrium: ways to snap away from it.
-  [[nodiscard]] int unstable_modes() const { return negative_; }
+  [[nodiscard]] int unstable_modes() const { return factor_.negative; }
 
   /// Are the forces in balance at the last equilibrium, too?
   [[nodiscard]] bool balanced() const;
@@ -82,6 +82,23 @@ class Newton {
     Eigen::VectorXd step, left, left_change;
   };
   enum class Advance { none, made, arrived, interrupted };
+  /// How steps get on.
+  struct Pace {
+    int poor = 0;         // in a row that were much shorter than Newton's
+    int same = 0;         // in a row that left as much to go
+    int downhill = 0;     // in a row that lead down and no nearer
+    double steepest = 0;  // slope of the merit function so far
+    bool slow = false;    // are they of a stiffness that was made positive element by element
+  };
+  /// The last factorisation.
+  struct Factored {
+    int negative = 0;        // eigenvalues that the constraints leave
+    bool doubtful = false;   // is there a doubt about these
+    bool looked_at = false;  // is it known how rounding shows in its steps
+    bool refines = false;    // do these want more than what its precision gives
+    double shift = 0;        // the last that made it positive, over three
+    Points shape{};          // where it was made
+  };
 
   void begin_steps();
   Outcome descend(Policy policy, bool factorised, Iterate& at);
@@ -131,17 +148,8 @@ class Newton {
   Iterate start_, trial_;
   const char* why_ = "";
   bool brief_ = false, hurried_ = false;
-  int poor_ = 0;         // steps in a row that were much shorter than Newton's
-  int same_ = 0;         // steps in a row that left as much to go
-  double steepest_ = 0;  // slope of the merit function so far
-  int downhill_ = 0;     // steps in a row that lead down and no nearer
-  bool slow_ = false;    // are steps of a stiffness that was made positive element by element
-  double last_shift_ = 0;
-  bool doubtful_ = false;  // is there a doubt about negative_
-  bool rounding_looked_at_ = false;
-  bool refines_ = false;  // do steps want more than what the factor's precision gives
-  int negative_ = 0;      // of the last factorisation
-  Points factored_;       // where that was
+  Pace pace_;
+  Factored factor_;
   Imbalance imbalance_;
   double missed_ = 0;  // the worst constraint, over its measure at rest [-]
 };

@@ -77,18 +77,18 @@ double Newton::refine(const Balance& balance, const Iterate& at, Step& step) {
 /// if that is why, and the next factors are in double precision.
 bool Newton::refine_first(const Iterate& at) {
   constexpr double slow = 0.25, much = 0.15;
-  if (rounding_looked_at_ || work_.saddle.factor().in_double() || system_.contact() || system_.tendons().any())
+  if (factor_.looked_at || work_.saddle.factor().in_double() || system_.contact() || system_.tendons().any())
     return false;
   if (next_.size.mean < slow * step_.size.mean) return false;
-  rounding_looked_at_ = true;
-  refines_ = refine(balance_, at, step_) > much;
-  if (refines_) work_.saddle.factor().distrust();
-  return refines_;
+  factor_.looked_at = true;
+  factor_.refines = refine(balance_, at, step_) > much;
+  if (factor_.refines) work_.saddle.factor().distrust();
+  return factor_.refines;
 }
 
 /// Step that the factor at hand asks for.
 void Newton::find(const Balance& balance, const Iterate& at, Step& step) {
-  const bool refined = refines_ && !work_.saddle.factor().in_double() && refine(balance, at, step) > 0;
+  const bool refined = factor_.refines && !work_.saddle.factor().in_double() && refine(balance, at, step) > 0;
   if (!refined) work_.saddle.step(balance, step.move, step.change, team_);
   for (const Secant& secant : secants_) {
     const double part = secant.step.dot(step.move);
@@ -104,10 +104,10 @@ void Newton::find(const Balance& balance, const Iterate& at, Step& step) {
 bool Newton::labours(double damping) {
   constexpr double poor = 0.2, same = 0.9;
   constexpr int most_poor = 8, most_same = 12, most_downhill = 5;  // in a row
-  poor_ = damping < poor ? poor_ + 1 : 0;
-  same_ = damping == 1 && next_.size.mean > same * step_.size.mean ? same_ + 1 : 0;
-  if (!system_.kinked()) return downhill_ >= most_downhill;
-  return poor_ >= most_poor || (rubs(work_) && same_ >= most_same);
+  pace_.poor = damping < poor ? pace_.poor + 1 : 0;
+  pace_.same = damping == 1 && next_.size.mean > same * step_.size.mean ? pace_.same + 1 : 0;
+  if (!system_.kinked()) return pace_.downhill >= most_downhill;
+  return pace_.poor >= most_poor || (rubs(work_) && pace_.same >= most_same);
 }
 
 /// Where hardly anything is unstable, a stiffness that was made positive element by element is far too stiff along it:
@@ -115,17 +115,17 @@ bool Newton::labours(double damping) {
 void Newton::note_pace(double damping) {
   constexpr double slow = 0.5;
   constexpr int few = 2;
-  if (negative_ == 0)
-    slow_ = system_.limp();
-  else if (system_.contact() && negative_ <= few && damping == 1)
-    slow_ |= next_.size.mean > slow * step_.size.mean;
+  if (factor_.negative == 0)
+    pace_.slow = system_.limp();
+  else if (system_.contact() && factor_.negative <= few && damping == 1)
+    pace_.slow |= next_.size.mean > slow * step_.size.mean;
 }
 
 /// Newton step, as long as the simplified step that follows it is shorter. next_ is that step.
 Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
   work_.saddle.first_step(balance_, step_.move, step_.change);
   step_.size = system_.freedoms().size_of(step_.move, at.positions);
-  if (refines_ && !work_.saddle.factor().in_double()) (void)refine(balance_, at, step_);
+  if (factor_.refines && !work_.saddle.factor().in_double()) (void)refine(balance_, at, step_);
   if (!std::isfinite(step_.size.mean)) {
     why_ = "the stiffness is singular";
     return Advance::none;
@@ -137,8 +137,8 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
   const bool potential = (system_.kinked() || !work_.exact) && system_.conservative() &&
                          !(work_.contacts && work_.contacts->friction_follows);
   double slope = potential ? weigh_constraints(at) : 0;
-  steepest_ = std::min(steepest_, slope);
-  if (!system_.contact() && !system_.limp() && slope > worthwhile_slope * steepest_) slope = 0;
+  pace_.steepest = std::min(pace_.steepest, slope);
+  if (!system_.contact() && !system_.limp() && slope > worthwhile_slope * pace_.steepest) slope = 0;
   const double before = slope < 0 ? merit(balance_) : 0;
   for (;;) {
     double factor = 0.5;
@@ -151,7 +151,7 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
       const bool nearer =
           next_.size.mean < step_.size.mean || trial_balance_.force.norm() < 0.5 * balance_.force.norm();
       const bool lower = rise < worthwhile_descent * damping * slope;
-      downhill_ = nearer ? 0 : downhill_ + lower;
+      pace_.downhill = nearer ? 0 : pace_.downhill + lower;
       // up to rounding: what is nearer by its steps and yet costs more goes round in circles where things touch
       if (lower || (nearer && !(system_.contact() && rise > most_rise * std::abs(before)))) break;
       if (!system_.contact() && !system_.limp() &&

@@ -1,43 +1,43 @@
 #include <softkin/statics/physical/contact_steps.hpp>
-#include <softkin/statics/physical/continuation.hpp>
+#include <softkin/statics/physical/settling.hpp>
 #include <utility>
 
 namespace softkin::physical {
 
-/// Newton at once, where the start is as near to the equilibrium asked for as any prediction from it.
-Newton::Outcome Continuation::settle_here(const Demand& demand, Iterate& at) {
-  const std::vector<bool> before = active_;
-  Iterate trial = at;
-  auto outcome = settle(demand, Newton::Policy::descend, trial);
-  if (newton_.inverted() || (system_.surroundings().any_body() && !newton_.balanced()))
-    outcome = Newton::Outcome::stuck;
-  if (outcome == Newton::Outcome::converged) {
-    take(at, std::move(trial));
-    last_ = judged();
-    ++report_.continuation_steps;
-    report_.reached = 1;
-  } else {
-    active_ = before;
-  }
-  return outcome;
-}
+namespace {
+
+/// Steps are tried with the stiffness of a shape that is nearer than this share of the diagonal.
+constexpr double nearby = 1e-3;
+
+}  // namespace
+
+Settler::Settler(const System& system, Workspace& work, Team& team, const Equilibria::Options& options,
+                 const ProgressCallback& progress, SolveReport& report)
+    : system_(system),
+      work_(work),
+      team_(team),
+      report_(report),
+      newton_(system, work, team,
+              {options.tolerance_mm, options.force_share, system.contact() || system.limp() ? 100 : 30,
+               options.keep_history},
+              progress, report) {}
 
 /// Loads that are given are the demand's, wherever a prediction has them: one that goes on along a bent way of several
 /// commands misses them, and no equation would tell.
-void Continuation::give_loads(const Demand& demand, Iterate& at) const {
+void Settler::give_loads(const Demand& demand, Iterate& at) const {
   for (Index a = 0; a < system_.actuators(); ++a)
-    if (!active_[a] && system_.measures().given_load(a))
+    if (!active[a] && system_.measures().given_load(a))
       at.multipliers[a] = system_.measures().given(a, demand.actuation[a]);
 }
 
 /// Do weights come, or dead forces, of which something may bear some?
-bool Continuation::weighs(const Demand& here, const Demand& there) const {
+bool Settler::weighs(const Demand& here, const Demand& there) const {
   return system_.contact() && here.share != there.share && system_.model().dead_load.size() > 0 &&
          !system_.model().dead_load.isZero(0);
 }
 
 /// Does anything push in a shape?
-bool Continuation::touches(const Iterate& at) const {
+bool Settler::touches(const Iterate& at) const {
   OtherContact contact(system_, work_, team_);
   contact.straighten(at, 1);
   return contact.any_push();
@@ -45,21 +45,21 @@ bool Continuation::touches(const Iterate& at) const {
 
 /// To where softer contact holds, felt from farther away; of what falls from as far as is wanted for steps that what is
 /// in the way does not cut to nothing, then nearer and nearer.
-Newton::Outcome Continuation::settle_softly(const Demand& demand, bool falls, OtherContact& contact, Iterate& at) {
+Newton::Outcome Settler::settle_softly(const Demand& demand, bool falls, OtherContact& contact, Iterate& at) {
   constexpr double modulus = 1e-4;
   constexpr double nearest = 6, finer = 8;  // reaches, over the contact distance
   constexpr double farthest = 0.1;          // of the diagonal
   const double most =
       falls ? std::max(nearest, farthest * system_.model().diagonal_mm / system_.model().contact.distance_mm) : nearest;
   constexpr int most_iterations = 20;  // of what was stuck for want of a way
-  const std::vector<bool> before = active_;
+  const std::vector<bool> before = active;
   const Iterate begun = at;
   auto outcome = Newton::Outcome::stuck;
   const int iterations = report_.iterations;
   for (double first = nearest; outcome == Newton::Outcome::stuck && first <= most; first *= finer) {
     if (report_.iterations - iterations > most_iterations) break;
     at = begun;
-    active_ = before;
+    active = before;
     outcome = Newton::Outcome::converged;
     for (double reach = first; outcome == Newton::Outcome::converged && reach > nearest / finer; reach /= finer) {
       contact.set_firmness({modulus, reach, 1});
@@ -73,9 +73,9 @@ Newton::Outcome Continuation::settle_softly(const Demand& demand, bool falls, Ot
 /// From a prediction to where what touches pushes as it will, from an equilibrium: Newton's method on the shape alone
 /// loses a face that rests on another, as it presses so little that it lies within a hundredth of the contact distance
 /// of where forces end. Where nothing touched yet, through softer contact. What rubs does not yet.
-Newton::Outcome Continuation::foresee_contact(const Demand& demand, const Iterate& from, bool falls, Iterate& at) {
+Newton::Outcome Settler::foresee_contact(const Demand& demand, const Iterate& from, bool falls, Iterate& at) {
   constexpr double foresight = 2;
-  const std::vector<bool> before = active_;
+  const std::vector<bool> before = active;
   Iterate trial = at;
   work_.contacts->holds.clear();
   OtherContact contact(system_, work_, team_);
@@ -87,44 +87,29 @@ Newton::Outcome Continuation::foresee_contact(const Demand& demand, const Iterat
   } else {
     system_.contacts()->follow_pushes(trial.positions - from.positions, 1, *work_.contacts);
   }
-  if (outcome == Newton::Outcome::converged) outcome = newton_.settle_pushes(demand, active_, trial);
+  if (outcome == Newton::Outcome::converged) outcome = newton_.settle_pushes(demand, active, trial);
   if (outcome == Newton::Outcome::converged)
     at = std::move(trial);
   else
-    active_ = before;
+    active = before;
   return outcome;
 }
 
-/// Where weights would lead far through something: what is held comes to its place, and the body onto what is near.
-Newton::Outcome Continuation::fall_onto(const Demand& here, const Demand& there, const Iterate& at, Iterate& trial) {
-  if (!weighs(here, there) || touches(at)) return Newton::Outcome::blocked;
-  trial = at;
-  if (!carry_held(system_, here, there, active_, work_, team_, trial)) return Newton::Outcome::blocked;
-  give_loads(there, trial);
-  predicted_ = begun_ = trial.positions;
-  unforetold_ = true;
-  const auto outcome = foresee_contact(there, at, true, trial);
-  if (outcome == Newton::Outcome::interrupted) return outcome;
-  begun_ = trial.positions;
-  return outcome == Newton::Outcome::converged ? settle(there, Newton::Policy::descend, trial)
-                                               : Newton::Outcome::stuck;  // blocked is what was not tried
-}
-
 /// Does the workspace's factor hold the constraints that are active?
-bool Continuation::factor_holds_active() const {
-  std::vector<bool> held(active_.size());
+bool Settler::factor_holds_active() const {
+  std::vector<bool> held(active.size());
   for (const Index a : work_.saddle.active()) held[a] = true;
-  return held == active_;
+  return held == active;
 }
 
-double Continuation::renew_anchors(Iterate& at) {
-  const bool known = free_way_.turned.rows() > 0;
-  return renew_friction(system_, from_, known ? free_way_ : FreeWay{at.positions, at.positions}, at, work_, team_);
+double Settler::renew_anchors(Iterate& at) {
+  const bool known = free_way.turned.rows() > 0;
+  return renew_friction(system_, good_shape, known ? free_way : FreeWay{at.positions, at.positions}, at, work_, team_);
 }
 
 /// Newton with friction that follows the normal forces by which it is limited; where that leads nowhere, with those
 /// that it led to, and again from there.
-Newton::Outcome Continuation::settle(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised) {
+Newton::Outcome Settler::settle(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised) {
   constexpr int most_rounds = 40;
   give_loads(demand, at);
   if (!system_.friction()) return settle_constraints(demand, policy, at, factorised);
@@ -148,10 +133,9 @@ Newton::Outcome Continuation::settle(const Demand& demand, Newton::Policy policy
 
 /// With friction that follows its normal forces, until nothing begins to touch any more. Where it is stuck nothing has
 /// changed.
-Newton::Outcome Continuation::settle_following(const Demand& demand, Newton::Policy policy, Iterate& at,
-                                               bool factorised) {
+Newton::Outcome Settler::settle_following(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised) {
   constexpr int most_rounds = 5;
-  const std::vector<bool> before = active_;
+  const std::vector<bool> before = active;
   Iterate trial = at;
   rounds_ = 1;
   for (int round = 0; round < most_rounds; ++round) {
@@ -160,7 +144,7 @@ Newton::Outcome Continuation::settle_following(const Demand& demand, Newton::Pol
       return settle_constraints(demand, policy, trial, factorised);
     }();
     if (outcome != Newton::Outcome::converged && outcome != Newton::Outcome::unstable) {
-      active_ = before;
+      active = before;
       return outcome;
     }
     report_.friction_change = renew_anchors(trial);
@@ -170,53 +154,87 @@ Newton::Outcome Continuation::settle_following(const Demand& demand, Newton::Pol
     }
     factorised = factorised_nearby(trial.positions) && factor_holds_active();
   }
-  active_ = before;
+  active = before;
   return Newton::Outcome::stuck;
 }
 
 /// Another equilibrium instead of the one at hand: what slips goes on from there.
-void Continuation::take(Iterate& at, Iterate&& found) {
+void Settler::take(Iterate& at, Iterate&& found) {
   at = std::move(found);
   slide_friction(system_, at, work_, team_);
   if (system_.tendons().any()) system_.tendons().slide(at.positions, at.eyelets);
-  from_ = at.positions;
+  good_shape = at.positions;
 }
 
 /// Newton, with cables released where they would push and taken up where they are too long.
-Newton::Outcome Continuation::settle_constraints(const Demand& demand, Newton::Policy policy, Iterate& at,
-                                                 bool factorised) {
-  const std::vector<bool> before = active_;
+Newton::Outcome Settler::settle_constraints(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised) {
+  const std::vector<bool> before = active;
   for (Index change = 0; change <= 2 * system_.actuators(); ++change) {
-    const auto outcome = newton_.solve(demand, active_, policy, factorised && change == 0, at);
+    const auto outcome = newton_.solve(demand, active, policy, factorised && change == 0, at);
     if (outcome == Newton::Outcome::unmet) {
       if (release(demand, at, true)) continue;
       break;
     }
     if (outcome == Newton::Outcome::stuck || outcome == Newton::Outcome::interrupted) {
-      active_ = before;
+      active = before;
       return outcome;
     }
     if (!change_active(demand, at)) return outcome;
   }
-  active_ = before;
+  active = before;
   return Newton::Outcome::stuck;
 }
 
-bool Continuation::change_active(const Demand& demand, Iterate& at) {
+bool Settler::change_active(const Demand& demand, Iterate& at) {
   bool changed = false;
   for (Index a = 0; a < system_.actuators(); ++a) {
     if (!system_.measures().constrains(a) || !system_.measures().only_pulls(a)) continue;  // a chamber pushes and pulls
     const double target = system_.measures().target(a, demand.actuation, at.multipliers[a]);
-    if (active_[a] && at.multipliers[a] < 0) {
-      active_[a] = false;
+    if (active[a] && at.multipliers[a] < 0) {
+      active[a] = false;
       at.multipliers[a] = 0;
       changed = true;
-    } else if (!active_[a] && system_.measures().value(a, at.positions) > target * (1 + 1e-12)) {
-      active_[a] = true;
+    } else if (!active[a] && system_.measures().value(a, at.positions) > target * (1 + 1e-12)) {
+      active[a] = true;
       changed = true;
     }
   }
   return changed;
+}
+
+/// Slackens cables that may be longer than they are and carry nothing: held to their length they would push the body
+/// there before they are found to be slack. contradicting: those too that carry something, against another one.
+bool Settler::release(const Demand& there, Iterate& at, bool contradicting) {
+  bool changed = false;
+  for (Index a = 0; a < system_.actuators(); ++a) {
+    if (!active[a] || !system_.measures().only_pulls(a) || (at.multipliers[a] > 0 && !contradicting)) continue;
+    if (system_.measures().value(a, at.positions) >= system_.measures().target(a, there.actuation, 0)) continue;
+    active[a] = false;
+    at.multipliers[a] = 0;
+    changed = true;
+  }
+  return changed;
+}
+
+Judgement Settler::judged() const {
+  return {newton_.imbalance(), newton_.balanced(), newton_.inverted(), newton_.unstable_modes()};
+}
+
+/// Does the workspace hold the stable stiffness of a shape close by?
+bool Settler::factorised_nearby(const Points& shape) const {
+  return work_.exact && work_.saddle.spectrum().unstable == 0 && work_.factorised.rows() == shape.rows() &&
+         system_.largest_move(work_.factorised, shape) <= nearby * system_.model().diagonal_mm;
+}
+
+/// Factorises at an equilibrium, for the predictor. Returns in how many ways it is unstable; -1: it is none.
+int Settler::prepare(const Demand& here, const Iterate& at) {
+  Balance balance;
+  hold_friction(system_, at, work_, team_);
+  system_.evaluate(at, here, active, work_, balance, team_);
+  ++report_.factorisations;
+  const int modes = system_.factorise(at, here, active, balance, {}, work_, team_);
+  report_.factorisations_in_double += work_.saddle.factor().in_double();
+  return balance.force.allFinite() ? modes : -1;
 }
 
 }  // namespace softkin::physical

@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <softkin/statics/physical/continuation.hpp>
+#include <softkin/statics/physical/settling.hpp>
 
 namespace softkin::physical {
 
@@ -13,16 +13,16 @@ constexpr double narrowest_barrier = 1e-11, narrower = 0.1, hardly_narrower = 0.
 }  // namespace
 
 /// A demand whose pressures are so many times as large.
-Demand Continuation::pressed(Demand demand, double times) const {
+Demand Settler::pressed(Demand demand, double times) const {
   for (Index a = 0; a < system_.actuators(); ++a) {
-    if (active_[a] || !system_.measures().given_load(a) || system_.measures().sign(a) > 0) continue;
+    if (active[a] || !system_.measures().given_load(a) || system_.measures().sign(a) > 0) continue;
     demand.actuation[a] *= times;
   }
   return demand;
 }
 
 /// Of sheets that were flat, where something touches a second time, less boldly.
-Newton::Outcome Continuation::settle_swollen(const Demand& there, const Swelling& how, Iterate& trial) {
+Newton::Outcome Settler::settle_swollen(const Demand& there, const Swelling& how, Iterate& trial) {
   const Iterate begin = trial;
   const auto outcome = sharpen_swollen(there, how, narrower, trial);
   if (outcome != Newton::Outcome::stuck || !system_.contact()) return outcome;
@@ -33,7 +33,7 @@ Newton::Outcome Continuation::settle_swollen(const Demand& there, const Swelling
 /// First what wrinkles does so without kinks, then with ever sharper ones, at last with its own; under pressures that
 /// stretch it, which fall to those that are asked for: from a shape that leads nowhere, back to the one before, by
 /// less.
-Newton::Outcome Continuation::sharpen_swollen(const Demand& there, Swelling how, double by, Iterate& trial) {
+Newton::Outcome Settler::sharpen_swollen(const Demand& there, Swelling how, double by, Iterate& trial) {
   const auto settled = [&](double barrier, double times) {
     work_.layers->barrier = barrier;
     const auto outcome = settle(pressed(there, times), Newton::Policy::descend, trial);
@@ -45,11 +45,11 @@ Newton::Outcome Continuation::sharpen_swollen(const Demand& there, Swelling how,
   auto outcome = settled(0, how.boost);
   for (double falls = fall; how.boost > 1;) {
     if (outcome == Newton::Outcome::stuck || outcome == Newton::Outcome::interrupted) return outcome;
-    const Iterate last = trial;
+    const Iterate before = trial;
     const double next = std::max(1.0, falls * how.boost);
     outcome = settled(0, next);
     if (outcome == Newton::Outcome::stuck && falls < gentlest_fall) {
-      trial = last;
+      trial = before;
       outcome = Newton::Outcome::converged;
       falls = std::sqrt(falls);
       continue;
@@ -61,7 +61,7 @@ Newton::Outcome Continuation::sharpen_swollen(const Demand& there, Swelling how,
 }
 
 /// Does what moves run into sheets that lie flat?
-bool Continuation::runs_into_flat(const Demand& there, const Iterate& at) {
+bool Settler::runs_into_flat(const Demand& there, const Iterate& at) {
   if (!system_.contact()) return false;
   Points held = at.positions;
   system_.placement().hold(there, held);

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <softkin/core/text.hpp>
+#include <softkin/statics/physical/buckling.hpp>
 #include <softkin/statics/physical/contact_steps.hpp>
 #include <softkin/statics/physical/continuation.hpp>
 #include <softkin/statics/physical/pull_in.hpp>
@@ -24,6 +25,32 @@ bool Continuation::change_loads(const Demand& from, const Demand& to) const {
   return false;
 }
 
+/// The one load that changes, where nothing else does but weights and forces; -1: none.
+Index Continuation::only_load(const Demand& from, const Demand& to) const {
+  const Model& model = system_.model();
+  if (from.fading != to.fading) return -1;
+  if (from.share != to.share && (system_.prestretched() || model.held != model.rest || !model.turns.empty())) return -1;
+  Index found = -1;
+  for (Index a = 0; a < system_.actuators(); ++a) {
+    if (from.actuation[a] == to.actuation[a]) continue;
+    if (found >= 0 || system_.measures().constrains(a) || !system_.measures().measures(a)) return -1;
+    found = a;
+  }
+  return found;
+}
+
+/// Does the load that alone changes do so much, by the slope of what it does, that it is better climbed along that?
+bool Continuation::leads_too_far(const Demand& here, const Demand& there, const Iterate& at) {
+  constexpr double share = 0.01, most = 0.4;  // of the way, that the slope is taken on; of the measure
+  const Index a = way_.load;
+  if (a < 0 || system_.contact()) return false;
+  Iterate near = at;
+  (void)predict(system_, here, between(here, there, share), settler_.active, work_, team_, near);
+  const double before = system_.measures().value(a, at.positions);
+  const double change = (system_.measures().value(a, near.positions) - before) / share;
+  return !(change < most * before && change > -0.5 * most * before);
+}
+
 /// What to command instead of loads that change, which may have come to a maximum; "" where none does.
 std::string Continuation::instead_of_loads() const {
   bool pressures = false, tensions = false, fillings = false;
@@ -44,8 +71,8 @@ std::string Continuation::instead_of_loads() const {
 }
 
 void Continuation::tell_balance() {
-  report_.residual_N = last_.forces.residual;
-  report_.pull_N = last_.forces.pull;
+  report_.residual_N = settler_.last.forces.residual;
+  report_.pull_N = settler_.last.forces.pull;
 }
 
 /// at: the last equilibrium
@@ -69,20 +96,20 @@ bool Continuation::may_turn_back() const {
 /// Share of the way that is left to where it turns back: towards a fold the inverse square of the tangent falls
 /// linearly.
 double Continuation::left_to_fold() const {
-  if (!(way_.tangent_mm > 0 && tangent_mm_ > way_.tangent_mm)) return std::numeric_limits<double>::infinity();
-  const double ratio = (way_.tangent_mm / tangent_mm_) * (way_.tangent_mm / tangent_mm_);
+  if (!(way_.tangent_mm > 0 && step_.tangent_mm > way_.tangent_mm)) return std::numeric_limits<double>::infinity();
+  const double ratio = (way_.tangent_mm / step_.tangent_mm) * (way_.tangent_mm / step_.tangent_mm);
   return (way_.done - way_.tangent_at) * ratio / (1 - ratio);
 }
 
 /// Does the way lead from here to where a longer step came out, without a jump? Where something begins to touch in
 /// several places a step turns as often, which looks like a jump to it.
 bool Continuation::leads_beyond(const Iterate& at) {
-  if (!way_.beyond || !system_.contact() || system_.friction() || active_ != way_.beyond->active) return false;
+  if (!way_.beyond || !system_.contact() || system_.friction() || settler_.active != way_.beyond->active) return false;
   const Demand& there = way_.beyond->demand;
   Iterate predicted = at;
-  if (!way_.factorised && prepare(way_.here, at) < 0) return false;
-  const ClearPrediction clear = predict_clear(system_, way_.here, there, active_, work_, team_, predicted);
-  predicted_ = clear.predicted;
+  if (!way_.factorised && settler_.prepare(way_.here, at) < 0) return false;
+  const ClearPrediction clear = predict_clear(system_, way_.here, there, settler_.active, work_, team_, predicted);
+  step_.predicted = clear.predicted;
   way_.factorised = false;
   return clear.move_mm && !jumped(way_.here, there, at, way_.beyond->at);
 }
@@ -90,43 +117,37 @@ bool Continuation::leads_beyond(const Iterate& at) {
 void Continuation::take_beyond(Iterate& at) {
   Beyond beyond = std::move(*way_.beyond);
   way_.beyond.reset();
-  take(at, std::move(beyond.at));
-  active_ = std::move(beyond.active);
-  last_ = beyond.last;
+  settler_.take(at, std::move(beyond.at));
+  settler_.active = std::move(beyond.active);
+  settler_.last = beyond.last;
   pass(beyond.demand, beyond.done);
-  way_.factorised = prepare(way_.here, at) >= 0;
-}
-
-void Continuation::tell_snap(double move_mm, double from) {
-  if (move_mm <= report_.snapped_mm) return;
-  report_.snapped_mm = move_mm;
-  report_.snapped_from = from;
+  way_.factorised = settler_.prepare(way_.here, at) >= 0;
 }
 
 /// What the last shape is.
 Status Continuation::arrive(const Demand& demand, Iterate& at) {
-  if (stable_ && !buckle(demand, at)) return Status::interrupted;
-  if (last_.modes > 0) tell_stability(demand, at);
+  if (options_.stable && !buckle(settler_, demand, at)) return Status::interrupted;
+  if (settler_.last.modes > 0) tell_stability(demand, at);
   tell_balance();
-  if (report_.friction_change > frictions_agree) {
+  if (report_.friction_change > Settler::frictions_agree) {
     report_.remark = "friction and the normal forces that limit it do not agree: it changed by " +
                      number(100 * report_.friction_change, 2) + " % when they were found anew";
     return Status::not_converged;
   }
-  if (last_.balanced) {
+  if (settler_.last.balanced) {
     if (report_.snapped_mm > 0) work_.trail.clear();
-    work_.trail.add(demand, active_, at);
+    work_.trail.add(demand, settler_.active, at);
     return Status::converged;
   }
-  report_.remark = "the steps have become small, but " + number(last_.forces.residual, 2) +
-                   " N are out of balance, where elements pull with at most " + number(last_.forces.pull, 2) +
+  report_.remark = "the steps have become small, but " + number(settler_.last.forces.residual, 2) +
+                   " N are out of balance, where elements pull with at most " + number(settler_.last.forces.pull, 2) +
                    " N at a vertex";
   return Status::not_converged;
 }
 
 /// Counts the ways in which the last shape itself is unstable.
 void Continuation::tell_stability(const Demand& demand, const Iterate& at) {
-  report_.unstable_modes = std::max(0, prepare(demand, at));
+  report_.unstable_modes = std::max(0, settler_.prepare(demand, at));
   if (report_.unstable_modes > 0)
     report_.remark = "this equilibrium is unstable in " + std::to_string(report_.unstable_modes) +
                      (report_.unstable_modes == 1 ? " way" : " ways") + ": the robot would buckle or snap away from it";
@@ -139,7 +160,7 @@ bool Continuation::loads_at_last(const Iterate& at) {
   Demand rest = way_.to;
   rest.actuation = way_.here.actuation;
   if (!change_loads(rest, way_.to)) return false;
-  together_ = Together{way_, at, active_, last_};
+  together_ = Together{way_, at, settler_.active, settler_.last};
   const Demand to = way_.to;
   way_.before = way_.done;
   set_out(way_.here, rest);
@@ -152,9 +173,9 @@ void Continuation::go_together(Iterate& at) {
   Together& before = *together_;
   way_ = std::move(before.way);
   at = std::move(before.at);
-  active_ = std::move(before.active);
-  last_ = before.last;
-  from_ = at.positions;
+  settler_.active = std::move(before.active);
+  settler_.last = before.last;
+  settler_.good_shape = at.positions;
   way_.advance *= 0.4;
   way_.factorised = false;
   way_.marked_iterations = report_.iterations;
