@@ -79,7 +79,7 @@ RobotSpec by_pressure(RobotSpec spec) {
 /// The finger's chamber becomes a hollow; its material is magnetic along x.
 RobotSpec by_field(RobotSpec spec, const std::shared_ptr<const FieldSource>& source, FieldCommand command,
                    Magnetisation magnetisation) {
-  const std::string chamber = *spec.actuators[0].region;
+  const std::string chamber = *spec.actuators[0].as<PneumaticSpec>()->region;
   spec.voids.push_back(RegionRef{chamber, {}});
   auto remanence = std::make_shared<RemanenceSpec>();
   remanence->uniform = {100, 0, 0};
@@ -87,12 +87,11 @@ RobotSpec by_field(RobotSpec spec, const std::shared_ptr<const FieldSource>& sou
   for (MaterialSpec& material : spec.materials) material.remanence = remanence;
   ActuatorSpec field;
   field.name = "field";
-  field.kind = ActuatorKind::magnetic;
   field.control = Control::load;
   field.low = -1e6;
   field.high = 1e6;
   field.rest = 0;
-  field.field = std::make_shared<FieldSpec>(FieldSpec{source, command});
+  field.drive = FieldSpec{source, command};
   spec.actuators = {field};
   return spec;
 }

@@ -93,8 +93,8 @@ RobotSpec knuckle_finger(const std::string& scene, double tetrahedra, int order)
   spec.quadratic = order == 2;
   const double beside = flat + (cable_z - hinge) * slope;  // of the notch's middle, where the cable leaves its wall
   for (std::size_t a = 0; a < spec.actuators.size() && a < notches.size(); ++a) {
-    spec.actuators[a].points[1].point = Vec3(notches[a] - beside, 0, cable_z);
-    spec.actuators[a].points[2].point = Vec3(notches[a] + beside, 0, cable_z);
+    spec.actuators[a].as<CableSpec>()->points[1].point = Vec3(notches[a] - beside, 0, cable_z);
+    spec.actuators[a].as<CableSpec>()->points[2].point = Vec3(notches[a] + beside, 0, cable_z);
   }
   return spec;
 }

@@ -45,8 +45,7 @@ RobotSpec beam(double size) {
   for (int i = 0; i < 3; ++i) {
     ActuatorSpec air;
     air.name = "chamber" + std::to_string(i + 1);
-    air.region = air.name;
-    air.kind = ActuatorKind::pneumatic;
+    air.drive = PneumaticSpec{.region = air.name};
     air.low = 1;
     air.high = 2;
     spec.actuators.push_back(air);

@@ -28,8 +28,7 @@ RobotSpec finger(int across) {
   RobotSpec spec = testing::block_robot(std::move(mesh));
   ActuatorSpec air;
   air.name = "air";
-  air.kind = ActuatorKind::pneumatic;
-  air.region = "chamber";
+  air.drive = PneumaticSpec{.region = "chamber"};
   air.low = 0.5;
   air.high = 3;
   spec.actuators = {air};

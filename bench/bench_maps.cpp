@@ -30,18 +30,18 @@ double seconds_now() {
   return std::chrono::duration<double>(std::chrono::steady_clock::now().time_since_epoch()).count();
 }
 
-ActuatorSpec ranged_actuator(const std::string& name, ActuatorKind kind, double low, double high) {
+ActuatorSpec ranged_actuator(const std::string& name, DriveSpec drive, double low, double high) {
   ActuatorSpec spec;
   spec.name = name;
-  spec.kind = kind;
+  spec.drive = std::move(drive);
   spec.low = low;
   spec.high = high;
   return spec;
 }
 
 ActuatorSpec cable(const std::string& name, const std::vector<Vec3>& points, double low, double high) {
-  ActuatorSpec spec = ranged_actuator(name, ActuatorKind::cable, low, high);
-  for (const Vec3& point : points) spec.points.push_back({point, {}});
+  ActuatorSpec spec = ranged_actuator(name, CableSpec{}, low, high);
+  for (const Vec3& point : points) spec.as<CableSpec>()->points.push_back({point, {}});
   return spec;
 }
 
@@ -74,8 +74,7 @@ RobotSpec chambers(int count, double high) {
   RobotSpec spec = softkin::testing::physical_robot(std::move(mesh));
   for (int i = 0; i < count; ++i) {
     const std::string name = "chamber" + std::to_string(i + 1);
-    spec.actuators.push_back(ranged_actuator(name, ActuatorKind::pneumatic, 1, high));
-    spec.actuators.back().region = name;
+    spec.actuators.push_back(ranged_actuator(name, PneumaticSpec{.region = name}, 1, high));
   }
   spec.markers.push_back({"tip", {std::string("x_high"), {}}});
   return spec;

@@ -362,8 +362,7 @@ RobotSpec finger_robot(Mesh mesh, FingerKind kind, const std::string& origin) {
   spec.fixed.push_back({{std::string("fixed"), {}}, {true, true, true}});
   ActuatorSpec air;
   air.name = "air";
-  air.kind = ActuatorKind::pneumatic;
-  air.region = "chamber";
+  air.drive = PneumaticSpec{.region = "chamber"};
   air.low = 0.2;
   air.high = 20;
   spec.actuators = {air};

@@ -33,7 +33,7 @@ inline RobotSpec touched_finger(bool quadratic) {
   spec.fixed.push_back({{std::string("x_low"), {}}, {true, true, true}});
   ActuatorSpec air;
   air.name = "air";
-  air.region = "chamber";
+  air.drive = PneumaticSpec{.region = "chamber"};
   air.control = Control::load;
   air.low = -20;
   air.high = 60;

@@ -13,6 +13,7 @@ set(softkin_public_headers
     core/types.hpp
     core/version.hpp
     model/actuator_curve.hpp
+    model/actuator_spec.hpp
     model/contact_model.hpp
     model/contact_spec.hpp
     model/direction.hpp
@@ -34,6 +35,7 @@ set(softkin_public_headers
     model/names.hpp
     model/paths.hpp
     model/robot_spec.hpp
+    model/selectors.hpp
     model/sensor.hpp
     model/shapes.hpp
     io/file.hpp

@@ -40,9 +40,9 @@ softkin::RobotSpec finger(int cells) {
   robot.fixed = {{{softkin::Box{{-1, -1, -1}, {0.1, 11, 11}}, {}}}};
   softkin::ActuatorSpec cable;
   cable.name = "cable";
-  cable.kind = softkin::ActuatorKind::cable;
-  cable.points.resize(cells + 1);
-  for (int i = 0; i <= cells; ++i) cable.points[i].point = softkin::Vec3(5 * i, 5, 9);
+  softkin::CableSpec route;
+  for (int i = 0; i <= cells; ++i) route.points.push_back({softkin::Vec3(5 * i, 5, 9), {}});
+  cable.drive = route;
   cable.low = 0.6;  // of its length
   cable.high = 1;
   robot.actuators = {cable};

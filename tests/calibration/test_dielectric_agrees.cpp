@@ -33,8 +33,7 @@ Model sheet_of(DielectricLaw law) {
                 {{VertexList{{grid_vertex(cells, 0, 2, 0)}}, {}}, {false, false, true}}};
   ActuatorSpec skin;
   skin.name = "skin";
-  skin.kind = ActuatorKind::dea;
-  skin.region = "all";
+  skin.drive = DeaSpec{.region = "all"};
   skin.high = 40;
   skin.control = Control::load;
   skin.rest = 0;

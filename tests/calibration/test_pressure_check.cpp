@@ -14,7 +14,7 @@ Model finger() {
   spec.fixed.push_back({{std::string("fixed"), {}}});
   ActuatorSpec air;
   air.name = "air";
-  air.region = "chamber";
+  air.drive = PneumaticSpec{.region = "chamber"};
   air.low = 1;
   air.high = 2;
   spec.actuators.push_back(air);

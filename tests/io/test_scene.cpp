@@ -99,23 +99,23 @@ TEST(Scene, WholeSceneChambersAndSkins) {
   ASSERT_EQ(spec.actuators.size(), 4u);
   const ActuatorSpec &air = spec.actuators[0], &skin = spec.actuators[2], &bag = spec.actuators[3];
   EXPECT_EQ(air.name, "air");
-  EXPECT_EQ(air.kind, ActuatorKind::pneumatic);
-  EXPECT_EQ(air.region, "chamber");
-  EXPECT_FALSE(air.surface);
+  EXPECT_TRUE(air.is<PneumaticSpec>());
+  EXPECT_EQ(air.as<PneumaticSpec>()->region, "chamber");
+  EXPECT_FALSE(air.as<PneumaticSpec>()->surface);
   EXPECT_EQ(air.low, 1);
   EXPECT_EQ(air.high, 3);
   EXPECT_EQ(air.rest, 1);
   EXPECT_EQ(air.weight, 5);
   EXPECT_EQ(air.distribution, Distribution::uniform);
-  EXPECT_EQ(skin.kind, ActuatorKind::dea);
-  EXPECT_EQ(skin.region, "membrane");
+  EXPECT_TRUE(skin.is<DeaSpec>());
+  EXPECT_EQ(skin.as<DeaSpec>()->region, "membrane");
   EXPECT_EQ(skin.rest, 1.2);
   EXPECT_EQ(skin.low, 0.7);
   EXPECT_EQ(skin.distribution, Distribution::least_norm);
-  EXPECT_FALSE(bag.region);
-  ASSERT_TRUE(bag.surface);
-  expect_near(bag.surface->vertices.row(1).transpose(), 1000, 0, 0);
-  EXPECT_EQ(bag.surface->triangles.size(), 1u);
+  EXPECT_FALSE(bag.as<PneumaticSpec>()->region);
+  ASSERT_TRUE(bag.as<PneumaticSpec>()->surface);
+  expect_near(bag.as<PneumaticSpec>()->surface->vertices.row(1).transpose(), 1000, 0, 0);
+  EXPECT_EQ(bag.as<PneumaticSpec>()->surface->triangles.size(), 1u);
   EXPECT_EQ(bag.origin.text(), "robots/finger.yaml:37");
 }
 
@@ -123,12 +123,12 @@ TEST(Scene, CavitiesAndErrorsOfTheMesh) {
   const std::string rest = ", range: [1, 2]}]\n", head = "actuators: [{name: a, kind: pneumatic";
   const auto chamber = [&](const std::string& keys) { return parse_body(head + keys + rest).actuators[0]; };
   const ActuatorSpec inches = chamber(", surface: {file: c.stl, unit: in}");
-  expect_near(inches.surface->vertices.row(1).transpose(), 25.4, 0, 0);
+  expect_near(inches.as<PneumaticSpec>()->surface->vertices.row(1).transpose(), 25.4, 0, 0);
   const ActuatorSpec wall = chamber(", surface: {region: cavity_wall}");
-  EXPECT_EQ(wall.wall, "cavity_wall");
-  EXPECT_FALSE(wall.surface || wall.region);
+  EXPECT_EQ(wall.as<PneumaticSpec>()->wall, "cavity_wall");
+  EXPECT_FALSE(wall.as<PneumaticSpec>()->surface || wall.as<PneumaticSpec>()->region);
   const ActuatorSpec none = chamber("");
-  EXPECT_FALSE(none.surface || none.region || none.wall);
+  EXPECT_FALSE(none.as<PneumaticSpec>()->surface || none.as<PneumaticSpec>()->region || none.as<PneumaticSpec>()->wall);
   const RobotSpec strict = parse("softkin: 1\nmesh:\n  file: a.msh\n"),
                   lenient = parse("softkin: 1\nmesh: {file: a.msh, accept_errors: true}\n");
   EXPECT_FALSE(strict.accept_mesh_errors);
@@ -139,16 +139,16 @@ TEST(Scene, CavitiesAndErrorsOfTheMesh) {
 TEST(Scene, WholeSceneCableAndMarkers) {
   const RobotSpec spec = parse(whole_scene);
   const ActuatorSpec& tendon = spec.actuators.at(1);
-  EXPECT_EQ(tendon.kind, ActuatorKind::cable);
+  EXPECT_TRUE(tendon.is<CableSpec>());
   EXPECT_EQ(tendon.weight, 7);
-  EXPECT_DOUBLE_EQ(tendon.spacing, 4);
+  EXPECT_DOUBLE_EQ(tendon.as<CableSpec>()->spacing, 4);
   EXPECT_EQ(tendon.origin.line, 28u);
-  ASSERT_EQ(tendon.points.size(), 3u);
-  expect_near(position(tendon.points[1]), 60, 12, 22);
-  EXPECT_EQ(region(tendon.points[2]), "eyelet");
-  EXPECT_EQ(tendon.points[2].origin.line, 30u);
-  ASSERT_EQ(tendon.apexes.size(), 1u);
-  expect_near(position(tendon.apexes[0]), 30, 12, 10);
+  ASSERT_EQ(tendon.as<CableSpec>()->points.size(), 3u);
+  expect_near(position(tendon.as<CableSpec>()->points[1]), 60, 12, 22);
+  EXPECT_EQ(region(tendon.as<CableSpec>()->points[2]), "eyelet");
+  EXPECT_EQ(tendon.as<CableSpec>()->points[2].origin.line, 30u);
+  ASSERT_EQ(tendon.as<CableSpec>()->apexes.size(), 1u);
+  expect_near(position(tendon.as<CableSpec>()->apexes[0]), 30, 12, 10);
   ASSERT_EQ(spec.markers.size(), 2u);
   EXPECT_EQ(spec.markers[0].name, "tip");
   expect_near(position(spec.markers[0].at), 120, 12.5, 0);
@@ -209,7 +209,7 @@ TEST(Scene, PhysicalSceneLoads) {
   EXPECT_EQ(tendon.low, 0);
   EXPECT_EQ(tendon.high, 25);
   EXPECT_EQ(tendon.rest, 0);
-  EXPECT_EQ(tendon.apexes.size(), 1u);
+  EXPECT_EQ(tendon.as<CableSpec>()->apexes.size(), 1u);
   EXPECT_EQ(bag.control, Control::ratio);
   EXPECT_EQ(bag.rest, 1);
   ASSERT_EQ(spec.forces.size(), 2u);
@@ -507,18 +507,18 @@ TEST(Scene, ExamplesOfTheManualAreScenes) {
   EXPECT_FALSE(specs[4].materials[0].mixed) << "left to the material";
   EXPECT_EQ(specs[5].materials.at(0).families->families.at(1).direction.degrees, -35);
   EXPECT_EQ(specs[6].fixed.at(1).rotation.value().degrees, 90);
-  EXPECT_EQ(specs[7].actuators.at(0).filling.value().syringe_mL, 20);
-  EXPECT_EQ(specs[8].actuators.at(0).friction, 0.15);
-  EXPECT_EQ(specs[8].actuators[0].sheath_friction, 0.05);
-  EXPECT_EQ(specs[8].actuators[0].sheath_turns_degrees, 270);
-  EXPECT_EQ(specs[9].actuators.at(0).kind, ActuatorKind::growth);
+  EXPECT_EQ(specs[7].actuators.at(0).as<PneumaticSpec>()->filling.value().syringe_mL, 20);
+  EXPECT_EQ(specs[8].actuators.at(0).as<CableSpec>()->friction, 0.15);
+  EXPECT_EQ(specs[8].actuators[0].as<CableSpec>()->sheath_friction, 0.05);
+  EXPECT_EQ(specs[8].actuators[0].as<CableSpec>()->sheath_turns_degrees, 270);
+  EXPECT_TRUE(specs[9].actuators.at(0).is<GrowthSpec>());
   EXPECT_TRUE(specs[10].forces.at(0).moment_range);
   EXPECT_TRUE(specs[10].tractions.at(0).range_kPa);
   EXPECT_EQ(specs[11].fibres.size(), 2u);
   ASSERT_EQ(specs[12].layers.size(), 2u);
   EXPECT_TRUE(specs[12].layers[0]->bending);
   EXPECT_TRUE(specs[13].materials.empty()) << "of film alone";
-  EXPECT_EQ(specs[13].actuators.at(0).wall, "pouch");
+  EXPECT_EQ(specs[13].actuators.at(0).as<PneumaticSpec>()->wall, "pouch");
   EXPECT_EQ(specs[14].sensors.size(), 3u);
   EXPECT_EQ(specs[15].contact.value().obstacles.size(), 2u);
 }

@@ -30,24 +30,25 @@ std::string refusal_of_growth(const std::string& actuator) {
 
 TEST(SceneGrowth, ByStretchAlongDirections) {
   const ActuatorSpec all = growing_scene("region: body, range: [0.9, 1.2]").actuators.at(0);
-  EXPECT_EQ(all.kind, ActuatorKind::growth);
+  EXPECT_TRUE(all.is<GrowthSpec>());
   EXPECT_EQ(all.control, Control::ratio);
   EXPECT_EQ(all.low, 0.9);
   EXPECT_EQ(all.rest, 1);
-  EXPECT_EQ(all.growth->parts.at(0).region, "body");
-  EXPECT_FALSE(all.growth->parts[0].direction);
+  EXPECT_EQ(all.as<GrowthSpec>()->parts.at(0).region, "body");
+  EXPECT_FALSE(all.as<GrowthSpec>()->parts[0].direction);
   const ActuatorSpec along =
       growing_scene("region: a, range: [1, 2], direction: [0, 0, 2], keeps_volume: true, also: [{region: b}]")
           .actuators[0];
-  EXPECT_EQ(along.growth->parts[0].direction->uniform, Vec3(0, 0, 2));
-  EXPECT_TRUE(along.growth->parts[0].keeps_volume);
-  EXPECT_EQ(along.growth->parts.at(1).region, "b");
+  EXPECT_EQ(along.as<GrowthSpec>()->parts[0].direction->uniform, Vec3(0, 0, 2));
+  EXPECT_TRUE(along.as<GrowthSpec>()->parts[0].keeps_volume);
+  EXPECT_EQ(along.as<GrowthSpec>()->parts.at(1).region, "b");
   const DirectionSpec around =
       *growing_scene(
            "region: a, range: [1, 2], "
            "direction: {circumferential: {center: [0, 0.1, 0], axis: [1, 0, 0], degrees: 54.7}}")
            .actuators[0]
-           .growth->parts[0]
+           .as<GrowthSpec>()
+           ->parts[0]
            .direction;
   EXPECT_EQ(around.kind, DirectionSpec::Kind::circumferential);
   EXPECT_EQ(around.center, Vec3(0, 100, 0));
@@ -55,7 +56,8 @@ TEST(SceneGrowth, ByStretchAlongDirections) {
   const DirectionSpec samples =
       *growing_scene("region: a, range: [1, 2], direction: {places: [[0, 0, 0.002]], samples: [[1, 2, 3]]}")
            .actuators[0]
-           .growth->parts[0]
+           .as<GrowthSpec>()
+           ->parts[0]
            .direction;
   EXPECT_EQ(samples.kind, DirectionSpec::Kind::samples);
   EXPECT_EQ(samples.places(0, 2), 2);
@@ -69,9 +71,9 @@ TEST(SceneGrowth, ByTemperature) {
                                 .actuators[0];
   EXPECT_EQ(warm.control, Control::load);
   EXPECT_EQ(warm.rest, 25);
-  EXPECT_EQ(warm.growth->parts[0].temperature->expansion_per_K, 3.1e-4);
-  EXPECT_EQ(warm.growth->parts.at(1).temperature->reference_C, 25);
-  EXPECT_EQ(warm.growth->parts[1].temperature->table.at(1)[1], 1.1);
+  EXPECT_EQ(warm.as<GrowthSpec>()->parts[0].temperature->expansion_per_K, 3.1e-4);
+  EXPECT_EQ(warm.as<GrowthSpec>()->parts.at(1).temperature->reference_C, 25);
+  EXPECT_EQ(warm.as<GrowthSpec>()->parts[1].temperature->table.at(1)[1], 1.1);
   EXPECT_EQ(growing_scene("region: a, range: [-5, 0], temperature: {expansion_per_K: -1e-3}").actuators[0].rest, 20);
 }
 

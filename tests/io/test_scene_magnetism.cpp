@@ -63,20 +63,20 @@ TEST(SceneMagnetism, UniformFields) {
   ASSERT_EQ(along.actuators.size(), 1u);
   const ActuatorSpec& one = along.actuators[0];
   EXPECT_EQ(one.name, "field");
-  EXPECT_EQ(one.kind, ActuatorKind::magnetic);
+  EXPECT_TRUE(one.is<FieldSpec>());
   EXPECT_EQ(one.control, Control::load);
   EXPECT_EQ(one.low, -50);
   EXPECT_EQ(one.high, 20);
   EXPECT_EQ(one.rest, 0);
   EXPECT_EQ(one.origin.line, 6u);
-  EXPECT_EQ(one.field->command, FieldCommand::flux_density);
-  EXPECT_EQ(std::get<UniformField>(one.field->source->field).direction, Vec3(0, 3, 4));
+  EXPECT_EQ(one.as<FieldSpec>()->command, FieldCommand::flux_density);
+  EXPECT_EQ(std::get<UniformField>(one.as<FieldSpec>()->source->field).direction, Vec3(0, 3, 4));
 
   const RobotSpec all = with_field("range: [-5, 5]"), some = with_field("range: [-5, 5], axes: [z, x]");
   ASSERT_EQ(all.actuators.size(), 3u);
   EXPECT_EQ(all.actuators[1].name, "field_y");
-  EXPECT_EQ(all.actuators[1].field->command, FieldCommand::flux_density_y);
-  EXPECT_EQ(all.actuators[1].field->source, all.actuators[2].field->source);
+  EXPECT_EQ(all.actuators[1].as<FieldSpec>()->command, FieldCommand::flux_density_y);
+  EXPECT_EQ(all.actuators[1].as<FieldSpec>()->source, all.actuators[2].as<FieldSpec>()->source);
   ASSERT_EQ(some.actuators.size(), 2u);
   EXPECT_EQ(some.actuators[0].name, "field_x");
   EXPECT_EQ(some.actuators[1].name, "field_z");
@@ -88,8 +88,8 @@ TEST(SceneMagnetism, CoilsAndDipolesInTheScenesUnit) {
       "radius: "
       "1}], range: [0, 5]");
   ASSERT_EQ(coil.actuators.size(), 1u);
-  EXPECT_EQ(coil.actuators[0].field->command, FieldCommand::current);
-  const CoilField& loops = std::get<CoilField>(coil.actuators[0].field->source->field);
+  EXPECT_EQ(coil.actuators[0].as<FieldSpec>()->command, FieldCommand::current);
+  const CoilField& loops = std::get<CoilField>(coil.actuators[0].as<FieldSpec>()->source->field);
   ASSERT_EQ(loops.loops.size(), 2u);
   EXPECT_EQ(loops.loops[0].center, Vec3(10, 20, 30));
   EXPECT_EQ(loops.loops[0].radius_mm, 40);
@@ -105,8 +105,8 @@ TEST(SceneMagnetism, CoilsAndDipolesInTheScenesUnit) {
   EXPECT_EQ(dipole.actuators[1].name, "field_my");
   EXPECT_EQ(dipole.actuators[1].low, -1);
   EXPECT_EQ(dipole.actuators[1].rest, 0);
-  EXPECT_EQ(dipole.actuators[2].field->command, FieldCommand::moment_z);
-  const DipoleField& magnet = std::get<DipoleField>(dipole.actuators[0].field->source->field);
+  EXPECT_EQ(dipole.actuators[2].as<FieldSpec>()->command, FieldCommand::moment_z);
+  const DipoleField& magnet = std::get<DipoleField>(dipole.actuators[0].as<FieldSpec>()->source->field);
   EXPECT_EQ(magnet.position, Vec3(20, -20, 50));
   EXPECT_EQ(magnet.moment, Vec3(0.5, 0, 0));
 }

@@ -83,9 +83,10 @@ TEST(SceneRobots, EachIsReadFromItsOwnSceneAndPlaced) {
   EXPECT_EQ(std::get<std::string>(spec.rigid.at(0).where.region), "left.low");
   EXPECT_EQ(spec.rigid.at(1).name, "right.low");
   EXPECT_EQ(spec.actuators.at(2).name, "right.air");
-  EXPECT_EQ(spec.actuators.at(2).region, "right");
+  EXPECT_EQ(spec.actuators.at(2).as<PneumaticSpec>()->region, "right");
   EXPECT_EQ(spec.actuators.at(2).origin.text(), "robots/finger.yaml:10");
-  EXPECT_LT((spec.actuators.at(3).surface->vertices.row(2) - Eigen::RowVector3d(0, 15, 0)).norm(), 1e-12);
+  EXPECT_LT((spec.actuators.at(3).as<PneumaticSpec>()->surface->vertices.row(2) - Eigen::RowVector3d(0, 15, 0)).norm(),
+            1e-12);
   EXPECT_EQ(spec.markers.at(2).name, "right.tip");
   EXPECT_LT((std::get<Vec3>(spec.markers.at(2).at.point) - Vec3(10, 0, -30)).norm(), 1e-12);
   EXPECT_EQ(std::get<std::string>(spec.markers.at(1).at.point), "left.tip");

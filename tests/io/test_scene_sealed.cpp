@@ -12,6 +12,10 @@ RobotSpec sealed_scene(const std::string& actuator, const std::string& more = ""
                      "robots/finger.yaml", fake_files());
 }
 
+FillingSpec filling_by(const std::string& actuator) {
+  return sealed_scene(actuator).actuators.at(0).as<PneumaticSpec>()->filling.value();
+}
+
 std::string refusal_of_sealed(const std::string& actuator, const std::string& more = "") {
   try {
     (void)sealed_scene(actuator, more);
@@ -26,43 +30,34 @@ std::string refusal_of_sealed(const std::string& actuator, const std::string& mo
 TEST(SceneSealed, GasWithAndWithoutASyringe) {
   const ActuatorSpec amount = sealed_scene("region: chamber, control: gas, range: [5, 30]").actuators.at(0);
   EXPECT_EQ(amount.control, Control::filling);
-  ASSERT_TRUE(amount.filling);
-  EXPECT_FALSE(amount.filling->liquid);
-  EXPECT_FALSE(amount.filling->syringe_mL);
-  EXPECT_EQ(amount.filling->exponent, 1);
-  EXPECT_EQ(amount.filling->atmosphere_kPa, 101.325);
+  ASSERT_TRUE(amount.as<PneumaticSpec>()->filling);
+  EXPECT_FALSE(amount.as<PneumaticSpec>()->filling->liquid);
+  EXPECT_FALSE(amount.as<PneumaticSpec>()->filling->syringe_mL);
+  EXPECT_EQ(amount.as<PneumaticSpec>()->filling->exponent, 1);
+  EXPECT_EQ(amount.as<PneumaticSpec>()->filling->atmosphere_kPa, 101.325);
   EXPECT_EQ(amount.low, 5);
   const ActuatorSpec pushed = sealed_scene(
                                   "connected: [a, b], control: gas, range: [-2, 15], "
                                   "source: {syringe_mL: 20, dead_mL: 2.5, process: adiabatic}",
                                   "atmosphere: 84\n")
                                   .actuators.at(0);
-  EXPECT_EQ(pushed.connected, (std::vector<std::string>{"a", "b"}));
-  EXPECT_EQ(pushed.filling->syringe_mL, 20);
-  EXPECT_EQ(pushed.filling->dead_mL, 2.5);
-  EXPECT_EQ(pushed.filling->exponent, 1.4);
-  EXPECT_EQ(pushed.filling->atmosphere_kPa, 84);
+  EXPECT_EQ(pushed.as<PneumaticSpec>()->connected, (std::vector<std::string>{"a", "b"}));
+  EXPECT_EQ(pushed.as<PneumaticSpec>()->filling->syringe_mL, 20);
+  EXPECT_EQ(pushed.as<PneumaticSpec>()->filling->dead_mL, 2.5);
+  EXPECT_EQ(pushed.as<PneumaticSpec>()->filling->exponent, 1.4);
+  EXPECT_EQ(pushed.as<PneumaticSpec>()->filling->atmosphere_kPa, 84);
   EXPECT_EQ(pushed.low, -2);
-  EXPECT_EQ(
-      sealed_scene("control: gas, range: [1, 2], source: {process: {exponent: 1.2}}").actuators[0].filling->exponent,
-      1.2);
-  EXPECT_EQ(sealed_scene("control: gas, range: [1, 2], source: {process: isothermal}").actuators[0].filling->exponent,
-            1);
+  EXPECT_EQ(filling_by("control: gas, range: [1, 2], source: {process: {exponent: 1.2}}").exponent, 1.2);
+  EXPECT_EQ(filling_by("control: gas, range: [1, 2], source: {process: isothermal}").exponent, 1);
 }
 
 TEST(SceneSealed, Liquid) {
-  const FillingSpec water =
-      *sealed_scene("control: liquid, range: [1, 2], liquid: {bulk_modulus: 2200}").actuators[0].filling;
+  const FillingSpec water = filling_by("control: liquid, range: [1, 2], liquid: {bulk_modulus: 2200}");
   EXPECT_TRUE(water.liquid);
   EXPECT_DOUBLE_EQ(water.compressibility, 1 / 2200.0);
-  EXPECT_DOUBLE_EQ(sealed_scene("control: liquid, range: [1, 2], liquid: {compressibility: 0.45}")
-                       .actuators[0]
-                       .filling->compressibility,
+  EXPECT_DOUBLE_EQ(filling_by("control: liquid, range: [1, 2], liquid: {compressibility: 0.45}").compressibility,
                    4.5e-4);
-  EXPECT_EQ(sealed_scene("control: liquid, range: [1, 2], liquid: {compressibility: 0}")
-                .actuators[0]
-                .filling->compressibility,
-            0);
+  EXPECT_EQ(filling_by("control: liquid, range: [1, 2], liquid: {compressibility: 0}").compressibility, 0);
 }
 
 TEST(SceneSealed, Refusals) {

@@ -44,13 +44,13 @@ TEST(SceneVoltage, LayersAndTheirShares) {
   const ActuatorSpec &left = spec.actuators.at(0), &right = spec.actuators.at(1);
   EXPECT_EQ(left.control, Control::load);
   EXPECT_EQ(left.rest, 0);
-  EXPECT_EQ(left.prestretch, 0.25);
-  EXPECT_FALSE(left.shares);
-  EXPECT_EQ(right.prestretch, 1);
-  ASSERT_TRUE(right.shares);
-  EXPECT_EQ(right.shares->prisms, (std::vector<Index>{3, 1}));
-  EXPECT_EQ(right.shares->values, (std::vector<double>{1, 0.25}));
-  EXPECT_EQ(right.shares->origins.at(1).text(), "robots/shares/right.csv:5");
+  EXPECT_EQ(left.as<DeaSpec>()->prestretch, 0.25);
+  EXPECT_FALSE(left.as<DeaSpec>()->shares);
+  EXPECT_EQ(right.as<DeaSpec>()->prestretch, 1);
+  ASSERT_TRUE(right.as<DeaSpec>()->shares);
+  EXPECT_EQ(right.as<DeaSpec>()->shares->prisms, (std::vector<Index>{3, 1}));
+  EXPECT_EQ(right.as<DeaSpec>()->shares->values, (std::vector<double>{1, 0.25}));
+  EXPECT_EQ(right.as<DeaSpec>()->shares->origins.at(1).text(), "robots/shares/right.csv:5");
 }
 
 TEST(SceneVoltage, FilesOfSharesThatAreRefused) {

@@ -16,10 +16,9 @@ using namespace testing;
 RobotSpec warm_bar() {
   RobotSpec spec = physical_robot(block_mesh({12, 2, 2}, {40, 4, 4}));
   spec.regions = {{"upper", Selector(Box{{-1, -1, 2}, {41, 5, 5}}), {}}};
-  ActuatorSpec warm = actuator("warm", ActuatorKind::growth, 0, 100, true);
+  ActuatorSpec warm = actuator("warm", GrowthSpec{{{"upper", {}, false, TemperatureSpec{20, 2e-3, {}}}}}, 0, 100, true);
   warm.control = Control::load;
   warm.rest = 20;
-  warm.growth = std::make_shared<const GrowthSpec>(GrowthSpec{{{"upper", {}, false, TemperatureSpec{20, 2e-3, {}}}}});
   spec.actuators = {warm};
   spec.markers.push_back({"tip", {std::string("x_high"), {}}});
   return spec;

@@ -19,8 +19,8 @@ RobotSpec arm_with_two_tendons() {
   spec.actuators = {by_load(cable("upper", {{0, 4, 7}, {80, 4, 7}}), 0, 6),
                     by_load(cable("side", {{0, 7, 4}, {80, 7, 4}}), 0, 6)};
   for (ActuatorSpec& actuator : spec.actuators) {
-    actuator.spacing = 9;
-    actuator.friction = 0.3;
+    actuator.as<CableSpec>()->spacing = 9;
+    actuator.as<CableSpec>()->friction = 0.3;
   }
   return spec;
 }

@@ -17,9 +17,9 @@ RobotSpec finger_on_a_syringe() {
   spec.materials[0].elastic->youngs_modulus = 0.3;
   ActuatorSpec& air = spec.actuators[0];
   air.control = Control::filling;
-  air.filling = FillingSpec{};
-  air.filling->syringe_mL = 3;
-  air.filling->dead_mL = 0.2;
+  air.as<PneumaticSpec>()->filling = FillingSpec{};
+  air.as<PneumaticSpec>()->filling->syringe_mL = 3;
+  air.as<PneumaticSpec>()->filling->dead_mL = 0.2;
   air.low = 0;
   air.high = 2.5;
   return spec;

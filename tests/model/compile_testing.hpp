@@ -59,10 +59,10 @@ inline PointRef mean(const std::string& region) {
   return {region, line(6)};
 }
 
-inline ActuatorSpec actuator(const std::string& name, ActuatorKind kind, double low, double high) {
+inline ActuatorSpec actuator(const std::string& name, DriveSpec drive, double low, double high) {
   ActuatorSpec spec;
   spec.name = name;
-  spec.kind = kind;
+  spec.drive = std::move(drive);
   spec.low = low;
   spec.high = high;
   spec.origin = line(9);
@@ -70,15 +70,16 @@ inline ActuatorSpec actuator(const std::string& name, ActuatorKind kind, double 
 }
 
 inline ActuatorSpec cable(std::vector<PointRef> points, double low = 0.9, double high = 1) {
-  ActuatorSpec spec = actuator("tendon", ActuatorKind::cable, low, high);
-  spec.points = std::move(points);
-  return spec;
+  return actuator("tendon", CableSpec{.points = std::move(points)}, low, high);
 }
 
 inline ActuatorSpec chamber(const std::string& region) {
-  ActuatorSpec spec = actuator("air", ActuatorKind::pneumatic, 0.5, 3);
-  spec.region = region;
-  return spec;
+  return actuator("air", PneumaticSpec{.region = region}, 0.5, 3);
+}
+
+/// Of pressures.
+inline ActuatorCurve straight_curve() {
+  return {"curve.yaml", CurveInput::pressure, 100, "", {MonotoneCurve({0, 1}, {1, 2}), {}}, {}};
 }
 
 inline bool has_note(const Model& model, const std::string& fragment) {

@@ -68,10 +68,10 @@ TEST(Pneumatic, ASurfaceTakesTheElementsInside) {
   for (const bool inwards : {false, true}) {
     RobotSpec spec = hollow_cube();
     ActuatorSpec air = chamber("");
-    air.region.reset();
-    air.surface = box_surface({9.5, 9.5, 9.5}, {11, 11, 11});
+    air.as<PneumaticSpec>()->region.reset();
+    air.as<PneumaticSpec>()->surface = box_surface({9.5, 9.5, 9.5}, {11, 11, 11});
     if (inwards)
-      for (Triangle& t : air.surface->triangles) std::swap(t[0], t[1]);
+      for (Triangle& t : air.as<PneumaticSpec>()->surface->triangles) std::swap(t[0], t[1]);
     spec.actuators.push_back(air);
     const Model model = compile(spec);
     const Actuator& compiled = model.actuators[0];
@@ -81,7 +81,7 @@ TEST(Pneumatic, ASurfaceTakesTheElementsInside) {
     Points corners(8, 3);
     for (Index i = 0; i < 8; ++i) {
       corners.row(i) = compiled.as<ChamberDrive>()->points[i].at(model.rest).transpose();
-      EXPECT_LT((corners.row(i) - air.surface->vertices.row(i)).norm(), 1e-12);
+      EXPECT_LT((corners.row(i) - air.as<PneumaticSpec>()->surface->vertices.row(i)).norm(), 1e-12);
     }
     EXPECT_NEAR(enclosed_volume(corners, compiled.as<ChamberDrive>()->surface), 1331, 1e-9) << "normals outwards";
   }
@@ -95,8 +95,7 @@ TEST(Dea, MeasuresItsMeanArea) {
   add_volume_region(mesh, "membrane", [](const Vec3& p) { return p[0] < 3.0; });
   RobotSpec spec = block_robot(mesh);
   spec.fixed = {{named("z_low"), {true, true, true}}};
-  ActuatorSpec skin = actuator("skin", ActuatorKind::dea, 0.7, 1.4);
-  skin.region = "membrane";
+  ActuatorSpec skin = actuator("skin", DeaSpec{.region = "membrane"}, 0.7, 1.4);
   skin.rest = 1.2;
   spec.actuators.push_back(skin);
   const Model model = compile(spec);
@@ -149,7 +148,7 @@ TEST(Cable, IsOneGapPerSegmentInAContinuousBody) {
 TEST(Cable, IsGuidedInsideTheBodyAsOftenAsItsSpacingSays) {
   RobotSpec spec = notched();
   spec.actuators.push_back(cable({at(0, 5, 15), at(30, 5, 15)}, 0.7, 1));
-  spec.actuators[0].spacing = 2.5;
+  spec.actuators[0].as<CableSpec>()->spacing = 2.5;
   const Model model = compile(spec);
   const Actuator& tendon = model.actuators[0];
   // 13 places 2.5 mm apart, of which three lie in the notch
@@ -169,7 +168,7 @@ TEST(Cable, TakesMeansOfRegionsAndGivenApexes) {
   RobotSpec spec = notched();
   add_vertex_region(spec.mesh, "eyelet", {2 + 8, 2 + 8 + 4});  // (20, 0, 10) and (20, 10, 10)
   spec.actuators.push_back(cable({mean("x_low"), at(10, 5, 15), mean("eyelet")}, 0.95, 1));
-  spec.actuators[0].apexes = {at(15, 5, 2)};
+  spec.actuators[0].as<CableSpec>()->apexes = {at(15, 5, 2)};
   const Model model = compile(spec);
   const Actuator& tendon = model.actuators[0];
   EXPECT_LT((tendon.as<CableDrive>()->points[0].at(model.rest) - Vec3(0, 5, 10)).norm(), 1e-12);
@@ -181,7 +180,7 @@ TEST(Cable, TakesMeansOfRegionsAndGivenApexes) {
 TEST(Cable, AChamberCountsAsOutside) {
   RobotSpec spec = hollow_cube();
   spec.actuators = {chamber("chamber"), cable({at(15, 15, 2), at(15, 15, 10), at(15, 15, 20), at(15, 15, 28)}, 0.9, 1)};
-  spec.actuators[1].apexes = {at(10, 15, 15)};
+  spec.actuators[1].as<CableSpec>()->apexes = {at(10, 15, 15)};
   const Model model = compile(spec);
   ASSERT_EQ(model.actuators[1].as<CableDrive>()->gaps.size(), 1u);
   EXPECT_EQ(model.actuators[1].as<CableDrive>()->gaps[0].segment, 1);
@@ -194,39 +193,42 @@ TEST(Cable, Refusals) {
     return [=](RobotSpec& spec) { f(spec.actuators[0]); };
   };
   expect_refused(
-      good, {
-                {"one point", change([](ActuatorSpec& a) { a.points.resize(1); }), "needs at least two points"},
-                {"zero length", change([](ActuatorSpec& a) { a.points[2] = a.points[1]; }),
-                 "robot.yaml:9: actuator 'tendon' has no length between points[1] and points[2]"},
-                {"reach", change([](ActuatorSpec& a) { a.low = 0.5; }),
-                 "begins at 0.5, but its pieces inside the body alone make 0.666667 of its length of 30 mm"},
-                {"too many apexes", change([](ActuatorSpec& a) {
-                   a.apexes = {at(15, 5, 2), at(15, 5, 2)};
-                 }),
-                 "has 1 gap but 2 apexes"},
-                {"apex on the line", change([](ActuatorSpec& a) { a.apexes = {at(25, 5, 15)}; }),
-                 "apexes[0] of actuator 'tendon' lies on the line of the cable"},
-                {"far point", change([](ActuatorSpec& a) { a.points[3] = at(60, 5, 15); }),
-                 "points[3] of actuator 'tendon' is 30 mm from the mesh"},
-                {"far apex", change([](ActuatorSpec& a) { a.apexes = {at(15, 5, -15)}; }),
-                 "apexes[0] of actuator 'tendon' is 15 mm from the mesh"},
-                {"close guides", change([](ActuatorSpec& a) { a.spacing = 1e-4; }),
-                 "actuator 'tendon' would be guided at 100000 places by its spacing of 0.0001 mm: the most are 10000"},
-                {"region", change([](ActuatorSpec& a) { a.region = "body"; }), "it takes points, no region"},
-                {"rest", change([](ActuatorSpec& a) { a.rest = 0.9; }), "only a dea has a prestretch"},
-                {"through the centroid",
-                 [](RobotSpec& s) {
-                   s.voids.clear();
-                   s.actuators[0].points = {at(0, 5, 10), at(30, 5, 10)};
-                 },
-                 "has a gap between points[0] and points[1] with no body straight across it: name its third corner in"},
-                {"along the surface",
-                 [](RobotSpec& s) {
-                   s.voids.clear();
-                   s.actuators[0].points = {at(0, 5, 20.001), at(30, 5, 20.001)};
-                 },
-                 "no body straight across it"},
-            });
+      good,
+      {
+          {"one point", change([](ActuatorSpec& a) { a.as<CableSpec>()->points.resize(1); }),
+           "needs at least two points"},
+          {"zero length", change([](ActuatorSpec& a) { a.as<CableSpec>()->points[2] = a.as<CableSpec>()->points[1]; }),
+           "robot.yaml:9: actuator 'tendon' has no length between points[1] and points[2]"},
+          {"reach", change([](ActuatorSpec& a) { a.low = 0.5; }),
+           "begins at 0.5, but its pieces inside the body alone make 0.666667 of its length of 30 mm"},
+          {"too many apexes", change([](ActuatorSpec& a) {
+             a.as<CableSpec>()->apexes = {at(15, 5, 2), at(15, 5, 2)};
+           }),
+           "has 1 gap but 2 apexes"},
+          {"apex on the line", change([](ActuatorSpec& a) { a.as<CableSpec>()->apexes = {at(25, 5, 15)}; }),
+           "apexes[0] of actuator 'tendon' lies on the line of the cable"},
+          {"far point", change([](ActuatorSpec& a) { a.as<CableSpec>()->points[3] = at(60, 5, 15); }),
+           "points[3] of actuator 'tendon' is 30 mm from the mesh"},
+          {"far apex", change([](ActuatorSpec& a) { a.as<CableSpec>()->apexes = {at(15, 5, -15)}; }),
+           "apexes[0] of actuator 'tendon' is 15 mm from the mesh"},
+          {"close guides", change([](ActuatorSpec& a) { a.as<CableSpec>()->spacing = 1e-4; }),
+           "actuator 'tendon' would be guided at 100000 places by its spacing of 0.0001 mm: the most are 10000"},
+          {"filling", change([](ActuatorSpec& a) { a.control = Control::filling; }), "to be a chamber with a filling"},
+          {"curve", change([](ActuatorSpec& a) { a.curve = straight_curve(); }), "is a cable: it takes no curve"},
+          {"rest", change([](ActuatorSpec& a) { a.rest = 0.9; }), "only a dea has a prestretch"},
+          {"through the centroid",
+           [](RobotSpec& s) {
+             s.voids.clear();
+             s.actuators[0].as<CableSpec>()->points = {at(0, 5, 10), at(30, 5, 10)};
+           },
+           "has a gap between points[0] and points[1] with no body straight across it: name its third corner in"},
+          {"along the surface",
+           [](RobotSpec& s) {
+             s.voids.clear();
+             s.actuators[0].as<CableSpec>()->points = {at(0, 5, 20.001), at(30, 5, 20.001)};
+           },
+           "no body straight across it"},
+      });
 }
 
 TEST(Actuators, NumbersAndNames) {
@@ -245,16 +247,18 @@ TEST(Actuators, NumbersAndNames) {
                 {"weight", change([](ActuatorSpec& a) { a.weight = -1; }), "needs a weight above 0, not -1"},
                 {"nameless", change([](ActuatorSpec& a) { a.name = ""; }), "an actuator needs a name"},
                 {"rest", change([](ActuatorSpec& a) { a.rest = 2; }), "only a dea has a prestretch"},
-                {"points", change([](ActuatorSpec& a) { a.points = {at(0, 0, 0)}; }), "takes no points"},
-                {"neither", change([](ActuatorSpec& a) { a.region.reset(); }), "needs a region or a surface"},
+                {"neither", change([](ActuatorSpec& a) { a.as<PneumaticSpec>()->region.reset(); }),
+                 "needs a region or a surface"},
                 {"both", change([](ActuatorSpec& a) {
-                   a.surface = box_surface({9, 9, 9}, {12, 12, 12});
+                   a.as<PneumaticSpec>()->surface = box_surface({9, 9, 9}, {12, 12, 12});
                  }),
                  "needs a region or a surface, one of the two"},
-                {"unknown", change([](ActuatorSpec& a) { a.region = "chambre"; }), "did you mean 'chamber'?"},
-                {"face", change([](ActuatorSpec& a) { a.region = "x_low"; }), "region 'x_low' holds no tetrahedron"},
+                {"unknown", change([](ActuatorSpec& a) { a.as<PneumaticSpec>()->region = "chambre"; }),
+                 "did you mean 'chamber'?"},
+                {"face", change([](ActuatorSpec& a) { a.as<PneumaticSpec>()->region = "x_low"; }),
+                 "region 'x_low' holds no tetrahedron"},
                 {"void", [](RobotSpec& s) { s.voids.push_back(named("chamber")); }, "which is void: it cannot be both"},
-                {"dea of tetrahedra", change([](ActuatorSpec& a) { a.kind = ActuatorKind::dea; }),
+                {"dea of tetrahedra", change([](ActuatorSpec& a) { a.drive = DeaSpec{.region = "chamber"}; }),
                  "needs prisms, but region 'chamber' has 6 tetrahedra"},
                 {"twice the name", [](RobotSpec& s) { s.actuators.push_back(s.actuators[0]); }, "two actuators 'air'"},
                 {"twice the element",
@@ -276,13 +280,13 @@ TEST(Actuators, NumbersAndNames) {
 TEST(Pneumatic, Refusals) {
   RobotSpec good = hollow_cube();
   ActuatorSpec air = chamber("");
-  air.region.reset();
-  air.surface = box_surface({9.5, 9.5, 9.5}, {11, 11, 11});
+  air.as<PneumaticSpec>()->region.reset();
+  air.as<PneumaticSpec>()->surface = box_surface({9.5, 9.5, 9.5}, {11, 11, 11});
   good.actuators.push_back(air);
   const auto surface = [](const TriangleSurface& replacement) {
-    return [=](RobotSpec& spec) { spec.actuators[0].surface = replacement; };
+    return [=](RobotSpec& spec) { spec.actuators[0].as<PneumaticSpec>()->surface = replacement; };
   };
-  TriangleSurface open = *air.surface, wild = *air.surface;
+  TriangleSurface open = *air.as<PneumaticSpec>()->surface, wild = *air.as<PneumaticSpec>()->surface;
   open.triangles.pop_back();
   wild.vertices(0, 0) = std::nan("");
   expect_refused(good, {
@@ -304,8 +308,8 @@ TEST(Pneumatic, AnElementOfAnotherActuatorIsRefused) {
   RobotSpec spec = hollow_cube();
   spec.actuators = {chamber("chamber"), chamber("")};
   spec.actuators[1].name = "bag";
-  spec.actuators[1].region.reset();
-  spec.actuators[1].surface = box_surface({9, 9, 9}, {12, 12, 12});
+  spec.actuators[1].as<PneumaticSpec>()->region.reset();
+  spec.actuators[1].as<PneumaticSpec>()->surface = box_surface({9, 9, 9}, {12, 12, 12});
   EXPECT_NE(refusal(spec).find("actuator 'bag' and actuator 'air' both hold tetrahedron 78"), std::string::npos);
 }
 
@@ -313,19 +317,20 @@ TEST(Dea, Refusals) {
   Mesh mesh = block_mesh({4, 2, 1}, {8, 4, 1}, Split::prisms);
   add_volume_region(mesh, "membrane", [](const Vec3& p) { return p[0] < 4; });
   RobotSpec good = block_robot(mesh);
-  ActuatorSpec skin = actuator("skin", ActuatorKind::dea, 0.7, 1.4);
-  skin.region = "membrane";
+  ActuatorSpec skin = actuator("skin", DeaSpec{.region = "membrane"}, 0.7, 1.4);
   good.actuators.push_back(skin);
   const auto change = [](const std::function<void(ActuatorSpec&)>& f) {
     return [=](RobotSpec& spec) { f(spec.actuators[0]); };
   };
-  expect_refused(good, {
-                           {"prestretch", change([](ActuatorSpec& a) { a.rest = 1.5; }),
-                            "has its rest ratio (prestretch) 1.5 outside its range [0.7, 1.4]"},
-                           {"prestretch nan", change([](ActuatorSpec& a) { a.rest = std::nan(""); }), "rest ratio"},
-                           {"face", change([](ActuatorSpec& a) { a.region = "x_low"; }), "region 'x_low' has none"},
-                           {"no region", change([](ActuatorSpec& a) { a.region.reset(); }), "needs a region of prisms"},
-                       });
+  expect_refused(
+      good,
+      {
+          {"prestretch", change([](ActuatorSpec& a) { a.rest = 1.5; }),
+           "has its rest ratio (prestretch) 1.5 outside its range [0.7, 1.4]"},
+          {"prestretch nan", change([](ActuatorSpec& a) { a.rest = std::nan(""); }), "rest ratio"},
+          {"face", change([](ActuatorSpec& a) { a.as<DeaSpec>()->region = "x_low"; }), "region 'x_low' has none"},
+          {"no region", change([](ActuatorSpec& a) { a.as<DeaSpec>()->region.clear(); }), "needs a region of prisms"},
+      });
 }
 
 TEST(Actuators, ARangeWithoutTheRestRatioIsClampedAndNoted) {

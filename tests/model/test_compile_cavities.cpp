@@ -15,8 +15,8 @@ namespace {
 ActuatorSpec bag_of(const std::optional<TriangleSurface>& surface, const std::string& name = "air") {
   ActuatorSpec bag = chamber("");
   bag.name = name;
-  bag.region.reset();
-  bag.surface = surface;
+  bag.as<PneumaticSpec>()->region.reset();
+  bag.as<PneumaticSpec>()->surface = surface;
   return bag;
 }
 
@@ -121,7 +121,7 @@ RobotSpec walled(bool quadratic) {
     spec.mesh.triangles.push_back(t);
   }
   spec.mesh.regions.push_back(wall);
-  spec.actuators[0].wall = "wall";
+  spec.actuators[0].as<PneumaticSpec>()->wall = "wall";
   return spec;
 }
 
@@ -138,13 +138,13 @@ TEST(Cavity, AGroupOfFacesIsItsWall) {
                  {{"open", [](RobotSpec& s) { s.mesh.regions.back().triangles.pop_back(); },
                    "actuator 'air' has a wall, region 'wall', that bounds no chamber: the surface is not "
                    "closed: its rim of 3 edges has its middle at ("},
-                  {"volume", [](RobotSpec& s) { s.actuators[0].wall = "chamber"; },
+                  {"volume", [](RobotSpec& s) { s.actuators[0].as<PneumaticSpec>()->wall = "chamber"; },
                    "that is no group of faces; a volume is named with `region: chamber`"},
                   {"solid", [](RobotSpec& s) { s.voids.clear(); }, "of which 100 % are elements of the body"},
                   {"as a volume",
                    [](RobotSpec& s) {
-                     s.actuators[0].wall.reset();
-                     s.actuators[0].region = "wall";
+                     s.actuators[0].as<PneumaticSpec>()->wall.reset();
+                     s.actuators[0].as<PneumaticSpec>()->region = "wall";
                    },
                    "the wall of a cavity is `surface: {region: wall}`"}});
 }
@@ -153,7 +153,7 @@ TEST(Cavity, AGroupOfFacesIsItsWall) {
 TEST(Cavity, ASurfaceThatSelectsNothingIsEmbedded) {
   RobotSpec spec = hollow_robot(box_surface({10, 10, 10}, {10, 10, 10}));
   spec.voids.push_back(shaped(Box{{20, 10, 10}, {30, 20, 20}}));  // a duct to the outside
-  for (Triangle& t : spec.actuators[0].surface->triangles) std::swap(t[0], t[1]);
+  for (Triangle& t : spec.actuators[0].as<PneumaticSpec>()->surface->triangles) std::swap(t[0], t[1]);
   const Model model = compile(spec);
   const auto& air = *model.actuators[0].as<ChamberDrive>();
   EXPECT_TRUE(air.cavity.empty());
@@ -167,7 +167,7 @@ TEST(Cavity, ASurfaceThatSelectsNothingIsEmbedded) {
 TEST(Cavity, MisleadingSurfacesAreRefused) {
   const TriangleSurface box = box_surface({10, 10, 10}, {10, 10, 10}), skin = box_surface({0, 0, 0}, {30, 30, 30});
   const auto take = [](const TriangleSurface& surface) {
-    return [=](RobotSpec& spec) { spec.actuators[0].surface = surface; };
+    return [=](RobotSpec& spec) { spec.actuators[0].as<PneumaticSpec>()->surface = surface; };
   };
   TriangleSurface small = box, large = box;
   small.vertices *= 1e-3;
@@ -195,7 +195,7 @@ TEST(Points, FartherOutThanTheirElementCanCarryThemAreRefused) {
   spec.markers = {{"tip", at(45, 7, 7)}};
   EXPECT_TRUE(has_note(compile(spec), "points[1] of actuator 'tendon' is 2 mm outside the body"));
   expect_refused(spec,
-                 {{"cable", [](RobotSpec& s) { s.actuators[0].points[1] = at(30, 7, 18); },
+                 {{"cable", [](RobotSpec& s) { s.actuators[0].as<CableSpec>()->points[1] = at(30, 7, 18); },
                    "robot.yaml:5: points[1] of actuator 'tendon' is 3 mm from the mesh, farther than the 2.59808 "
                    "mm to which its nearest element can carry it: move it to the body"},
                   {"marker", [](RobotSpec& s) { s.markers[0].at = at(45, 7, 18); }, "marker 'tip' is 3 mm from"}});

@@ -16,10 +16,7 @@ namespace {
 using namespace testing;
 
 ActuatorSpec growing(std::vector<GrowthPart> parts) {
-  ActuatorSpec spec = actuator("growth", ActuatorKind::growth, 0.8, 1.5);
-  spec.origin = line(9);
-  spec.growth = std::make_shared<const GrowthSpec>(GrowthSpec{std::move(parts)});
-  return spec;
+  return actuator("growth", GrowthSpec{std::move(parts)}, 0.8, 1.5);
 }
 
 ActuatorSpec heated(std::vector<GrowthPart> parts) {
@@ -46,7 +43,7 @@ GrowthPart along(const std::string& region, const DirectionSpec& direction) {
 
 /// With other parts.
 auto replaced(std::vector<GrowthPart> parts) {
-  return [parts](RobotSpec& spec) { spec.actuators[0].growth = std::make_shared<const GrowthSpec>(GrowthSpec{parts}); };
+  return [parts](RobotSpec& spec) { spec.actuators[0].drive = GrowthSpec{parts}; };
 }
 
 }  // namespace
@@ -75,8 +72,7 @@ TEST(CompileGrowth, TakesTheElementsOfItsRegions) {
 /// A chamber in its region is no part of the body and does not grow.
 TEST(CompileGrowth, LeavesOutChambers) {
   RobotSpec spec = physical_robot(hollow_mesh());
-  ActuatorSpec air = actuator("air", ActuatorKind::pneumatic, 0.5, 2);
-  air.region = "chamber";
+  ActuatorSpec air = actuator("air", PneumaticSpec{.region = "chamber"}, 0.5, 2);
   spec.actuators = {air, growing({{"all"}})};
   const Model model = compile(spec);
   EXPECT_EQ(model.growths.at(0)->tetrahedra.size(), model.tetrahedra.size());
@@ -165,8 +161,7 @@ TEST(CompileGrowth, Refusals) {
        {"on the axis", replaced({along("left", {DirectionSpec::Kind::radial, {}, {5.0 / 8, 1, 1.125}, {0, 0, 0}})}),
         "needs an axis that is finite and not 0"},
        {"both", replaced({{"left"}, {"right", {}, false, TemperatureSpec{20, 1e-3, {}}}}), "one command does one"},
-       {"curve", [](RobotSpec& s) { s.actuators[0].prestretch = 2; }, "it takes no filling, no curve, no shares"},
-       {"region", [](RobotSpec& s) { s.actuators[0].region = "left"; }, "its region is that of what grows"},
+       {"curve", [](RobotSpec& s) { s.actuators[0].curve = straight_curve(); }, "is a growth: it takes no curve"},
        {"other",
         [](RobotSpec& s) {
           ActuatorSpec more = growing({{"all"}});

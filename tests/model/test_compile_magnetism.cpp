@@ -16,10 +16,9 @@ using namespace testing;
 
 ActuatorSpec field_command(const std::string& name, const FieldSource& source,
                            FieldCommand command = FieldCommand::flux_density) {
-  ActuatorSpec spec = actuator(name, ActuatorKind::magnetic, -10, 10);
+  ActuatorSpec spec = actuator(name, FieldSpec{std::make_shared<const FieldSource>(source), command}, -10, 10);
   spec.control = Control::load;
   spec.rest = 0;
-  spec.field = std::make_shared<const FieldSpec>(FieldSpec{std::make_shared<const FieldSource>(source), command});
   return spec;
 }
 
@@ -83,7 +82,7 @@ TEST(CompileMagnetism, CommandsOfOneSource) {
   ActuatorSpec my = x;
   my.name = "my";
   my.rest = 0;
-  my.field = std::make_shared<const FieldSpec>(FieldSpec{x.field->source, FieldCommand::moment_y});
+  my.drive = FieldSpec{x.as<FieldSpec>()->source, FieldCommand::moment_y};
   spec.actuators.push_back(x);
   spec.actuators.push_back(my);
   spec.actuators.push_back(field_command("coil", {"coil", CoilField{{CoilLoop{}}}}, FieldCommand::current));
@@ -136,9 +135,10 @@ TEST(CompileMagnetism, Refusals) {
   expect_refused(
       magnetic_block(),
       {{"no remanence", [](RobotSpec& s) { s.materials[0].remanence.reset(); }, "acts on nothing"},
-       {"no field", [](RobotSpec& s) { s.actuators[0].field.reset(); }, "needs a source"},
+       {"no field", [](RobotSpec& s) { s.actuators[0].drive = FieldSpec{}; }, "needs a source"},
        {"a ratio", [](RobotSpec& s) { s.actuators[0].control = Control::ratio; }, "is controlled by its load"},
-       {"a region", [](RobotSpec& s) { s.actuators[0].region = "x_low"; }, "takes no region"},
+       {"a curve", [](RobotSpec& s) { s.actuators[0].curve = straight_curve(); },
+        "is a magnetic field: it takes no curve"},
        {"a range", [](RobotSpec& s) { s.actuators[0].low = 11; }, "needs a range with low <= high"},
        {"no direction", with({"field", UniformField{{0, 0, 0}}}, FieldCommand::flux_density), "needs a direction"},
        {"no radius", with({"field", CoilField{{CoilLoop{{0, 0, 0}, {0, 0, 1}, 0}}}}), "needs a radius above 0 mm"},

@@ -118,7 +118,7 @@ TEST(Physical, VerticesInsideAChamberAreNoLooseVertices) {
 TEST(Physical, ACableHasNoGaps) {
   RobotSpec spec = physical_robot(block_mesh({3, 1, 2}, {30, 10, 20}));
   spec.actuators.push_back(cable({at(0, 5, 15), at(10, 5, 15), at(30, 5, 15)}, 0.01, 1));
-  spec.actuators[0].apexes = {at(15, 5, 2)};
+  spec.actuators[0].as<CableSpec>()->apexes = {at(15, 5, 2)};
   const Model model = compile(spec);
   EXPECT_TRUE(model.actuators[0].as<CableDrive>()->gaps.empty());
   EXPECT_EQ(model.actuators[0].as<CableDrive>()->points.size(), 3u);
@@ -139,8 +139,7 @@ TEST(Physical, ADeaHasAMaterialAndAnActuator) {
   add_volume_region(mesh, "membrane", [](const Vec3& p) { return p[0] < 4; });
   RobotSpec spec = physical_robot(mesh);
   spec.materials[0].region = "all";
-  ActuatorSpec skin = actuator("skin", ActuatorKind::dea, 0.7, 1.4);
-  skin.region = "membrane";
+  ActuatorSpec skin = actuator("skin", DeaSpec{.region = "membrane"}, 0.7, 1.4);
   skin.rest = 1.2;
   spec.actuators.push_back(skin);
   const Model model = compile(spec);
@@ -168,8 +167,7 @@ TEST(Physical, AMembranesMaterialIsNotNeededInTargetShape) {
   silicone.region = "membrane";
   silicone.shape_ratio.reset();
   spec.materials.push_back(silicone);
-  ActuatorSpec skin = actuator("skin", ActuatorKind::dea, 0.7, 1.4);
-  skin.region = "membrane";
+  ActuatorSpec skin = actuator("skin", DeaSpec{.region = "membrane"}, 0.7, 1.4);
   spec.actuators.push_back(skin);
   EXPECT_EQ(compile(spec).materials.size(), 2u);
   spec.formulation = Formulation::target_shape;
@@ -214,7 +212,7 @@ TEST(Physical, ActuatorRefusals) {
            [](RobotSpec& s) {
              s.actuators.push_back(s.actuators[0]);
              s.actuators[2].name = "water";
-             s.actuators[2].region = "half";
+             s.actuators[2].as<PneumaticSpec>()->region = "half";
            },
            "actuator 'water' and actuator 'air' both hold tetrahedron"},
           {"void", [](RobotSpec& s) { s.voids.push_back(named("chamber")); }, "which is void: it cannot be both"},
@@ -231,7 +229,8 @@ TEST(Physical, ActuatorRefusals) {
              s.voids = {named("around")};
            },
            "actuator 'air' has a chamber that does not touch the body"},
-          {"all", change(0, [](ActuatorSpec& a) { a.region = "body"; }), "void or belongs to a chamber"},
+          {"all", change(0, [](ActuatorSpec& a) { a.as<PneumaticSpec>()->region = "body"; }),
+           "void or belongs to a chamber"},
           {"ratio 0", change(0, [](ActuatorSpec& a) { a.low = 0; }), "needs a range with 0 < low <= high"},
           {"tension", change(1, [](ActuatorSpec& a) { a.low = -1; }), "range of its tension with 0 <= low <= high"},
           {"tension nan", change(1, [](ActuatorSpec& a) { a.high = std::nan(""); }), "not [0.9, nan]"},
@@ -255,9 +254,9 @@ TEST(Physical, ActuatorRefusals) {
           {"open",
            change(0,
                   [](ActuatorSpec& a) {
-                    a.region.reset();
-                    a.surface = box_surface({9, 9, 9}, {12, 12, 12});
-                    a.surface->triangles.pop_back();
+                    a.as<PneumaticSpec>()->region.reset();
+                    a.as<PneumaticSpec>()->surface = box_surface({9, 9, 9}, {12, 12, 12});
+                    a.as<PneumaticSpec>()->surface->triangles.pop_back();
                   }),
            "needs a closed surface: the surface is not closed"},
       });
@@ -267,8 +266,7 @@ namespace {
 
 RobotSpec charged_shell() {
   RobotSpec shell = physical_robot(block_mesh({2, 2, 1}, {2, 2, 1}, Split::prisms));
-  ActuatorSpec skin = actuator("skin", ActuatorKind::dea, 0, 4);
-  skin.region = "body";
+  ActuatorSpec skin = actuator("skin", DeaSpec{.region = "body"}, 0, 4);
   skin.control = Control::load;
   skin.rest = 0;
   shell.actuators.push_back(skin);
@@ -296,7 +294,7 @@ TEST(Physical, ALayerUnderVoltage) {
   EXPECT_EQ(model.materials[0].permittivity, 3);
   EXPECT_EQ(model.actuators[0].as<DeaDrive>()->shares, std::vector<double>(8, 1));
   EXPECT_EQ(model.rest_actuation()[0], 0);
-  spec.actuators[0].shares = shares_of({3, 1, 0, 2, 7, 6, 5, 4});
+  spec.actuators[0].as<DeaSpec>()->shares = shares_of({3, 1, 0, 2, 7, 6, 5, 4});
   const Model shared = compile(spec);
   const auto& dea = *shared.actuators[0].as<DeaDrive>();
   for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(dea.shares[i], 0.1 * dea.prisms[i]);  // all of the mesh, in its order
@@ -307,20 +305,21 @@ TEST(Physical, ALayerUnderVoltage) {
 
 TEST(Physical, RefusalsOfVoltages) {
   const auto shares = [](std::vector<Index> prisms) {
-    return [=](RobotSpec& s) { s.actuators[0].shares = shares_of(prisms); };
+    return [=](RobotSpec& s) { s.actuators[0].as<DeaSpec>()->shares = shares_of(prisms); };
   };
   expect_refused(
       charged_shell(),
       {{"no permittivity", [](RobotSpec& s) { s.materials[0].permittivity.reset(); },
         "robot.yaml:3: the material of region 'all' needs 'permittivity', over that of the vacuum: actuator 'skin'"},
        {"negative", [](RobotSpec& s) { s.actuators[0].low = -1; }, "range of its voltage with 0 <= low <= high"},
-       {"prestretch", [](RobotSpec& s) { s.actuators[0].prestretch = 0; }, "needs a prestretch above 0, not 0"},
+       {"prestretch", [](RobotSpec& s) { s.actuators[0].as<DeaSpec>()->prestretch = 0; },
+        "needs a prestretch above 0, not 0"},
        {"rest", [](RobotSpec& s) { s.actuators[0].rest = 1; }, "cannot have a load at rest other than 0"},
        {"ratio",
         [](RobotSpec& s) {
           s.actuators[0].control = Control::ratio;
           s.actuators[0].low = s.actuators[0].rest = 1;
-          s.actuators[0].shares = shares_of({0});
+          s.actuators[0].as<DeaSpec>()->shares = shares_of({0});
         },
         "takes no shares of a voltage"},
        {"target", [](RobotSpec& s) { s.formulation = Formulation::target_shape; },
@@ -330,8 +329,8 @@ TEST(Physical, RefusalsOfVoltages) {
        {"beyond", shares({8}), "share.csv:10: prism 8 (from 0) is none of the mesh's"},
        {"sign",
         [](RobotSpec& s) {
-          s.actuators[0].shares = shares_of({2});
-          s.actuators[0].shares->values[0] = -0.5;
+          s.actuators[0].as<DeaSpec>()->shares = shares_of({2});
+          s.actuators[0].as<DeaSpec>()->shares->values[0] = -0.5;
         },
         "share.csv:4: prism 2 (from 0) has a share of the voltage of -0.5: 0 or more"}});
 }

@@ -70,7 +70,7 @@ TEST(Anchoring, EveryPartMustBeHeld) {
   EXPECT_EQ(compile(rigid).rigid[0].vertices.size(), 8u);
   RobotSpec tied = two_blocks();
   tied.actuators.push_back(cable({at(2, 5, 9), at(10, 5, 9), at(20, 5, 9), at(28, 5, 9)}));
-  tied.actuators[0].apexes = {at(10, 5, 1)};
+  tied.actuators[0].as<CableSpec>()->apexes = {at(10, 5, 1)};
   EXPECT_EQ(refusal(tied), "");
 }
 
@@ -145,7 +145,7 @@ TEST(Turns, AreOfWhatIsHeldWholeByOneEntry) {
            [](RobotSpec& spec) {
              spec.actuators.push_back(cable({at(2, 5, 9), at(18, 5, 9)}));
              spec.actuators[0].name = "z_low_turn";
-             spec.actuators[0].apexes = {at(10, 5, 1)};
+             spec.actuators[0].as<CableSpec>()->apexes = {at(10, 5, 1)};
            },
            "the command 'z_low_turn' has the name of an actuator"},
       });

@@ -48,13 +48,12 @@ TEST(CompileLiquid, TheOutsideIsWet) {
   RobotSpec solid = wet_robot(hollow_mesh());
   EXPECT_EQ(compile(solid).tractions.at(0).faces.size(), 6u * 18u);
   RobotSpec chamber = solid;
-  ActuatorSpec air = actuator("air", ActuatorKind::pneumatic, 0.5, 2);
-  air.region = "chamber";
+  ActuatorSpec air = actuator("air", PneumaticSpec{.region = "chamber"}, 0.5, 2);
   chamber.actuators = {air};
   RobotSpec empty = solid;
   empty.voids = {named("chamber")};
   RobotSpec space = empty;
-  air.region.reset();
+  air.as<PneumaticSpec>()->region.reset();
   space.actuators = {air};
   for (const RobotSpec& spec : {chamber, empty, space}) {
     const Model model = compile(spec);
@@ -73,8 +72,7 @@ TEST(CompileLiquid, ChambersThatEndAtAPlateAreDry) {
   add_volume_region(mesh, "chamber",
                     [](const Vec3& p) { return p.x() < 20 && std::abs(p.y() - 15) < 5 && std::abs(p.z() - 15) < 5; });
   RobotSpec spec = wet_robot(mesh);
-  ActuatorSpec air = actuator("air", ActuatorKind::pneumatic, 0.5, 2);
-  air.region = "chamber";
+  ActuatorSpec air = actuator("air", PneumaticSpec{.region = "chamber"}, 0.5, 2);
   spec.actuators = {air};
   const Model model = compile(spec);
   EXPECT_EQ(model.tractions.at(0).faces.size(), 6u * 18u - 2u);
@@ -142,8 +140,7 @@ TEST(CompileFamilies, Refusals) {
         "has families of fibres, which need the physical formulation"},
        {"growth",
         [](RobotSpec& s) {
-          ActuatorSpec grow = actuator("grow", ActuatorKind::growth, 0.8, 1.5);
-          grow.growth = std::make_shared<const GrowthSpec>(GrowthSpec{{{"all"}}});
+          ActuatorSpec grow = actuator("grow", GrowthSpec{{{"all"}}}, 0.8, 1.5);
           s.actuators = {grow};
         },
         "has families of fibres, and an actuator lets it grow"}});

@@ -33,7 +33,7 @@ RobotSpec sealed_cube() {
   RobotSpec spec = physical_robot(hollow_mesh());
   ActuatorSpec air = chamber("chamber");
   air.control = Control::filling;
-  air.filling = FillingSpec{};
+  air.as<PneumaticSpec>()->filling = FillingSpec{};
   spec.actuators = {air};
   return spec;
 }
@@ -77,7 +77,7 @@ TEST(Filling, NothingLeftAndAVacuum) {
 /// At rest it has the amount that fills it; with a syringe nothing is pushed.
 TEST(Filling, RestAndNames) {
   RobotSpec spec = sealed_cube();
-  spec.actuators[0].filling->dead_mL = 0.5;
+  spec.actuators[0].as<PneumaticSpec>()->filling->dead_mL = 0.5;
   Model model = compile(spec);
   const Actuator& amount = model.actuators[0];
   EXPECT_NEAR(model.rest_actuation()[0], 1.5, 1e-12);
@@ -92,7 +92,7 @@ TEST(Filling, RestAndNames) {
       model.notes.back(),
       "Actuator 'air' is sealed at rest with 1.5 mL of gas under 101.325 kPa: 1 mL in its chamber, 0.5 mL of dead "
       "volume.");
-  spec.actuators[0].filling->syringe_mL = 4;
+  spec.actuators[0].as<PneumaticSpec>()->filling->syringe_mL = 4;
   model = compile(spec);
   EXPECT_EQ(std::string(control_name(model.actuators[0])), "pushed volume");
   EXPECT_EQ(model.rest_actuation()[0], 0.5) << "of its range, [0.5, 3]";
@@ -104,40 +104,46 @@ TEST(Filling, Refusals) {
   expect_refused(
       sealed_cube(),
       {{"target shapes", [](Spec s) { s.formulation = Formulation::target_shape; }, "needs the physical formulation"},
-       {"nothing in it", [](Spec s) { s.actuators[0].filling.reset(); }, "a chamber with a filling"},
+       {"nothing in it", [](Spec s) { s.actuators[0].as<PneumaticSpec>()->filling.reset(); },
+        "a chamber with a filling"},
        {"another control", [](Spec s) { s.actuators[0].control = Control::ratio; }, "takes nothing that fills it"},
-       {"exponent", [](Spec s) { s.actuators[0].filling->exponent = 0; }, "an exponent of its gas above 0, not 0"},
-       {"atmosphere", [](Spec s) { s.actuators[0].filling->atmosphere_kPa = -1; }, "an atmosphere above 0, not -1"},
-       {"dead volume", [](Spec s) { s.actuators[0].filling->dead_mL = NAN; }, "a dead volume of 0 or more"},
-       {"compressibility", [](Spec s) { s.actuators[0].filling->compressibility = -1; }, "a compressibility of 0"},
-       {"syringe", [](Spec s) { s.actuators[0].filling->syringe_mL = 0; }, "a syringe's volume above 0"},
+       {"exponent", [](Spec s) { s.actuators[0].as<PneumaticSpec>()->filling->exponent = 0; },
+        "an exponent of its gas above 0, not 0"},
+       {"atmosphere", [](Spec s) { s.actuators[0].as<PneumaticSpec>()->filling->atmosphere_kPa = -1; },
+        "an atmosphere above 0, not -1"},
+       {"dead volume", [](Spec s) { s.actuators[0].as<PneumaticSpec>()->filling->dead_mL = NAN; },
+        "a dead volume of 0 or more"},
+       {"compressibility", [](Spec s) { s.actuators[0].as<PneumaticSpec>()->filling->compressibility = -1; },
+        "a compressibility of 0"},
+       {"syringe", [](Spec s) { s.actuators[0].as<PneumaticSpec>()->filling->syringe_mL = 0; },
+        "a syringe's volume above 0"},
        {"no amount", [](Spec s) { s.actuators[0].low = 0; }, "0 < low <= high, not [0, 3]"},
        {"range", [](Spec s) { s.actuators[0].high = 0.1; }, "0 < low <= high, not [0.5, 0.1]"},
-       {"too much", [](Spec s) { s.actuators[0].filling->syringe_mL = 2; },
+       {"too much", [](Spec s) { s.actuators[0].as<PneumaticSpec>()->filling->syringe_mL = 2; },
         "cannot push 3 mL out of a syringe of 2 mL"},
        {"factor", [](Spec s) { s.actuators[0].factor = 2; }, "takes no factor"},
        {"one chamber",
         [](Spec s) {
-          s.actuators[0].region.reset();
-          s.actuators[0].connected = {"chamber"};
+          s.actuators[0].as<PneumaticSpec>()->region.reset();
+          s.actuators[0].as<PneumaticSpec>()->connected = {"chamber"};
         },
         "two connected chambers or more"},
        {"twice",
         [](Spec s) {
-          s.actuators[0].region.reset();
-          s.actuators[0].connected = {"chamber", "chamber"};
+          s.actuators[0].as<PneumaticSpec>()->region.reset();
+          s.actuators[0].as<PneumaticSpec>()->connected = {"chamber", "chamber"};
         },
         "has 'chamber' among its connected chambers twice"},
        {"both",
         [](Spec s) {
-          s.actuators[0].connected = {"x_low", "x_high"};
+          s.actuators[0].as<PneumaticSpec>()->connected = {"x_low", "x_high"};
         },
         "one of them"},
        {"two atmospheres",
         [](Spec s) {
           s.actuators.push_back(s.actuators[0]);
           s.actuators[1].name = "other";
-          s.actuators[1].filling->atmosphere_kPa = 90;
+          s.actuators[1].as<PneumaticSpec>()->filling->atmosphere_kPa = 90;
         },
         "'other' is under an atmosphere of 90 kPa, actuator 'air' under one of 101.325 kPa"}});
 }

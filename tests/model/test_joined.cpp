@@ -26,10 +26,9 @@ RobotSpec whole_block() {
   spec.fixed.push_back({shaped(Box{{-1, -1, -1}, {0, 1, 31}}, 7), {true, true, true}, Vec3(0, 0, 1)});
   spec.fixed[0].displacement = Vec3(0, 0, 1);
   spec.rigid.push_back({shaped(Halfspace{{29, 0, 0}, {1, 0, 0}}, 8), "rigid_1"});
-  ActuatorSpec air = actuator("air", ActuatorKind::pneumatic, 1, 2);
-  air.region = "chamber";
-  ActuatorSpec tendon = actuator("tendon", ActuatorKind::cable, 0.5, 1);
-  tendon.points = {at(0, 15, 29), mean("corner"), at(25, 15, 29)};
+  ActuatorSpec air = actuator("air", PneumaticSpec{.region = "chamber"}, 1, 2);
+  ActuatorSpec tendon = actuator("tendon", CableSpec{}, 0.5, 1);
+  tendon.as<CableSpec>()->points = {at(0, 15, 29), mean("corner"), at(25, 15, 29)};
   spec.actuators = {air, tendon};
   spec.forces.push_back({"push", at(30, 0, 0), Vec3(0, 0, 1)});
   spec.markers = {{"tip", mean("x_high")}, {"spot", at(20, 10, 5)}, {"middle", mean("all")}};
@@ -141,8 +140,8 @@ TEST(Joined, TurnedSupportsHaveTheirAxesInTheCommonFrame) {
 
 TEST(Joined, PointsVectorsAndSurfacesAreTurned) {
   RobotSpec right = whole_block();
-  right.actuators[0].region.reset();
-  right.actuators[0].surface = box_surface({10, 10, 10}, {10, 10, 10});
+  right.actuators[0].as<PneumaticSpec>()->region.reset();
+  right.actuators[0].as<PneumaticSpec>()->surface = box_surface({10, 10, 10}, {10, 10, 10});
   right.voids.push_back(named("chamber"));
   const RobotSpec spec = pair(whole_block(), right);
   EXPECT_EQ(std::get<Vec3>(spec.markers[1].at.point), Vec3(20, 10, 5));
@@ -151,9 +150,9 @@ TEST(Joined, PointsVectorsAndSurfacesAreTurned) {
   EXPECT_EQ(spec.forces[1].force, Vec3(0, 0, -1));
   EXPECT_EQ(std::get<Vec3>(spec.forces[1].at.point), Vec3(30, 100, 0));
   EXPECT_EQ(spec.fixed[2].displacement, Vec3(0, 0, -1));
-  EXPECT_EQ(std::get<Vec3>(spec.actuators[3].points[2].point), Vec3(25, 85, -29));
-  EXPECT_EQ(std::get<std::string>(spec.actuators[3].points[1].point), "right.corner");
-  const Points& surface = spec.actuators[2].surface->vertices;
+  EXPECT_EQ(std::get<Vec3>(spec.actuators[3].as<CableSpec>()->points[2].point), Vec3(25, 85, -29));
+  EXPECT_EQ(std::get<std::string>(spec.actuators[3].as<CableSpec>()->points[1].point), "right.corner");
+  const Points& surface = spec.actuators[2].as<PneumaticSpec>()->surface->vertices;
   EXPECT_EQ(Vec3(surface.colwise().minCoeff()), Vec3(10, 80, -20));
   EXPECT_EQ(Vec3(surface.colwise().maxCoeff()), Vec3(20, 90, -10));
   EXPECT_NEAR(compile(spec).actuators[2].rest_measure, 1000, 1e-9);
@@ -164,8 +163,8 @@ TEST(Joined, PointsLieInTheirOwnBody) {
   RobotSpec block = physical_robot(block_mesh({3, 3, 3}, {30, 30, 30}));
   block.markers = {{"after", at(30.4, 14, 16)}, {"before", at(-0.4, 14, 16)}};
   block.forces.push_back({"push", at(30.4, 14, 16), Vec3(0, 0, 1)});
-  block.actuators = {actuator("tendon", ActuatorKind::cable, 0.5, 1)};
-  block.actuators[0].points = {at(-0.4, 14, 16), at(12, 14, 16), at(30.4, 14, 16)};
+  block.actuators = {actuator("tendon", CableSpec{}, 0.5, 1)};
+  block.actuators[0].as<CableSpec>()->points = {at(-0.4, 14, 16), at(12, 14, 16), at(30.4, 14, 16)};
   Placement beside;
   beside.translation = Vec3(30, 0, 0);
   const Model one = compile(block);
@@ -312,12 +311,12 @@ TEST(Joined, CompilingNamesTheRobot) {
   EXPECT_EQ(of_right([](RobotSpec& r) { r.mesh.tetrahedra[1][3] = r.mesh.tetrahedra[1][0]; }),
             "pair.yaml: 1 tetrahedron has no volume; the first is tetrahedron " + std::to_string(elements + 1) +
                 " (from 0, of robot 'right')");
-  EXPECT_EQ(of_right([](RobotSpec& r) { r.actuators[0].region = "chambre"; }),
+  EXPECT_EQ(of_right([](RobotSpec& r) { r.actuators[0].as<PneumaticSpec>()->region = "chambre"; }),
             "robot.yaml:9: there is no region 'right.chambre'; did you mean 'right.chamber'?");
   EXPECT_EQ(of_right([](RobotSpec& r) { r.fixed[1].displacement = Vec3(0, 0, 2); }).substr(0, 58),
             "robot.yaml:7: the box of robot 'right' holds vertex 64 (fr");
   EXPECT_NE(of_right([](RobotSpec& r) {
-              r.actuators[0].region.reset();
+              r.actuators[0].as<PneumaticSpec>()->region.reset();
             }).find("since the body of robot 'right' encloses no empty space"),
             std::string::npos);
   const auto doubled = [](RobotSpec& r) { r.mesh.tetrahedra.push_back(r.mesh.tetrahedra[0]); };

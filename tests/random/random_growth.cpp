@@ -30,7 +30,6 @@ void make_growth(Making& m) {
   if (!draw.chance(m.physical ? 0.15 : 0.01) || m.mesh().vertices.rows() == 0) return;
   ActuatorSpec spec;
   spec.name = "growth" + std::to_string(m.made.spec.actuators.size());
-  spec.kind = ActuatorKind::growth;
   GrowthPart growth{draw.pick({std::string("all"), std::string("growing")})};
   if (m.has_layer) growth.region = "growing";  // what a layer's prisms are not in
   for (const Region& region : m.mesh().regions)
@@ -57,7 +56,7 @@ void make_growth(Making& m) {
     spec.high = per_K < 0 && !growth.temperature->expansion_per_K ? 80 : 70;
     command = draw.between(spec.low, spec.high);
   }
-  spec.growth = std::make_shared<const GrowthSpec>(GrowthSpec{{growth}});
+  spec.drive = GrowthSpec{{growth}};
   m.made.spec.actuators.push_back(std::move(spec));
   for (Actuation& actuation : m.made.commands) {
     actuation.conservativeResize(actuation.size() + 1);
@@ -69,7 +68,7 @@ void make_families(Making& m) {
   Draw draw(m.made.seed ^ draws_of_families);
   if (!draw.chance(m.physical ? 0.12 : 0.01) || m.mesh().vertices.rows() == 0) return;
   for (const ActuatorSpec& actuator : m.made.spec.actuators)
-    if (actuator.growth) return;
+    if (actuator.is<GrowthSpec>()) return;
   for (MaterialSpec& material : m.made.spec.materials) {
     if (!draw.chance(0.7)) continue;
     FamiliesSpec families;

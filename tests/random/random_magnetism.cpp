@@ -20,12 +20,11 @@ void add_command(Making& m, Draw& draw, const std::shared_ptr<const FieldSource>
                  double low, double high) {
   ActuatorSpec spec;
   spec.name = "field" + std::to_string(m.made.spec.actuators.size());
-  spec.kind = ActuatorKind::magnetic;
   spec.control = Control::load;
   spec.low = low;
   spec.high = high;
   spec.rest = places_dipole(command) ? 0.5 * (low + high) : 0;
-  spec.field = std::make_shared<const FieldSpec>(FieldSpec{source, command});
+  spec.drive = FieldSpec{source, command};
   m.made.spec.actuators.push_back(spec);
   for (Actuation& actuation : m.made.commands) {
     actuation.conservativeResize(actuation.size() + 1);

@@ -192,11 +192,12 @@ void scale_robot(Making& m) {
   for (Index v = 0; v < m.mesh().vertices.rows(); ++v)
     m.mesh().vertices.row(v) = moved(vertex_at(m.mesh().vertices, v)).transpose();
   for (ActuatorSpec& actuator : spec.actuators) {
-    for (PointRef& point : actuator.points)
-      if (auto* at = std::get_if<Vec3>(&point.point)) *at = moved(*at);
-    if (actuator.surface)
-      for (Index v = 0; v < actuator.surface->vertices.rows(); ++v)
-        actuator.surface->vertices.row(v) = moved(vertex_at(actuator.surface->vertices, v)).transpose();
+    if (auto* cable = actuator.as<CableSpec>())
+      for (PointRef& point : cable->points)
+        if (auto* at = std::get_if<Vec3>(&point.point)) *at = moved(*at);
+    if (auto* chamber = actuator.as<PneumaticSpec>(); chamber && chamber->surface)
+      for (Index v = 0; v < chamber->surface->vertices.rows(); ++v)
+        chamber->surface->vertices.row(v) = moved(vertex_at(chamber->surface->vertices, v)).transpose();
   }
   const auto move_box = [&](RegionRef& where) {
     if (auto* selector = std::get_if<Selector>(&where.region))

@@ -158,10 +158,9 @@ double voltage_unit(Making& m) {
 void scale_ranges(Making& m) {
   for (ActuatorSpec& actuator : m.made.spec.actuators) {
     if (actuator.control != Control::load) continue;
-    const bool cable = actuator.kind == ActuatorKind::cable;
-    const double unit = actuator.kind == ActuatorKind::dea
-                            ? voltage_unit(m)
-                            : m.modulus * (cable ? m.size[1] * m.size[2] : 1e3);  // N, kPa
+    const bool cable = actuator.is<CableSpec>();
+    const double unit =
+        actuator.is<DeaSpec>() ? voltage_unit(m) : m.modulus * (cable ? m.size[1] * m.size[2] : 1e3);  // N, kPa
     actuator.low *= unit;
     actuator.high *= unit;
   }

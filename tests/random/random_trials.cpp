@@ -178,12 +178,12 @@ void make_mixed(Making& m) {
 namespace {
 
 /// Of a chamber at rest, about [mL].
-double chamber_mL(const Mesh& mesh, const ActuatorSpec& spec) {
+double chamber_mL(const Mesh& mesh, const PneumaticSpec& chamber) {
   double mm3 = 0;
-  if (spec.surface) mm3 = std::abs(enclosed_volume(spec.surface->vertices, spec.surface->triangles));
+  if (chamber.surface) mm3 = std::abs(enclosed_volume(chamber.surface->vertices, chamber.surface->triangles));
   const auto corner = [&](Index v) { return Vec3(mesh.vertices.row(v).transpose()); };
   for (const Region& region : mesh.regions) {
-    if (!spec.region || region.name != *spec.region) continue;
+    if (!chamber.region || region.name != *chamber.region) continue;
     for (const Index e : region.tetrahedra) {
       const Tetrahedron& t = mesh.tetrahedra[e];
       if (*std::min_element(t.begin(), t.end()) < 0 || *std::max_element(t.begin(), t.end()) >= mesh.vertices.rows())
@@ -203,8 +203,9 @@ void make_sealed(Making& m) {
   std::vector<ActuatorSpec>& actuators = m.made.spec.actuators;
   for (std::size_t a = 0; a < actuators.size(); ++a) {
     ActuatorSpec& spec = actuators[a];
-    if (spec.kind != ActuatorKind::pneumatic || spec.control != Control::ratio) continue;
-    const double rest = chamber_mL(m.mesh(), spec);
+    auto* chamber = spec.as<PneumaticSpec>();
+    if (chamber == nullptr || spec.control != Control::ratio) continue;
+    const double rest = chamber_mL(m.mesh(), *chamber);
     if (!(rest > 0 && std::isfinite(rest))) continue;
     FillingSpec filling;
     filling.liquid = draw.chance(0.2);
@@ -220,7 +221,7 @@ void make_sealed(Making& m) {
     spec.control = Control::filling;
     spec.low = command(spec.low);
     spec.high = command(spec.high);
-    spec.filling = filling;
+    chamber->filling = filling;
     for (Actuation& actuation : m.made.commands)
       if (static_cast<Index>(a) < actuation.size()) actuation[a] = command(actuation[a]);
   }

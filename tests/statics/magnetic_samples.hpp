@@ -21,12 +21,11 @@ inline void add_field(RobotSpec& spec, FieldSource source, const std::vector<Fie
                       double range = 1e3) {
   const auto shared = std::make_shared<const FieldSource>(std::move(source));
   for (const FieldCommand command : commands) {
-    ActuatorSpec field =
-        actuator(shared->name + std::to_string(static_cast<int>(command)), ActuatorKind::magnetic, -range, range, true);
+    ActuatorSpec field = actuator(shared->name + std::to_string(static_cast<int>(command)), FieldSpec{shared, command},
+                                  -range, range, true);
     field.control = Control::load;
     field.rest = 0;
     if (places_dipole(command)) field.rest = std::get<DipoleField>(shared->field).position[axis_of(command)];
-    field.field = std::make_shared<const FieldSpec>(FieldSpec{shared, command});
     spec.actuators.push_back(field);
   }
 }

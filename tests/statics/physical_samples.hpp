@@ -24,21 +24,20 @@ inline ElasticSpec elastic(Law law, double e, double nu) {
 }
 
 inline ActuatorSpec cable(const std::string& name, std::vector<Vec3> points, double low = 0.3, double high = 1.5) {
-  ActuatorSpec spec = actuator(name, ActuatorKind::cable, low, high, true);
-  for (const Vec3& point : points) spec.points.push_back({point, {}});
+  ActuatorSpec spec = actuator(name, CableSpec{}, low, high, true);
+  for (const Vec3& point : points) spec.as<CableSpec>()->points.push_back({point, {}});
   return spec;
 }
 
 inline ActuatorSpec air(const std::string& region, double low = 0.3, double high = 10) {
-  ActuatorSpec spec = actuator(region, ActuatorKind::pneumatic, low, high, true);
-  spec.region = region;
+  ActuatorSpec spec = actuator(region, PneumaticSpec{.region = region}, low, high, true);
   return spec;
 }
 
 /// The same actuator, commanded by its tension or pressure.
 inline ActuatorSpec by_load(ActuatorSpec spec, double low = -1e4, double high = 1e4) {
   spec.control = Control::load;
-  spec.low = spec.kind == ActuatorKind::cable ? 0 : low;
+  spec.low = spec.is<CableSpec>() ? 0 : low;
   spec.high = high;
   spec.rest = 0;
   return spec;
@@ -63,8 +62,8 @@ inline RobotSpec robot_with_bags(const std::vector<std::string>& names) {
   spec.voids.push_back({Box{{12, 6, 12}, {36, 12, 18}}, {}});
   for (const std::string& name : names) {
     ActuatorSpec bag = air(name);
-    bag.region.reset();
-    bag.surface = box_surface({14, 6, 12}, {24, 6, 6});
+    bag.as<PneumaticSpec>()->region.reset();
+    bag.as<PneumaticSpec>()->surface = box_surface({14, 6, 12}, {24, 6, 6});
     spec.actuators.push_back(bag);
   }
   spec.markers.push_back({"tip", {std::string("x_high"), {}}});

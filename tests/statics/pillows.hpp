@@ -97,12 +97,12 @@ inline RobotSpec film_robot(const Pillow& made, Control control = Control::load,
                 {one(made.rim[made.rim.size() / 4]), {false, false, true}}};
   ActuatorSpec air;
   air.name = "air";
-  air.wall = "all";
+  air.drive = PneumaticSpec{.wall = "all"};
   air.control = control;
   air.low = control == Control::filling ? 1 : 0;
   air.high = high;
   air.rest = 0;
-  if (control == Control::filling) air.filling = FillingSpec{};
+  if (control == Control::filling) air.as<PneumaticSpec>()->filling = FillingSpec{};
   spec.actuators.push_back(air);
   return spec;
 }

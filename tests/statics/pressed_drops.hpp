@@ -34,12 +34,12 @@ struct PressedDrop {
   spec.fixed.back().displacement *= share;
   ActuatorSpec cable;
   cable.name = "slack";
-  cable.kind = ActuatorKind::cable;
+  cable.drive = CableSpec{};
   cable.control = Control::load;
   cable.rest = 0;
   cable.low = 0;
   cable.high = 1;
-  for (const Index v : {Index{0}, drop.upper}) cable.points.push_back({Vec3(at.row(v)), {}});
+  for (const Index v : {Index{0}, drop.upper}) cable.as<CableSpec>()->points.push_back({Vec3(at.row(v)), {}});
   spec.actuators.push_back(cable);
   return spec;
 }

@@ -22,10 +22,10 @@ inline Distribution shared(bool least_norm) {
   return least_norm ? Distribution::least_norm : Distribution::uniform;
 }
 
-inline ActuatorSpec actuator(const std::string& name, ActuatorKind kind, double low, double high, bool least_norm) {
+inline ActuatorSpec actuator(const std::string& name, DriveSpec drive, double low, double high, bool least_norm) {
   ActuatorSpec spec;
   spec.name = name;
-  spec.kind = kind;
+  spec.drive = std::move(drive);
   spec.low = low;
   spec.high = high;
   spec.distribution = shared(least_norm);
@@ -45,12 +45,10 @@ inline RobotSpec mixed_robot(bool least_norm, double shape_ratio = 1, int refine
   RobotSpec spec = block_robot(std::move(mesh));
   spec.materials[0].shape_ratio = shape_ratio;
 
-  ActuatorSpec skin = actuator("skin", ActuatorKind::dea, 0.5, 2, least_norm);
-  skin.region = "skin";
-  ActuatorSpec air = actuator("air", ActuatorKind::pneumatic, 0.5, 3, least_norm);
-  air.region = "chamber";
-  ActuatorSpec cable = actuator("cable", ActuatorKind::cable, 0.5, 1, least_norm);
-  for (const double x : {5.0, 25.0, 45.0, 60.0}) cable.points.push_back({Vec3(x, 9, 22), {}});
+  ActuatorSpec skin = actuator("skin", DeaSpec{.region = "skin"}, 0.5, 2, least_norm);
+  ActuatorSpec air = actuator("air", PneumaticSpec{.region = "chamber"}, 0.5, 3, least_norm);
+  ActuatorSpec cable = actuator("cable", CableSpec{}, 0.5, 1, least_norm);
+  for (const double x : {5.0, 25.0, 45.0, 60.0}) cable.as<CableSpec>()->points.push_back({Vec3(x, 9, 22), {}});
   spec.actuators = {skin, air, cable};
   return spec;
 }
@@ -64,8 +62,7 @@ inline RobotSpec finger_robot(bool least_norm, double shape_ratio = 1) {
   add_volume_region(mesh, "floor", [](const Vec3& p) { return p.z() < 4; });
   RobotSpec spec = block_robot(std::move(mesh));
   spec.materials[0].shape_ratio = shape_ratio;
-  ActuatorSpec air = actuator("air", ActuatorKind::pneumatic, 0.5, 4, least_norm);
-  air.region = "chamber";
+  ActuatorSpec air = actuator("air", PneumaticSpec{.region = "chamber"}, 0.5, 4, least_norm);
   spec.actuators = {air};
   return spec;
 }

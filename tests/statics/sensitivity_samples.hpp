@@ -116,8 +116,7 @@ inline RobotSpec dea_strip() {
   Mesh mesh = block_mesh({12, 2, 2}, {40, 6, 2}, Split::prisms);
   add_volume_region(mesh, "layer", [](const Vec3& p) { return p.z() > 1; });
   RobotSpec spec = physical_robot(std::move(mesh));
-  ActuatorSpec skin = actuator("skin", ActuatorKind::dea, 0.3, 3, true);
-  skin.region = "layer";
+  ActuatorSpec skin = actuator("skin", DeaSpec{.region = "layer"}, 0.3, 3, true);
   spec.actuators = {skin};
   spec.markers.push_back({"tip", {std::string("x_high"), {}}});
   return spec;

@@ -14,11 +14,9 @@ namespace {
 using namespace testing;
 
 ActuatorSpec growth(const std::string& region, double low, double high, std::optional<Vec3> along = {}) {
-  ActuatorSpec spec = actuator("growth", ActuatorKind::growth, low, high, true);
   GrowthPart part{region};
   if (along) part.direction = DirectionSpec{.uniform = *along};
-  spec.growth = std::make_shared<const GrowthSpec>(GrowthSpec{{part}});
-  return spec;
+  return actuator("growth", GrowthSpec{{part}}, low, high, true);
 }
 
 /// Held at three corners, so that it may change its shape in any way.
@@ -127,9 +125,7 @@ TEST(Growth, MixedAndViscousBodiesSwellWithoutStress) {
   const Vec3 size(12, 8, 6), oblique(1, -2, 0.5);
   RobotSpec spec = swelling_block(block_mesh({3, 2, 2}, size), size);
   spec.actuators = {growth("all", 0.5, 2, oblique)};
-  GrowthSpec keeps = *spec.actuators[0].growth;
-  keeps.parts[0].keeps_volume = true;
-  spec.actuators[0].growth = std::make_shared<const GrowthSpec>(keeps);
+  spec.actuators[0].as<GrowthSpec>()->parts[0].keeps_volume = true;
   for (const bool quadratic : {false, true})
     expect_unstressed(mixed(spec, 0.5, quadratic), 1.3, along(oblique, 1.3, 1 / std::sqrt(1.3)), "mixed");
   spec.materials[0].viscosity = {{2, 5}};
@@ -166,9 +162,8 @@ TEST(Growth, DerivativesOfShapes) {
       warm.name = "warm";
       warm.control = Control::load;
       warm.rest = 20;
-      GrowthSpec own = *warm.growth;
-      own.parts[0].temperature = TemperatureSpec{20, {}, {{0, 10}, {20, 10.1}, {50, 10.6}, {100, 10.2}}};
-      warm.growth = std::make_shared<const GrowthSpec>(own);
+      warm.as<GrowthSpec>()->parts[0].temperature =
+          TemperatureSpec{20, {}, {{0, 10}, {20, 10.1}, {50, 10.6}, {100, 10.2}}};
       spec.actuators.push_back(warm);
       const Model model = compile(spec);
       const Statics statics(model);

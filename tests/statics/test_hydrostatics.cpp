@@ -208,8 +208,7 @@ TEST(Hydrostatics, WhatIsAsHeavyAsTheLiquidDoesNotSag) {
 TEST(Hydrostatics, PressesChambersIn) {
   RobotSpec spec = submerged(hollow_mesh(), 2000);
   spec = mixed(spec, 0.5, true);
-  ActuatorSpec air = actuator("air", ActuatorKind::pneumatic, 0.1, 3, true);
-  air.region = "chamber";
+  ActuatorSpec air = actuator("air", PneumaticSpec{.region = "chamber"}, 0.1, 3, true);
   spec.actuators = {air};
   const Model model = compile(spec);
   EXPECT_EQ(model.tractions.at(0).faces.size(), 6u * 18u);  // of the outside alone

@@ -166,7 +166,7 @@ TEST(LocalGlobal, RigidMotionOfTheSceneMovesTheResult) {
   const auto move = [&](const Vec3& p) { return Vec3(turn * p + shift); };
   RobotSpec moved = spec;
   moved.mesh.vertices = (spec.mesh.vertices * turn.transpose()).rowwise() + shift.transpose();
-  for (PointRef& point : moved.actuators[2].points) point.point = move(std::get<Vec3>(point.point));
+  for (PointRef& point : moved.actuators[2].as<CableSpec>()->points) point.point = move(std::get<Vec3>(point.point));
   const Model here = compile(spec), there = compile(moved);
   const Statics statics_here(here), statics_there(there);
   const Actuation actuation = (Actuation(3) << 0.8, 1.6, 0.85).finished();
@@ -186,7 +186,8 @@ TEST(LocalGlobal, ScalingTheSceneScalesTheResult) {
   for (const double scale : {1e-3, 7.0, 1000.0}) {
     RobotSpec scaled = spec;
     scaled.mesh.vertices *= scale;
-    for (PointRef& point : scaled.actuators[2].points) point.point = Vec3(scale * std::get<Vec3>(point.point));
+    for (PointRef& point : scaled.actuators[2].as<CableSpec>()->points)
+      point.point = Vec3(scale * std::get<Vec3>(point.point));
     const Model there = compile(scaled);
     const Statics statics_there(there);
     StaticsOptions options = to_the_end(6);
@@ -280,8 +281,7 @@ TEST(LocalGlobal, UniformRatiosAreKeptAndLeastNormMeetsTheSum) {
   spec.fixed = {{{VertexList{{0}}, {}}, {true, true, true}},
                 {{VertexList{{3}}, {}}, {false, true, true}},
                 {{VertexList{{12}}, {}}, {false, false, true}}};
-  ActuatorSpec air = testing::actuator("air", ActuatorKind::pneumatic, 0.5, 3, true);
-  air.region = "body";
+  ActuatorSpec air = testing::actuator("air", PneumaticSpec{.region = "body"}, 0.5, 3, true);
   for (const bool least_norm : {true, false}) {
     air.distribution = shared(least_norm);
     spec.actuators = {air};

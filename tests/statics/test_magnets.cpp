@@ -94,15 +94,15 @@ RobotSpec turned(RobotSpec spec, const Mat3& turn) {
   spec.mesh.vertices = (spec.mesh.vertices * turn.transpose()).eval();
   magnetise(spec, turn * spec.materials[0].remanence->uniform, spec.materials[0].remanence->magnetisation);
   for (ActuatorSpec& actuator : spec.actuators) {
-    FieldSource source = *actuator.field->source;
+    auto& field = *actuator.as<FieldSpec>();
+    FieldSource source = *field.source;
     if (auto* uniform = std::get_if<UniformField>(&source.field)) uniform->direction = turn * uniform->direction;
     if (auto* coil = std::get_if<CoilField>(&source.field))
       for (CoilLoop& loop : coil->loops) {
         loop.center = turn * loop.center;
         loop.axis = turn * loop.axis;
       }
-    actuator.field = std::make_shared<const FieldSpec>(
-        FieldSpec{std::make_shared<const FieldSource>(source), actuator.field->command});
+    field.source = std::make_shared<const FieldSource>(source);
   }
   return spec;
 }

@@ -142,8 +142,7 @@ TEST(Material, WeightsAreTheSameWhereAllElementsAreOfOneSize) {
   const auto shape = [](ElementWeights weights) {
     RobotSpec spec = testing::block_robot(testing::block_mesh({6, 3, 3}, {20, 10, 10}, testing::Split::six));
     testing::add_volume_region(spec.mesh, "chamber", [](const Vec3& p) { return (p - Vec3(10, 5, 5)).norm() < 3; });
-    ActuatorSpec air = testing::actuator("air", ActuatorKind::pneumatic, 0.5, 4, true);
-    air.region = "chamber";
+    ActuatorSpec air = testing::actuator("air", PneumaticSpec{.region = "chamber"}, 0.5, 4, true);
     spec.actuators = {air};
     spec.materials[0].shape_ratio = 0.4;
     spec.weights = weights;
@@ -162,7 +161,7 @@ TEST(Material, EnergyGrowsWithTheVolumeAlone) {
     RobotSpec spec = testing::mixed_robot(true, 0.5);
     spec.weights = weights;
     spec.mesh.vertices *= scale;
-    for (PointRef& point : spec.actuators[2].points) std::get<Vec3>(point.point) *= scale;
+    for (PointRef& point : spec.actuators[2].as<CableSpec>()->points) std::get<Vec3>(point.point) *= scale;
     const Model model = compile(spec);
     const target_shape::System system(model);
     target_shape::System::Scratch scratch = system.make_scratch();
@@ -221,8 +220,7 @@ TEST(Material, ChangesOfAChamberAreSharedAlikeByLargeAndSmallElements) {
     RobotSpec spec = testing::block_robot(std::move(mesh));
     spec.weights = weights;
     spec.fixed = {{{"x_low", {}}}, {{"x_low_2", {}}}};
-    ActuatorSpec air = testing::actuator("air", ActuatorKind::pneumatic, 0.5, 4, true);
-    air.region = "chamber";
+    ActuatorSpec air = testing::actuator("air", PneumaticSpec{.region = "chamber"}, 0.5, 4, true);
     spec.actuators = {air};
     const Model model = compile(spec);
     const target_shape::System system(model);

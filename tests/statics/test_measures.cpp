@@ -25,9 +25,9 @@ RobotSpec measuring_robot(bool quadratic) {
   spec.actuators.push_back(chamber("chamber"));
   ActuatorSpec bag = chamber("");
   bag.name = "bag";
-  bag.region.reset();
+  bag.as<PneumaticSpec>()->region.reset();
   spec.voids.push_back(shaped(Box{{10, 20, 0}, {20, 30, 10}}));
-  bag.surface = box_surface({12, 20, 5}, {6, 5, 5});
+  bag.as<PneumaticSpec>()->surface = box_surface({12, 20, 5}, {6, 5, 5});
   spec.actuators.push_back(bag);
   const std::vector<std::vector<PointRef>> paths = {{at(1, 2, 28), at(16, 7, 24), at(29, 3, 22)},
                                                     {mean("x_low"), mean("x_high")},

@@ -136,7 +136,8 @@ const std::vector<Number> numbers_of_finger{
     {"payload", [](RobotSpec& s, double by) { s.forces[0].force.z() += by; }, 0.01},
     {"pressure", [](RobotSpec& s, double by) { s.tractions[0].pressure_kPa += by; }, 0.5},
     {"displacement", [](RobotSpec& s, double by) { s.fixed[0].displacement.z() += by; }, 1},
-    {"cable", [](RobotSpec& s, double by) { std::get<Vec3>(s.actuators[1].points[1].point).z() += by; }, 1}};
+    {"cable",
+     [](RobotSpec& s, double by) { std::get<Vec3>(s.actuators[1].as<CableSpec>()->points[1].point).z() += by; }, 1}};
 
 }  // namespace
 
@@ -168,16 +169,17 @@ TEST(Parameters, OfATendonThatRubs) {
   spec.materials[0].elastic = elastic(Law::neo_hookean, 3, 0.4);
   const ActuatorSpec by_length = cable("tendon", {{0, 3, 7}, {80, 3, 7}});
   spec.actuators = {by_load(by_length)};
-  spec.actuators[0].spacing = 11;
-  spec.actuators[0].friction = 0.2;
-  spec.actuators[0].sheath_friction = 0.1;
-  spec.actuators[0].sheath_turns_degrees = 180;
+  spec.actuators[0].as<CableSpec>()->spacing = 11;
+  spec.actuators[0].as<CableSpec>()->friction = 0.2;
+  spec.actuators[0].as<CableSpec>()->sheath_friction = 0.1;
+  spec.actuators[0].as<CableSpec>()->sheath_turns_degrees = 180;
   const std::vector<Number> numbers{
       {"youngs_modulus", [](RobotSpec& s, double by) { *s.materials[0].elastic->youngs_modulus += by; }, 1},
-      {"friction", [](RobotSpec& s, double by) { s.actuators[0].friction += by; }, 0.2},
-      {"sheath_friction", [](RobotSpec& s, double by) { s.actuators[0].sheath_friction += by; }, 0.1},
+      {"friction", [](RobotSpec& s, double by) { s.actuators[0].as<CableSpec>()->friction += by; }, 0.2},
+      {"sheath_friction", [](RobotSpec& s, double by) { s.actuators[0].as<CableSpec>()->sheath_friction += by; }, 0.1},
       {"factor", [](RobotSpec& s, double by) { s.actuators[0].factor += by; }, 1},
-      {"cable", [](RobotSpec& s, double by) { std::get<Vec3>(s.actuators[0].points[0].point).z() += by; }, 1}};
+      {"cable",
+       [](RobotSpec& s, double by) { std::get<Vec3>(s.actuators[0].as<CableSpec>()->points[0].point).z() += by; }, 1}};
   expect_derivatives(spec, values({3}), numbers);
   expect_gradients(spec, values({3}), {numbers[0], numbers[1]});
   const Model model = compile(spec);
@@ -197,17 +199,16 @@ TEST(Parameters, OfLayersUnderVoltage) {
   spec.materials[0].elastic->jm = 3;
   spec.materials[0].permittivity = 4.7;
   add_volume_region(spec.mesh, "upper", [](const Vec3& p) { return p.z() > 0.5; });
-  ActuatorSpec skin = actuator("skin", ActuatorKind::dea, 0, 20, true);
-  skin.region = "upper";
+  ActuatorSpec skin = actuator("skin", DeaSpec{.region = "upper"}, 0, 20, true);
   skin.control = Control::load;
   skin.rest = 0;
-  skin.prestretch = 1.1;
+  skin.as<DeaSpec>()->prestretch = 1.1;
   spec.actuators = {skin};
   expect_differences_at(spec, values({8}));
   expect_derivatives(
       spec, values({8}),
       {{"permittivity", [](RobotSpec& s, double by) { *s.materials[0].permittivity += by; }, 4},
-       {"prestretch", [](RobotSpec& s, double by) { s.actuators[0].prestretch += by; }, 0.1},
+       {"prestretch", [](RobotSpec& s, double by) { s.actuators[0].as<DeaSpec>()->prestretch += by; }, 0.1},
        {"jm", [](RobotSpec& s, double by) { *s.materials[0].elastic->jm += by; }, 3},
        {"shear_modulus", [](RobotSpec& s, double by) { *s.materials[0].elastic->shear_modulus += by; }, 0.07}});
 }

@@ -217,7 +217,7 @@ TEST(PhysicalCables, InAChannelBendsABeamIntoAnArc) {
     const Statics statics(model);
     return statics.solve(values({tension}), statics.rest());
   };
-  spec.actuators[0].spacing = 2.5;
+  spec.actuators[0].as<CableSpec>()->spacing = 2.5;
   const Model guided = compile(spec);
   const Equilibrium found = solved(guided);
   ASSERT_EQ(found.report.status, Status::converged);
@@ -226,7 +226,7 @@ TEST(PhysicalCables, InAChannelBendsABeamIntoAnArc) {
     if (guided.rest(v, 0) > length - 1e-6)
       across += (guided.rest(v, 2) - side / 2) * found.state.positions.row(v).transpose();
   EXPECT_NEAR(std::atan2(across[0], across[2]) / (curvature * length), 1, 0.01);
-  spec.actuators[0].spacing = 0;
+  spec.actuators[0].as<CableSpec>()->spacing = 0;
   EXPECT_EQ(solved(compile(spec)).report.status, Status::limit);
 }
 

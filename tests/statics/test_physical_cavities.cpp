@@ -15,9 +15,9 @@ using namespace testing;
 
 /// The robot with its chamber void and the surface in its place.
 RobotSpec with_surface(RobotSpec spec, const TriangleSurface& surface) {
-  spec.voids.push_back({*spec.actuators[0].region, {}});
-  spec.actuators[0].region.reset();
-  spec.actuators[0].surface = surface;
+  spec.voids.push_back({*spec.actuators[0].as<PneumaticSpec>()->region, {}});
+  spec.actuators[0].as<PneumaticSpec>()->region.reset();
+  spec.actuators[0].as<PneumaticSpec>()->surface = surface;
   return spec;
 }
 
@@ -130,12 +130,12 @@ TEST(PhysicalCavities, AnEmbeddedSurfaceIsFineEnough) {
     spec.quadratic = quadratic;
     spec.voids = {{Box{{5, 4, 8}, {25, 8, 12}}, {}}};
     spec.actuators = {air("air")};
-    spec.actuators[0].region.reset();
+    spec.actuators[0].as<PneumaticSpec>()->region.reset();
     const TriangleSurface box = box_surface({4, 4, 8}, {22, 4, 4}), fine = cut(box, 0.4);
-    spec.actuators[0].surface = box;
+    spec.actuators[0].as<PneumaticSpec>()->surface = box;
     EXPECT_LT(3 * compile(spec).actuators[0].as<ChamberDrive>()->surface.size(), fine.triangles.size());
     const double pressure = pressure_at(spec, 1.3);
-    spec.actuators[0].surface = fine;
+    spec.actuators[0].as<PneumaticSpec>()->surface = fine;
     EXPECT_NEAR(pressure_at(spec, 1.3), pressure, 2e-3 * pressure) << "order " << (quadratic ? 2 : 1);
   }
 }

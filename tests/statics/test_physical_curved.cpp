@@ -62,7 +62,7 @@ double bent_rod(int corners, int layers, bool curved) {
 constexpr double blown_MPa = 1e-5, inner_mm = 7, outer_mm = 10, round_nu = 0.3;
 
 ActuatorSpec round_air() {
-  ActuatorSpec air = actuator("air", ActuatorKind::pneumatic, 0, 1, true);
+  ActuatorSpec air = actuator("air", PneumaticSpec{}, 0, 1, true);
   air.control = Control::load;
   air.rest = 0;
   return air;
@@ -99,7 +99,7 @@ double blown_tube(int corners, bool curved) {
       mesh.vertices.row(v).tail<2>() *= 2 * inner_mm / outer_mm;
   RobotSpec spec = round_robot(std::move(mesh), round_nu, curved);
   spec.actuators = {round_air()};
-  spec.actuators[0].region = "chamber";
+  spec.actuators[0].as<PneumaticSpec>()->region = "chamber";
   spec.fixed.push_back({{std::string("wall"), {}}, {true, false, false}});
   hold_vertex(spec, 1, {false, true, true});
   hold_vertex(spec, 1 + corners / 2, {false, false, true});

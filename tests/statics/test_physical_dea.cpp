@@ -13,8 +13,7 @@ RobotSpec layered_plate(const std::array<int, 3>& cells, const Vec3& size, doubl
   Mesh mesh = block_mesh(cells, size, Split::prisms);
   add_volume_region(mesh, "layer", [&](const Vec3& p) { return p.z() > layer_above; });
   RobotSpec spec = physical_robot(std::move(mesh));
-  ActuatorSpec skin = actuator("skin", ActuatorKind::dea, 0.3, 3, true);
-  skin.region = "layer";
+  ActuatorSpec skin = actuator("skin", DeaSpec{.region = "layer"}, 0.3, 3, true);
   spec.actuators = {skin};
   return spec;
 }

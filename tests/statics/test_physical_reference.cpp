@@ -52,8 +52,7 @@ TEST_P(FingerReference, TipAndPressureAtEqualVolume) {
   RobotSpec spec = reference_robot(sweep.mesh, sweep.quadratic);
   spec.materials = {reference_material("body", sweep.law, 12, 0.4)};
   spec.fixed.push_back({{std::string("fixed"), {}}, {true, true, true}});
-  ActuatorSpec air = actuator("air", ActuatorKind::pneumatic, 0.5, 3, true);
-  air.region = "chamber";
+  ActuatorSpec air = actuator("air", PneumaticSpec{.region = "chamber"}, 0.5, 3, true);
   spec.actuators = {air};
   const Model model = compile(spec);
   const Statics statics(model);
@@ -94,9 +93,9 @@ TEST_P(CableReference, TipAndTensionAtEqualLength) {
   RobotSpec spec = reference_robot(sweep.mesh, sweep.quadratic);
   spec.materials = {reference_material("body", sweep.law, 12, 0.4)};
   spec.fixed.push_back({{std::string("fixed"), {}}, {true, true, true}});
-  ActuatorSpec cable = actuator("cable", ActuatorKind::cable, 0.3, 1, true);
-  cable.points.push_back({std::string("cable_pt0"), {}});
-  for (int i = 1; i <= 7; ++i) cable.points.push_back({"eyelet" + std::to_string(i), {}});
+  ActuatorSpec cable = actuator("cable", CableSpec{}, 0.3, 1, true);
+  cable.as<CableSpec>()->points.push_back({std::string("cable_pt0"), {}});
+  for (int i = 1; i <= 7; ++i) cable.as<CableSpec>()->points.push_back({"eyelet" + std::to_string(i), {}});
   spec.actuators = {cable};
   const Model model = compile(spec);
   ASSERT_NEAR(model.actuators[0].rest_measure, robot_length, 1e-6);

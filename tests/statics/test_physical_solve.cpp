@@ -60,7 +60,8 @@ TEST(PhysicalSolve, InvariantUnderRigidMotion) {
   const Vec3 shift(100, -50, 20);
   turned.mesh.vertices = (spec.mesh.vertices * r.transpose()).rowwise() + shift.transpose();
   turned.gravity = r * spec.gravity;
-  for (PointRef& point : turned.actuators[1].points) point.point = Vec3(r * std::get<Vec3>(point.point) + shift);
+  for (PointRef& point : turned.actuators[1].as<CableSpec>()->points)
+    point.point = Vec3(r * std::get<Vec3>(point.point) + shift);
   const Model model = compile(spec), turned_model = compile(turned);
   const Statics statics(model), turned_statics(turned_model);
   const Equilibrium a = settled(statics, values({1.6, 0.97})), b = settled(turned_statics, values({1.6, 0.97}));

@@ -18,8 +18,7 @@ RobotSpec reference_finger() {
   RobotSpec spec = reference_robot("finger_15k", false);
   spec.materials = {reference_material("body", ReferenceLaw::lin, 12, 0.4)};
   spec.fixed.push_back({{std::string("fixed"), {}}, {true, true, true}});
-  ActuatorSpec air = actuator("air", ActuatorKind::pneumatic, 1, 3, true);
-  air.region = "chamber";
+  ActuatorSpec air = actuator("air", PneumaticSpec{.region = "chamber"}, 1, 3, true);
   spec.actuators = {air};
   return spec;
 }

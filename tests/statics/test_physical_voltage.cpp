@@ -28,8 +28,7 @@ ElasticSpec neo_hookean(double nu) {
 }
 
 ActuatorSpec electrode(const std::string& name, const std::string& region, double high = 20) {
-  ActuatorSpec skin = actuator(name, ActuatorKind::dea, 0, high, true);
-  skin.region = region;
+  ActuatorSpec skin = actuator(name, DeaSpec{.region = region}, 0, high, true);
   skin.control = Control::load;
   skin.rest = 0;
   return skin;
@@ -214,13 +213,13 @@ TEST(PhysicalVoltage, SharesOfTheVoltage) {
     shares.values.push_back(0.5);
     shares.origins.push_back({});
   }
-  spec.actuators[0].shares = shares;
+  spec.actuators[0].as<DeaSpec>()->shares = shares;
   const Model halved = compile(spec);
   const Model model = compile(free_sheet(neo_hookean(0.4)));
   const Points expected = settled(Statics(model), values({6})).state.positions;
   EXPECT_LT(distance(settled(Statics(halved), values({12})).state.positions, expected), 1e-8);
 
-  for (double& share : spec.actuators[0].shares->values) share = 0;
+  for (double& share : spec.actuators[0].as<DeaSpec>()->shares->values) share = 0;
   const Model passive = compile(spec);
   EXPECT_LT(distance(settled(Statics(passive), values({20})).state.positions, passive.rest), 1e-12);
 }
@@ -230,7 +229,7 @@ TEST(PhysicalVoltage, SharesOfTheVoltage) {
 TEST(PhysicalVoltage, APrestretchedLayerIsDrawnStretched) {
   const double ratio = 0.7;
   RobotSpec drawn = free_sheet(gent(40, 0.4)), stretched = drawn;
-  stretched.actuators[0].prestretch = ratio;
+  stretched.actuators[0].as<DeaSpec>()->prestretch = ratio;
   drawn.mesh.vertices *= Vec3(std::sqrt(ratio), std::sqrt(ratio), 1 / ratio).asDiagonal();
   const Model model = compile(stretched), unstretched = compile(drawn);
   const Statics of_stretched(model), of_drawn(unstretched);

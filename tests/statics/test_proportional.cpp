@@ -121,9 +121,8 @@ TEST(Proportional, IsAsTheOthersWhereAllElementsAreAlike) {
                   {{VertexList{{grid_vertex(cells, 0, 0, 0)}}, {}}, {true, true, true}},
                   {{VertexList{{grid_vertex(cells, 2, 0, 0)}}, {}}, {false, true, true}},
                   {{VertexList{{grid_vertex(cells, 0, 2, 0)}}, {}}, {false, false, true}}};
-    ActuatorSpec air = actuator("air", ActuatorKind::pneumatic, 0.5, 3, true);
+    ActuatorSpec air = actuator("air", PneumaticSpec{.region = "chamber"}, 0.5, 3, true);
     air.distribution = distribution;
-    air.region = "chamber";
     spec.actuators = {air};
     const Model model = compile(spec);
     const Equilibrium found = settled(Statics(model), values({2}));

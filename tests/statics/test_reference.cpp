@@ -39,8 +39,8 @@ TEST(Reference, ThreeChamberFixedPoint) {
   body.region = "all";
   spec.materials = {body};
   for (int chamber = 1; chamber <= 3; ++chamber) {
-    ActuatorSpec air = testing::actuator("air" + std::to_string(chamber), ActuatorKind::pneumatic, 0.5, 3, false);
-    air.region = "chamber" + std::to_string(chamber);
+    ActuatorSpec air = testing::actuator("air" + std::to_string(chamber),
+                                         PneumaticSpec{.region = "chamber" + std::to_string(chamber)}, 0.5, 3, false);
     spec.actuators.push_back(air);
   }
   Index far_along_y = 0, across = 0;

@@ -106,7 +106,7 @@ TEST(Rigid, RegionHeldAlongAnAxisMovesInThePlane) {
   ground.displacement = {0, 0, 1.5};
   spec.fixed.push_back(ground);
   // off the middle, so that the end turns about z
-  spec.actuators[2].points = {{Vec3(5, 2, 22), {}}, {Vec3(25, 2, 22), {}}, {Vec3(45, 2, 22), {}}};
+  spec.actuators[2].as<CableSpec>()->points = {{Vec3(5, 2, 22), {}}, {Vec3(25, 2, 22), {}}, {Vec3(45, 2, 22), {}}};
   const Model model = compile(spec);
   const Statics statics(model);
   const Equilibrium found = statics.solve((Actuation(3) << 1.0, 1.2, 0.7).finished(), statics.rest());

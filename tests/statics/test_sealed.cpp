@@ -17,7 +17,7 @@ constexpr double atmosphere = 101.325;  // [kPa]
 
 ActuatorSpec sealed(ActuatorSpec spec, const FillingSpec& filling = {}, double low = 0.01, double high = 1000) {
   spec.control = Control::filling;
-  spec.filling = filling;
+  spec.as<PneumaticSpec>()->filling = filling;
   spec.low = low;
   spec.high = filling.syringe_mL ? std::min(high, *filling.syringe_mL) : high;
   return spec;
@@ -70,8 +70,7 @@ RobotSpec two_balloons(const RobotSpec& balloon) {
   Placement beside;
   beside.translation = {60, 0, 0};
   RobotSpec pair = joined({{"a", alone, {}, {}}, {"b", alone, beside, {}}}, {"pair", {}, {}, {}});
-  ActuatorSpec gas = sealed(actuator("gas", ActuatorKind::pneumatic, 0, 1, true));
-  gas.connected = {"a.hollow", "b.hollow"};
+  ActuatorSpec gas = sealed(actuator("gas", PneumaticSpec{.connected = {"a.hollow", "b.hollow"}}, 0, 1, true));
   pair.actuators = {gas};
   return pair;
 }
@@ -171,10 +170,10 @@ TEST(Sealed, DerivativesByNumbers) {
   RobotSpec spec = with_sealed(bending_finger(), syringe(3, 0.4, 1.3), -1);
   spec.actuators[0].high = 2.5;
   const std::vector<std::pair<double, std::function<double&(RobotSpec&)>>> numbers{
-      {0.4, [](RobotSpec& s) -> double& { return s.actuators[0].filling->dead_mL; }},
-      {3, [](RobotSpec& s) -> double& { return *s.actuators[0].filling->syringe_mL; }},
-      {1.3, [](RobotSpec& s) -> double& { return s.actuators[0].filling->exponent; }},
-      {100, [](RobotSpec& s) -> double& { return s.actuators[0].filling->atmosphere_kPa; }},
+      {0.4, [](RobotSpec& s) -> double& { return s.actuators[0].as<PneumaticSpec>()->filling->dead_mL; }},
+      {3, [](RobotSpec& s) -> double& { return *s.actuators[0].as<PneumaticSpec>()->filling->syringe_mL; }},
+      {1.3, [](RobotSpec& s) -> double& { return s.actuators[0].as<PneumaticSpec>()->filling->exponent; }},
+      {100, [](RobotSpec& s) -> double& { return s.actuators[0].as<PneumaticSpec>()->filling->atmosphere_kPa; }},
       {1, [](RobotSpec& s) -> double& { return *s.materials[0].elastic->youngs_modulus; }}};
   const Model model = compile(spec);
   const Statics statics(model);
@@ -252,7 +251,7 @@ TEST(Sealed, PressedByAPlate) {
 TEST(Sealed, BesideATendonThatRubs) {
   RobotSpec spec = bending_finger();
   spec.actuators.push_back(by_load(cable("tendon", {{0, 6, 15}, {15, 6, 15}, {30, 6, 15}, {45, 6, 15}, {60, 6, 15}})));
-  spec.actuators[1].friction = 0.4;
+  spec.actuators[1].as<CableSpec>()->friction = 0.4;
   const Model model = compile(with_sealed(spec)), enclosure = compile(spec);
   const Equilibrium found = settled(Statics(model), values({1.8, 0.5}));
   EXPECT_LE(found.report.iterations, 60);

@@ -123,8 +123,7 @@ TEST(SelfOverlap, SeesTheWallsOfAChamberButNotItsAir) {
     return p.x() > 5 && p.x() < 45 && p.y() > 4 && p.y() < 16 && p.z() > 4 && p.z() < 8;
   });
   RobotSpec spec = block_robot(std::move(mesh));
-  spec.actuators = {actuator("air", ActuatorKind::pneumatic, 0.5, 2, true)};
-  spec.actuators[0].region = "chamber";
+  spec.actuators = {actuator("air", PneumaticSpec{.region = "chamber"}, 0.5, 2, true)};
   const Model model = compile(spec);
   const OverlapSearch search(model);
   Points shape = model.rest;

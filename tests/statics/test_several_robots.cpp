@@ -94,13 +94,14 @@ TEST(SeveralRobots, SupportsAlongSomeAxesAndPulled) {
 /// Chambers that are the empty space of their robot's body.
 TEST(SeveralRobots, ChambersThatAreEmptySpaces) {
   RobotSpec spec = robot_with_bags({"bag"});
-  spec.actuators[0].surface.reset();
+  spec.actuators[0].as<PneumaticSpec>()->surface.reset();
   expect_alike(spec, three_places(), {values({1.8}), values({2}), values({1.5})});
 }
 
 TEST(SeveralRobots, ChambersOfSurfaces) {
   RobotSpec spec = robot_with_bags({"bag"});
-  spec.actuators[0].surface = box_surface({13.9, 6.1, 12.2}, {23.7, 5.8, 5.6});  // no vertex on a face of elements
+  spec.actuators[0].as<PneumaticSpec>()->surface =
+      box_surface({13.9, 6.1, 12.2}, {23.7, 5.8, 5.6});  // no vertex on a face of elements
   // how finely a surface is cut where it passes through elements goes by the size of all
   expect_alike(spec, three_places(), {values({1.8}), values({2}), values({1.5})}, 1e-4);
 }

@@ -170,10 +170,10 @@ TEST(SheetContact, PillowsThatPressEachOtherAreFlatAsOnAPlate) {
     spec.fixed.push_back({one_vertex(made.rim[0] + shift), {false, true, false}});
   }
   spec.actuators[0].name = "lower";
-  spec.actuators[0].wall = "lower";
+  spec.actuators[0].as<PneumaticSpec>()->wall = "lower";
   spec.actuators.push_back(spec.actuators[0]);
   spec.actuators[1].name = "upper";
-  spec.actuators[1].wall = "upper";
+  spec.actuators[1].as<PneumaticSpec>()->wall = "upper";
   spec.contact.emplace();
   spec.contact->distance_mm = 0.1;
   const Model model = compile(spec);
@@ -233,7 +233,7 @@ TEST(SheetContact, AFilmOnABodyLiftsWhatLiesOnIt) {
   spec.fixed = {{{Selector(Box{{-1, -1, -1}, {81, 81, 1e-6}}), {}}, {true, true, true}}};
   ActuatorSpec air;
   air.name = "air";
-  air.wall = "pouch";
+  air.drive = PneumaticSpec{.wall = "pouch"};
   air.control = Control::load;
   air.low = air.rest = 0;
   air.high = 10;

@@ -94,7 +94,7 @@ RobotSpec balloon(const Ball& sphere, const SheetRubber& rubber, double thicknes
   spec.fixed = {{one(5), {true, true, true}}, {one(2), {true, true, false}}, {one(0), {false, true, false}}};
   ActuatorSpec air;
   air.name = "air";
-  air.wall = "all";
+  air.drive = PneumaticSpec{.wall = "all"};
   air.low = 1;
   air.high = 30;
   spec.actuators.push_back(air);

@@ -229,8 +229,7 @@ TEST(TargetNewton, FreeChamberAlone) {
   spec.fixed = {{{VertexList{{0}}, {}}, {true, true, true}},
                 {{VertexList{{3}}, {}}, {false, true, true}},
                 {{VertexList{{12}}, {}}, {false, false, true}}};
-  ActuatorSpec air = testing::actuator("air", ActuatorKind::pneumatic, 0.5, 3, true);
-  air.region = "body";
+  ActuatorSpec air = testing::actuator("air", PneumaticSpec{.region = "body"}, 0.5, 3, true);
   for (const bool least_norm : {true, false}) {
     air.distribution = testing::shared(least_norm);
     spec.actuators = {air};

@@ -35,11 +35,10 @@ RobotSpec charged_sheet() {
   RobotSpec spec = physical_robot(block_mesh({4, 3, 1}, {8, 6, 0.5}, Split::prisms));
   spec.materials[0].elastic = elastic(Law::neo_hookean, 0.2, 0.45);
   spec.materials[0].permittivity = 4.7;
-  ActuatorSpec skin = actuator("skin", ActuatorKind::dea, 0, 20, true);
-  skin.region = "all";
+  ActuatorSpec skin = actuator("skin", DeaSpec{.region = "all"}, 0, 20, true);
   skin.control = Control::load;
   skin.rest = 0;
-  skin.prestretch = 1.1;
+  skin.as<DeaSpec>()->prestretch = 1.1;
   spec.actuators = {skin};
   return spec;
 }
@@ -130,12 +129,10 @@ RobotSpec growing_robot(Split split, bool quadratic) {
   warm.temperature = TemperatureSpec{20, 3e-3, {}};
   along.direction = DirectionSpec{.uniform = {1, 2, -1}};
   along.keeps_volume = true;
-  ActuatorSpec first = actuator("warm", ActuatorKind::growth, 0, 100, true);
+  ActuatorSpec first = actuator("warm", GrowthSpec{{warm}}, 0, 100, true);
   first.control = Control::load;
   first.rest = 20;
-  first.growth = std::make_shared<const GrowthSpec>(GrowthSpec{{warm}});
-  ActuatorSpec second = actuator("along", ActuatorKind::growth, 0.7, 1.4, true);
-  second.growth = std::make_shared<const GrowthSpec>(GrowthSpec{{along}});
+  const ActuatorSpec second = actuator("along", GrowthSpec{{along}}, 0.7, 1.4, true);
   spec.actuators = {first, second};
   return spec;
 }
@@ -158,8 +155,7 @@ RobotSpec submerged_open(Split split, bool quadratic, double level) {
   add_volume_region(spec.mesh, "chamber", [](const Vec3& p) {
     return p.x() < 10 && std::abs(p.y() - 4.5) < 1.5 && std::abs(p.z() - 4.5) < 1.5;
   });
-  ActuatorSpec air = actuator("air", ActuatorKind::pneumatic, 0.5, 2, true);
-  air.region = "chamber";
+  ActuatorSpec air = actuator("air", PneumaticSpec{.region = "chamber"}, 0.5, 2, true);
   spec.actuators = {air};
   spec.fixed[0].rotation = RotationSpec{{0, 1, 0}, 0, Vec3(0, 0, 0)};
   return spec;

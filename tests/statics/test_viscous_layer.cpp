@@ -32,8 +32,7 @@ RobotSpec acrylic_sheet() {
   spec.fixed = {{{VertexList{{0}}, {}}, {true, true, true}},
                 {{VertexList{{grid_vertex(cells, 2, 0, 0)}}, {}}, {false, true, true}},
                 {{VertexList{{grid_vertex(cells, 0, 2, 0)}}, {}}, {false, false, true}}};
-  ActuatorSpec skin = actuator("skin", ActuatorKind::dea, 0, 10, true);
-  skin.region = "all";
+  ActuatorSpec skin = actuator("skin", DeaSpec{.region = "all"}, 0, 10, true);
   skin.control = Control::load;
   skin.rest = 0;
   spec.actuators = {skin};

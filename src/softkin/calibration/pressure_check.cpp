@@ -23,12 +23,13 @@ void prepare(RobotSpec& spec, std::size_t chamber, double highest) {
   spec.formulation = Formulation::physical;
   for (std::size_t a = 0; a < spec.actuators.size(); ++a) {
     ActuatorSpec& each = spec.actuators[a];
-    if (each.kind != ActuatorKind::pneumatic) continue;
+    auto* open = each.as<PneumaticSpec>();
+    if (open == nullptr) continue;
+    open->filling.reset();
     each.curve.reset();
     each.branch = Branch::loading;
     const bool tested = a == chamber;
     each.control = tested ? Control::ratio : Control::load;
-    each.filling.reset();
     each.low = tested ? 1 : 0;
     each.high = tested ? highest : 0;
     each.rest = tested ? 1 : 0;
@@ -91,7 +92,7 @@ std::size_t tested_chamber(const RobotSpec& spec, const std::string& asked) {
   std::vector<std::string> names;
   std::size_t chamber = 0;
   for (std::size_t a = 0; a < spec.actuators.size(); ++a) {
-    if (spec.actuators[a].kind != ActuatorKind::pneumatic) continue;
+    if (!spec.actuators[a].is<PneumaticSpec>()) continue;
     names.push_back(spec.actuators[a].name);
     if (names.back() == asked || asked.empty()) chamber = a;
   }

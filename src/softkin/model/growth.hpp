@@ -2,30 +2,9 @@
 
 #include <array>
 #include <optional>
-#include <softkin/model/direction.hpp>
 #include <softkin/model/model.hpp>
 
 namespace softkin {
-
-/// How a growth follows a temperature: by a coefficient, or by a table of stretches.
-struct TemperatureSpec {
-  double reference_C = 20;                     // where nothing has grown
-  std::optional<double> expansion_per_K;       // linear: stretch = 1 + this times the difference
-  std::vector<std::array<double, 2>> table{};  // instead: temperature [degC], ascending, and length [any unit], > 0
-};
-
-/// Elements that grow by one law.
-struct GrowthPart {
-  std::string region;                            // of volume: its elements
-  std::optional<DirectionSpec> direction{};      // along which it stretches; none: the same in all directions
-  bool keeps_volume = false;                     // with a direction: as much narrower as it is longer
-  std::optional<TemperatureSpec> temperature{};  // commanded; none: the stretch is
-};
-
-/// Residual strain that is commanded: swelling, thermal expansion, growth, shape memory.
-struct GrowthSpec {
-  std::vector<GrowthPart> parts;  // at least one; one command for all, a stretch or a temperature
-};
 
 /// Stretch by temperature.
 class GrowthCurve {

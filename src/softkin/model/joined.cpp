@@ -224,13 +224,6 @@ class Joiner {
     return std::make_shared<const RemanenceSpec>(std::move(remanence));
   }
 
-  [[nodiscard]] std::shared_ptr<const GrowthSpec> full(GrowthSpec growth) const {
-    for (GrowthPart& part : growth.parts) {
-      part.region = full(part.region);
-      if (part.direction) part.direction = turned(*part.direction);
-    }
-    return std::make_shared<const GrowthSpec>(std::move(growth));
-  }
   [[nodiscard]] DirectionSpec turned(DirectionSpec direction) const {
     for (Vec3* along : {&direction.uniform, &direction.axis}) *along = placed_.place.rotation * *along;
     direction.center = placed_.place(direction.center);
@@ -274,23 +267,38 @@ class Joiner {
 
   void add_actuators() {
     for (ActuatorSpec& actuator : robot_.actuators) {
-      if (actuator.kind == ActuatorKind::magnetic)
+      if (actuator.is<FieldSpec>())
         throw InvalidInput(actuator.origin, "a robot among several has no magnetic field of its own: give it in " +
                                                 all_.name + ", which joins the robots");
+      std::visit([this](auto& drive) { this->fill(drive); }, actuator.drive);
       actuator.name = placed_.name + "." + actuator.name;
       actuator.robot = placed_.name;
-      for (auto* region : {&actuator.region, &actuator.wall})
-        if (*region) *region = full(**region);
-      for (std::string& region : actuator.connected) region = full(region);
-      if (actuator.surface) place(actuator.surface->vertices);
-      if (actuator.shares)
-        for (Index& prism : actuator.shares->prisms) prism += static_cast<Index>(all_.mesh.prisms.size());
-      if (actuator.growth) actuator.growth = full(*actuator.growth);
-      for (auto* points : {&actuator.points, &actuator.apexes})
-        for (PointRef& point : *points) point = full(point);
       all_.actuators.push_back(std::move(actuator));
     }
   }
+
+  void fill(PneumaticSpec& chamber) const {
+    for (auto* region : {&chamber.region, &chamber.wall})
+      if (*region) *region = full(**region);
+    for (std::string& region : chamber.connected) region = full(region);
+    if (chamber.surface) place(chamber.surface->vertices);
+  }
+  void fill(CableSpec& cable) const {
+    for (auto* points : {&cable.points, &cable.apexes})
+      for (PointRef& point : *points) point = full(point);
+  }
+  void fill(DeaSpec& dea) const {
+    dea.region = full(dea.region);
+    if (dea.shares)
+      for (Index& prism : dea.shares->prisms) prism += static_cast<Index>(all_.mesh.prisms.size());
+  }
+  void fill(GrowthSpec& growth) const {
+    for (GrowthPart& part : growth.parts) {
+      part.region = full(part.region);
+      if (part.direction) part.direction = turned(*part.direction);
+    }
+  }
+  static void fill(FieldSpec&) {}  // refused
 
   void add_points() {
     for (const ForceSpec& force : robot_.forces)

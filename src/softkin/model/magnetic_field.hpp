@@ -79,18 +79,11 @@ struct FieldSource {
   std::variant<UniformField, CoilField, GridField, DipoleField> field;  // what it is in space
 };
 
-/// What an actuator of kind magnetic commands. Actuators that share a source command the same one.
-struct FieldSpec {
-  std::shared_ptr<const FieldSource> source;          // which may be that of several actuators
-  FieldCommand command = FieldCommand::flux_density;  // what of it is commanded
-};
-
-/// What is magnetic in a compiled robot, and the fields that act on it. The `other` of an Actuator of kind magnetic is
-/// a place among the sources, its `axis` a FieldCommand.
+/// What is magnetic in a compiled robot, and the fields that act on it.
 struct Magnetism {
   std::vector<Vec3> remanence;               // of every tetrahedron, then prism, of the model [mT]
   std::vector<Magnetisation> magnetisation;  // the same
-  std::vector<FieldSource> sources;          // by Actuator::other
+  std::vector<FieldSource> sources;          // by MagneticDrive::source
 };
 
 }  // namespace softkin

@@ -4,7 +4,7 @@
 #include <optional>
 #include <softkin/core/elastic_law.hpp>
 #include <softkin/core/error.hpp>
-#include <softkin/model/actuator_curve.hpp>
+#include <softkin/model/actuator_spec.hpp>
 #include <softkin/model/contact_spec.hpp>
 #include <softkin/model/mesh/curve_spec.hpp>
 #include <softkin/model/mesh/mesh.hpp>
@@ -13,39 +13,10 @@
 
 namespace softkin {
 
-struct FieldSpec;      // magnetic_field.hpp
-struct RemanenceSpec;  // the same
-struct GrowthSpec;     // growth.hpp
+struct RemanenceSpec;  // magnetic_field.hpp
 struct FamiliesSpec;   // families.hpp
 struct LayerSpec;      // layer.hpp
 struct SensorSpec;     // sensor.hpp
-
-// Selectors choose vertices (inside or on the boundary) and elements (centroid inside); shapes are in mm.
-struct VertexList {
-  std::vector<Index> vertices;  // from 0
-};
-struct ElementList {              // of the mesh
-  std::vector<Index> tetrahedra;  // from 0
-};
-/// What a selector chose of a robot before joined() placed it among others.
-struct Chosen {
-  std::string kind;  // for messages: "box of robot 'left'"
-  Region region;     // what was chosen, in the numbers of the robot's own mesh
-};
-using Selector = std::variant<Box, Sphere, Cylinder, Halfspace, VertexList, ElementList, Chosen>;  // how to choose
-
-/// A region by name, or a shape in its place.
-struct RegionRef {
-  std::variant<std::string, Selector> region;  // its name, or how to choose it
-  Origin origin;                               // of the entry, for messages
-};
-
-/// A point by coordinates [mm], or the mean of a region (volume- or area-weighted) by its name.
-struct PointRef {
-  std::variant<Vec3, std::string> point;  // where it is, or the region's name
-  Origin origin;                          // of the entry, for messages
-  std::string robot{};                    // of several: whose elements carry the coordinates along; empty: the nearest
-};
 
 /// A region that the description adds to those of the mesh.
 struct RegionSpec {
@@ -110,71 +81,6 @@ struct FixedSpec {
   Vec3 displacement{0, 0, 0};  // where it is held, from its place at rest [mm]; 0 along axes that are not held
   std::string name{};          // of the support; empty: its region's, or fixed_N
   std::optional<RotationSpec> rotation{};  // turned about an axis besides; none: not
-};
-
-/// By what an actuator moves the robot.
-enum class ActuatorKind { cable, dea, pneumatic, magnetic, growth };
-
-/// What the user commands: length, area or volume over that at rest [-]; or the load, tension [N] or gauge pressure
-/// [kPa], voltage of a dea [kV], or what a magnetic field is commanded by; or what fills a sealed chamber [mL].
-enum class Control { ratio, load, filling };
-
-/// What is sealed in a chamber as the user describes it.
-struct FillingSpec {
-  bool liquid = false;               // else a gas
-  double exponent = 1;               // gas: n of p V^n = const, > 0
-  double compressibility = 0;        // liquid [1/MPa], >= 0
-  double dead_mL = 0;                // tubes and fittings, >= 0
-  std::optional<double> syringe_mL;  // before it pushes, > 0; then what it has pushed is commanded, else the amount
-  double atmosphere_kPa = 101.325;   // absolute, > 0
-};
-
-/// How a target-shape actuator's elements share what its command asks for, a_i being the ratio of element i, u_i its
-/// measure at rest, and sum a_i u_i = a U, Eqs. (6)-(8). least_norm: the change of the current ratios whose norm is
-/// least; uniform: the same ratio for all; proportional: a_i in proportion to the current ratios.
-enum class Distribution { least_norm, uniform, proportional };
-
-/// A number for some prisms of the mesh.
-struct PrismValues {
-  std::vector<Index> prisms;    // from 0
-  std::vector<double> values;   // of each of them
-  std::vector<Origin> origins;  // of each
-};
-
-/// An actuator as the user describes it, or what is done to a robot by command. What does not apply is empty.
-struct ActuatorSpec {
-  std::string name;                             // for commands, messages and columns of tables
-  ActuatorKind kind = ActuatorKind::pneumatic;  // what it is
-  std::optional<std::string> region;            // dea, pneumatic: the volume region of its elements
-  std::optional<TriangleSurface> surface;       // pneumatic: cavity surface instead of a region [mm]
-  std::optional<std::string> wall;              // pneumatic: region of faces around the cavity, instead of either
-  std::vector<std::string> connected;  // pneumatic, physical: instead of these, two regions or more, of elements or
-                                       // of faces: chambers that share what fills them
-  std::optional<FillingSpec> filling;  // of control filling
-  std::string robot;                   // of several: whose elements, gaps and empty spaces count; empty: all
-  std::vector<PointRef> points;        // cable: at least two, in order
-  std::vector<PointRef> apexes;        // cable: third corner of each gap's triangle; none: found by compile()
-  double spacing = 0;                  // cable: how often it is guided inside the body [mm]; 0: at its points
-  double friction = 0;                 // cable: Coulomb's, where it turns, >= 0; pulled at its first point; physical
-  double sheath_friction = 0, sheath_turns_degrees = 0;  // the same of a sheath before that
-  Control control = Control::ratio;                      // others: physical formulation
-  double low = 0, high = 0;       // range [-]: 0 < low <= high; tension [N], voltage [kV]: 0 <= low;
-                                  // pressure [kPa]: any; filling [mL]: 0 < low, pushed: any
-  double rest = 1;                // value where none is asked for: a dea's prestretch; load control: 0; filling: found
-                                  // by compile(); else 1
-  double factor = 1, offset = 0;  // tension and pressure: of a command, what acts is this times it plus that
-                                  // [N, kPa]; factor > 0
-  double backlash = 0;            // the same: by how much a command falls before what acts does [N, kPa], >= 0
-  double prestretch = 1;          // dea under voltage: area that its layer has without force, over that in the
-                                  // mesh [-], > 0
-  double weight = 5;              // w of Eq. (9), > 0
-  Distribution distribution = Distribution::least_norm;  // of what is commanded over its elements; target-shape
-  std::optional<ActuatorCurve> curve;        // pneumatic and dea under ratio control: ratio by pressure or voltage
-  Branch branch = Branch::loading;           // of the curve, where a command names none
-  std::shared_ptr<const FieldSpec> field;    // magnetic
-  std::shared_ptr<const GrowthSpec> growth;  // of kind growth
-  std::optional<PrismValues> shares;  // dea under voltage: the share of it that each prism has [-]; none: all of it
-  Origin origin;                      // of its entry, for messages
 };
 
 /// With neither of the last two it moves with the element around it, or is the mean of its region.

@@ -4,14 +4,16 @@
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/scene/parts.hpp>
 #include <softkin/io/table/csv.hpp>
+#include <softkin/model/drives.hpp>
+#include <softkin/model/magnetic_field.hpp>
 
 namespace softkin::scene {
 
 namespace {
 
 struct Kind {
-  ActuatorKind kind;
-  const char* name;
+  DriveSpec drive;  // as one begins
+  const DriveTraits& traits;
   Keys controls;  // the ratio, then the load where there is one, then what fills it
   Keys keys;      // beside the common ones
 };
@@ -27,30 +29,35 @@ Keys all_kind_keys() {
   return all;
 }
 
+template <class Compiled>
+Kind kind(DriveSpec drive, Keys keys, const Keys& fillings = {}) {
+  constexpr const DriveTraits& traits = traits_of<Compiled>;
+  Keys controls{traits.measure, traits.load};
+  controls.insert(controls.end(), fillings.begin(), fillings.end());
+  return {std::move(drive), traits, std::move(controls), std::move(keys)};
+}
+
 const std::vector<Kind>& kinds() {
   static const std::vector<Kind> all{
-      {ActuatorKind::pneumatic,
-       "pneumatic",
-       {"volume", "pressure", "gas", "liquid"},
-       {"region", "surface", "connected", "source", "liquid", "curve", "factor", "offset", "backlash"}},
-      {ActuatorKind::cable,
-       "cable",
-       {"length", "tension"},
-       {"points", "apexes", "spacing", "factor", "offset", "backlash", "friction", "sheath"}},
-      {ActuatorKind::dea, "dea", {"area", "voltage"}, {"region", "prestretch", "curve", "voltage_share"}},
-      {ActuatorKind::magnetic, "magnetic", {}, field_keys()},
-      {ActuatorKind::growth, "growth", {}, growth_keys()}};
+      kind<ChamberDrive>(
+          PneumaticSpec{},
+          {"region", "surface", "connected", "source", "liquid", "curve", "factor", "offset", "backlash"},
+          {"gas", "liquid"}),
+      kind<CableDrive>(CableSpec{},
+                       {"points", "apexes", "spacing", "factor", "offset", "backlash", "friction", "sheath"}),
+      kind<DeaDrive>(DeaSpec{}, {"region", "prestretch", "curve", "voltage_share"}),
+      kind<MagneticDrive>(FieldSpec{}, field_keys()), kind<GrowthDrive>(GrowthSpec{}, growth_keys())};
   return all;
 }
 
 const Kind& read_kind(const Map& map) {
   Keys names;
-  for (const Kind& kind : kinds()) names.push_back(kind.name);
+  for (const Kind& kind : kinds()) names.push_back(kind.traits.kind);
   const Kind& kind = kinds()[choice(map.at("kind"), names)];
   for (const std::string& key : all_kind_keys()) {
     const Node::Entry* entry = map.entry(key);
     if (entry && std::find(kind.keys.begin(), kind.keys.end(), key) == kind.keys.end())
-      throw InvalidInput(entry->origin, "key '" + key + "' does not belong to kind '" + kind.name + "'");
+      throw InvalidInput(entry->origin, "key '" + key + "' does not belong to kind '" + kind.traits.kind + "'");
   }
   return kind;
 }
@@ -61,7 +68,7 @@ Control read_control(const Map& map, const Kind& kind, Formulation formulation) 
   const std::string& control = text(*node);
   const auto found = std::find(kind.controls.begin(), kind.controls.end(), control);
   if (found == kind.controls.end())
-    fail(*node, "control of kind '" + std::string(kind.name) + "' must be " +
+    fail(*node, "control of kind '" + std::string(kind.traits.kind) + "' must be " +
                     (kind.controls.size() > 1 ? "one of " : "") + joined(kind.controls) + ", not " + excerpt(control));
   if (found == kind.controls.begin()) return Control::ratio;
   if (formulation != Formulation::physical)
@@ -75,10 +82,11 @@ Control read_control(const Map& map, const Kind& kind, Formulation formulation) 
 double read_low(const Node& node, const ActuatorSpec& actuator) {
   if (actuator.control == Control::ratio) return positive(node);
   const double low = number(node);
-  if (actuator.filling && !actuator.filling->syringe_mL) return positive(node);
-  if (actuator.kind == ActuatorKind::cable && low < 0)
+  if (const auto* chamber = actuator.as<PneumaticSpec>(); chamber && chamber->filling && !chamber->filling->syringe_mL)
+    return positive(node);
+  if (actuator.is<CableSpec>() && low < 0)
     fail(node, node.name + " must not be negative, since a cable only pulls: " + node.text);
-  if (actuator.kind == ActuatorKind::dea && low < 0)
+  if (actuator.is<DeaSpec>() && low < 0)
     fail(node, node.name + " must not be negative, since either sign of a voltage does the same: " + node.text);
   return low;
 }
@@ -124,7 +132,7 @@ FillingSpec read_filling(const Map& map) {
 /// Refuses what belongs to a sealed chamber where there is none.
 void read_filling(const Map& map, ActuatorSpec& actuator) {
   if (actuator.control == Control::filling) {
-    actuator.filling = read_filling(map);
+    actuator.as<PneumaticSpec>()->filling = read_filling(map);
     return;
   }
   for (const char* key : {"source", "liquid"})
@@ -134,9 +142,9 @@ void read_filling(const Map& map, ActuatorSpec& actuator) {
 }
 
 /// A file, a map of file and unit, or a map with the region of the wall's faces.
-void read_surface(const Context& context, const Node& node, ActuatorSpec& actuator) {
+void read_surface(const Context& context, const Node& node, PneumaticSpec& chamber) {
   if (node.kind != Node::Kind::map) {
-    actuator.surface = read_surface_file(context, node, nullptr);
+    chamber.surface = read_surface_file(context, node, nullptr);
     return;
   }
   const Map map(node, {"file", "unit", "region"});
@@ -144,37 +152,37 @@ void read_surface(const Context& context, const Node& node, ActuatorSpec& actuat
   const Node* unit = map.find("unit");
   if (entry.key == "region") {
     if (unit) fail(*unit, "'unit' is that of a file; a region has the mesh's");
-    actuator.wall = text(*entry.value);
+    chamber.wall = text(*entry.value);
   } else {
-    actuator.surface = read_surface_file(context, *entry.value, unit);
+    chamber.surface = read_surface_file(context, *entry.value, unit);
   }
 }
 
 /// None of them: the only empty space in the body.
-void read_chamber(const Context& context, const Map& map, ActuatorSpec& actuator) {
+void read_chamber(const Context& context, const Map& map, PneumaticSpec& chamber) {
   const Node* region = map.find("region");
   const Node* surface = map.find("surface");
   const Node* connected = map.find("connected");
   if ((region || connected) && surface) (void)map.one_of({"region", "surface", "connected"});  // fails, naming both
   if (region && connected) (void)map.one_of({"region", "connected"});
   if (connected) {
-    for (const auto& item : list(*connected)) actuator.connected.push_back(text(*item));
-    if (actuator.connected.size() < 2) fail(*connected, connected->name + " must hold at least 2 regions");
+    for (const auto& item : list(*connected)) chamber.connected.push_back(text(*item));
+    if (chamber.connected.size() < 2) fail(*connected, connected->name + " must hold at least 2 regions");
   }
-  if (region) actuator.region = text(*region);
-  if (surface) read_surface(context, *surface, actuator);
+  if (region) chamber.region = text(*region);
+  if (surface) read_surface(context, *surface, chamber);
 }
 
-void read_cable(const Context& context, const Map& map, ActuatorSpec& actuator) {
+void read_cable(const Context& context, const Map& map, CableSpec& cable) {
   const Node& points = map.at("points");
-  for (const auto& item : list(points)) actuator.points.push_back(read_point(context, *item));
-  if (actuator.points.size() < 2) fail(points, points.name + " must hold at least 2 points");
-  if (const Node* spacing = map.find("spacing")) actuator.spacing = read_positive_length(context, *spacing);
+  for (const auto& item : list(points)) cable.points.push_back(read_point(context, *item));
+  if (cable.points.size() < 2) fail(points, points.name + " must hold at least 2 points");
+  if (const Node* spacing = map.find("spacing")) cable.spacing = read_positive_length(context, *spacing);
   const Node* apexes = map.find("apexes");
   if (!apexes) return;
-  for (const auto& item : list(*apexes)) actuator.apexes.push_back(read_point(context, *item));
-  if (actuator.apexes.empty() || actuator.apexes.size() >= actuator.points.size())
-    fail(*apexes, apexes->name + " must hold 1 to " + std::to_string(actuator.points.size() - 1) +
+  for (const auto& item : list(*apexes)) cable.apexes.push_back(read_point(context, *item));
+  if (cable.apexes.empty() || cable.apexes.size() >= cable.points.size())
+    fail(*apexes, apexes->name + " must hold 1 to " + std::to_string(cable.points.size() - 1) +
                       " points, at most one for each segment of the cable");
 }
 
@@ -191,7 +199,7 @@ void read_curve(const Context& context, const Node& node, ActuatorSpec& actuator
     fail(node, node.name + " turns a pressure into a volume, but what fills the chamber is controlled here: leave " +
                    node.name + " out, or use 'control: volume'");
   if (actuator.control == Control::load) {
-    const bool dea = actuator.kind == ActuatorKind::dea;
+    const bool dea = actuator.is<DeaSpec>();
     const std::string load = dea ? "voltage" : "pressure", ratio = dea ? "area" : "volume";
     fail(node, node.name + " turns a " + load + " into " + (dea ? "an " : "a ") + ratio + ", but the " + load +
                    " itself is controlled here: leave " + node.name + " out, or use 'control: " + ratio + "'");
@@ -200,8 +208,8 @@ void read_curve(const Context& context, const Node& node, ActuatorSpec& actuator
 }
 
 /// A CSV file of the share of the voltage that each prism of the layer has.
-PrismValues read_shares(const Context& context, const Node& node, const ActuatorSpec& actuator) {
-  if (actuator.control == Control::ratio) fail(node, node.name + " belongs to 'control: voltage'");
+PrismValues read_shares(const Context& context, const Node& node, Control control) {
+  if (control == Control::ratio) fail(node, node.name + " belongs to 'control: voltage'");
   return load_file(context, node, [&](const std::filesystem::path& path) {
     const std::string content = context.files.scene(path);
     const CsvTable table = parse_csv(path.string(), content);
@@ -232,16 +240,23 @@ void read_share(const Map& map, ActuatorSpec& actuator) {
 }
 
 /// Where a cable turns inside the robot, and in a sheath before that.
-void read_rubbing(const Map& map, Formulation formulation, ActuatorSpec& actuator) {
+void read_rubbing(const Map& map, Formulation formulation, CableSpec& cable) {
   const Node *friction = map.find("friction"), *sheath = map.find("sheath");
   for (const Node* node : {friction, sheath})
     if (node != nullptr && formulation != Formulation::physical)
       fail(*node, node->name + " belongs to the physical formulation, which knows tensions");
-  if (friction != nullptr) actuator.friction = not_negative(*friction);
+  if (friction != nullptr) cable.friction = not_negative(*friction);
   if (sheath == nullptr) return;
   const Map keys(*sheath, {"turns_degrees", "friction"});
-  actuator.sheath_friction = not_negative(keys.at("friction"));
-  actuator.sheath_turns_degrees = not_negative(keys.at("turns_degrees"));
+  cable.sheath_friction = not_negative(keys.at("friction"));
+  cable.sheath_turns_degrees = not_negative(keys.at("turns_degrees"));
+}
+
+void read_dea(const Context& context, const Map& map, ActuatorSpec& actuator, DeaSpec& dea) {
+  if (const Node* node = map.find("prestretch"))
+    (actuator.control == Control::ratio ? actuator.rest : dea.prestretch) = positive(*node);
+  if (const Node* node = map.find("voltage_share")) dea.shares = read_shares(context, *node, actuator.control);
+  dea.region = text(map.at("region"));
 }
 
 std::vector<ActuatorSpec> read_actuator(const Context& context, Formulation formulation, const Map& map, Names& names) {
@@ -249,9 +264,9 @@ std::vector<ActuatorSpec> read_actuator(const Context& context, Formulation form
   actuator.origin = map.node().origin;
   actuator.name = names.add_label(map.at("name"));
   const Kind& kind = read_kind(map);
-  if (kind.kind == ActuatorKind::magnetic) return read_field(context, map, actuator.name);
-  if (kind.kind == ActuatorKind::growth) return {read_growth(context, map, actuator.name)};
-  actuator.kind = kind.kind;
+  actuator.drive = kind.drive;
+  if (actuator.is<FieldSpec>()) return read_field(context, map, actuator.name);
+  if (actuator.is<GrowthSpec>()) return {read_growth(context, map, actuator.name)};
   actuator.control = read_control(map, kind, formulation);
   if (actuator.control == Control::load) actuator.rest = 0;
   read_filling(map, actuator);
@@ -259,15 +274,12 @@ std::vector<ActuatorSpec> read_actuator(const Context& context, Formulation form
   if (const Node* node = map.find("weight")) actuator.weight = positive(*node);
   if (const Node* node = map.find("distribution"))
     actuator.distribution = static_cast<Distribution>(choice(*node, {"least-norm", "uniform", "proportional"}));
-  if (const Node* node = map.find("prestretch"))
-    (actuator.control == Control::ratio ? actuator.rest : actuator.prestretch) = positive(*node);
-  if (const Node* node = map.find("voltage_share")) actuator.shares = read_shares(context, *node, actuator);
+  if (auto* dea = actuator.as<DeaSpec>()) read_dea(context, map, actuator, *dea);
   read_share(map, actuator);
-  read_rubbing(map, formulation, actuator);
+  if (auto* cable = actuator.as<CableSpec>()) read_rubbing(map, formulation, *cable);
   if (const Node* node = map.find("curve")) read_curve(context, *node, actuator);
-  if (kind.kind == ActuatorKind::pneumatic) read_chamber(context, map, actuator);
-  if (kind.kind == ActuatorKind::cable) read_cable(context, map, actuator);
-  if (kind.kind == ActuatorKind::dea) actuator.region = text(map.at("region"));
+  if (auto* chamber = actuator.as<PneumaticSpec>()) read_chamber(context, map, *chamber);
+  if (auto* cable = actuator.as<CableSpec>()) read_cable(context, map, *cable);
   return {std::move(actuator)};
 }
 

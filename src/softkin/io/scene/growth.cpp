@@ -116,7 +116,6 @@ ActuatorSpec read_growth(const Context& context, const Map& map, const std::stri
   ActuatorSpec actuator;
   actuator.origin = map.node().origin;
   actuator.name = name;
-  actuator.kind = ActuatorKind::growth;
   GrowthSpec growth = read_parts_of(context, map);
   const Node& range = map.at("range");
   const auto& items = list_of(2, range);
@@ -131,7 +130,7 @@ ActuatorSpec read_growth(const Context& context, const Map& map, const std::stri
   }
   if (actuator.low > actuator.high)
     fail(range, range.name + " must be [low, high], but " + items[0]->text + " is above " + items[1]->text);
-  actuator.growth = std::make_shared<const GrowthSpec>(std::move(growth));
+  actuator.drive = std::move(growth);
   return actuator;
 }
 

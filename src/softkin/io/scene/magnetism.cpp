@@ -26,7 +26,6 @@ class Commands {
     ActuatorSpec& actuator = actuators_.emplace_back();
     actuator.origin = node_.origin;
     actuator.name = name_ + suffix;
-    actuator.kind = ActuatorKind::magnetic;
     actuator.control = Control::load;
     actuator.low = range.low;
     actuator.high = range.high;
@@ -36,8 +35,7 @@ class Commands {
 
   [[nodiscard]] std::vector<ActuatorSpec> of(FieldSource source) {
     const auto shared = std::make_shared<const FieldSource>(std::move(source));
-    for (std::size_t i = 0; i < actuators_.size(); ++i)
-      actuators_[i].field = std::make_shared<const FieldSpec>(FieldSpec{shared, commands_[i]});
+    for (std::size_t i = 0; i < actuators_.size(); ++i) actuators_[i].drive = FieldSpec{shared, commands_[i]};
     return std::move(actuators_);
   }
 

@@ -170,7 +170,8 @@ FootSpec read_foot(const Node& node) {
 
 void set_atmosphere(double kPa, RobotSpec& spec) {
   for (ActuatorSpec& actuator : spec.actuators)
-    if (actuator.filling) actuator.filling->atmosphere_kPa = kPa;
+    if (auto* chamber = actuator.as<PneumaticSpec>(); chamber && chamber->filling)
+      chamber->filling->atmosphere_kPa = kPa;
 }
 
 void read_parts(const Context& context, const Map& map, RobotSpec& spec) {

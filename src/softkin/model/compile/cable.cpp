@@ -16,11 +16,11 @@ std::string segment_text(std::size_t segment) {
 }
 
 /// Where the cable is guided on the straight way to `end` [mm]: at most `spacing` apart, but nowhere outside the body.
-void add_guides(Compilation& c, const ActuatorSpec& spec, const Vec3& end, CableDrive& cable) {
+void add_guides(Compilation& c, const ActuatorSpec& spec, const CableSpec& given, const Vec3& end, CableDrive& cable) {
   const Vec3 start = cable.points.back().at(c.model.rest);
-  const double pieces = std::ceil((end - start).norm() / spec.spacing * (1 - 1e-12));
+  const double pieces = std::ceil((end - start).norm() / given.spacing * (1 - 1e-12));
   if (pieces > most_guides)
-    refuse(spec, "would be guided at " + number(pieces) + " places by its spacing of " + number(spec.spacing) +
+    refuse(spec, "would be guided at " + number(pieces) + " places by its spacing of " + number(given.spacing) +
                      " mm: the most are " + number(most_guides));
   for (double i = 1; i < pieces; ++i) {
     EmbeddedPoint guide = body_of(c, spec.robot).embedder.embed(start + i / pieces * (end - start));
@@ -29,16 +29,16 @@ void add_guides(Compilation& c, const ActuatorSpec& spec, const Vec3& end, Cable
 }
 
 /// The cable's points at rest, those by which its spacing guides it between the given ones among them.
-std::vector<Vec3> embed_points(Compilation& c, const ActuatorSpec& spec, CableDrive& cable) {
-  if (spec.points.size() < 2) refuse(spec, "is a cable and needs at least two points");
-  for (std::size_t i = 0; i < spec.points.size(); ++i) {
+std::vector<Vec3> embed_points(Compilation& c, const ActuatorSpec& spec, const CableSpec& given, CableDrive& cable) {
+  if (given.points.size() < 2) refuse(spec, "is a cable and needs at least two points");
+  for (std::size_t i = 0; i < given.points.size(); ++i) {
     EmbeddedPoint point =
-        embed_point(c, spec.points[i], "points[" + std::to_string(i) + "] of actuator '" + spec.name + "'");
+        embed_point(c, given.points[i], "points[" + std::to_string(i) + "] of actuator '" + spec.name + "'");
     if (i > 0) {
       const Vec3 end = point.at(c.model.rest);
       if ((end - cable.points.back().at(c.model.rest)).norm() < least_segment_mm)
         refuse(spec, "has no length " + segment_text(i - 1));
-      if (spec.spacing > 0) add_guides(c, spec, end, cable);
+      if (given.spacing > 0) add_guides(c, spec, given, end, cable);
     }
     cable.points.push_back(std::move(point));
   }
@@ -102,33 +102,34 @@ void find_apexes(Compilation& c, const ActuatorSpec& spec, const std::vector<Vec
     gap.apex = body.embedder.embed(find_apex(c, spec, boundary, centroid, points, gap.segment));
 }
 
-void take_apexes(Compilation& c, const ActuatorSpec& spec, const std::vector<Vec3>& points, CableDrive& cable) {
-  if (spec.apexes.size() != cable.gaps.size())
-    refuse(spec, "has " + counted(cable.gaps.size(), "gap") + " but " + counted(spec.apexes.size(), "apex", "apexes") +
+void take_apexes(Compilation& c, const ActuatorSpec& spec, const CableSpec& given, const std::vector<Vec3>& points,
+                 CableDrive& cable) {
+  if (given.apexes.size() != cable.gaps.size())
+    refuse(spec, "has " + counted(cable.gaps.size(), "gap") + " but " + counted(given.apexes.size(), "apex", "apexes") +
                      ": it needs one for each, in order");
   for (std::size_t i = 0; i < cable.gaps.size(); ++i) {
     CableGap& gap = cable.gaps[i];
     const std::string what = "apexes[" + std::to_string(i) + "] of actuator '" + spec.name + "'";
-    gap.apex = embed_point(c, spec.apexes[i], what);
+    gap.apex = embed_point(c, given.apexes[i], what);
     const Vec3 start = points[gap.segment], end = points[gap.segment + 1];
     if (height_over(start, end, gap.apex.at(c.model.rest)) < least_height * (end - start).norm())
-      throw InvalidInput(spec.apexes[i].origin, what + " lies on the line of the cable: move it into the body");
+      throw InvalidInput(given.apexes[i].origin, what + " lies on the line of the cable: move it into the body");
   }
 }
 
 }  // namespace
 
-void compile_cable(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
+void compile_cable(Compilation& c, const ActuatorSpec& spec, const CableSpec& given, Actuator& actuator) {
   auto& cable = std::get<CableDrive>(actuator.drive);
-  const std::vector<Vec3> points = embed_points(c, spec, cable);
+  const std::vector<Vec3> points = embed_points(c, spec, given, cable);
   for (std::size_t i = 0; i + 1 < points.size(); ++i) actuator.rest_measure += (points[i + 1] - points[i]).norm();
   // physical: a constraint on its length, without actuation elements
   if (c.spec.formulation == Formulation::physical) return;
   for (const Index segment : free_segments(c, body_of(c, spec.robot), points)) cable.gaps.push_back({segment, {}});
-  if (spec.apexes.empty())
+  if (given.apexes.empty())
     find_apexes(c, spec, points, cable);
   else
-    take_apexes(c, spec, points, cable);
+    take_apexes(c, spec, given, points, cable);
 
   double inside = actuator.rest_measure;
   for (const CableGap& gap : cable.gaps) inside -= (points[gap.segment + 1] - points[gap.segment]).norm();

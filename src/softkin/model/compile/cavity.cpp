@@ -194,14 +194,15 @@ void take_empty_space(Compilation& c, const ActuatorSpec& spec, std::size_t spac
   actuator.rest_measure = enclosed_volume(c.model.rest, chamber.cavity);
 }
 
-void compile_cavity(Compilation& c, const ActuatorSpec& spec, const std::vector<Index>& elements, Actuator& actuator) {
-  if (spec.surface) return select_cavity(c, spec, actuator);
-  if (!spec.region && !spec.wall) return take_only_space(c, spec, actuator);
+void compile_cavity(Compilation& c, const ActuatorSpec& spec, const PneumaticSpec& given,
+                    const std::vector<Index>& elements, Actuator& actuator) {
+  if (given.surface) return select_cavity(c, spec, *given.surface, actuator);
+  if (!given.region && !given.wall) return take_only_space(c, spec, actuator);
   auto& chamber = std::get<ChamberDrive>(actuator.drive);
-  if (spec.region) {
+  if (given.region) {
     add_faces(c, spec, boundary_of_chamber(c, elements), chamber);
   } else {
-    const TriangleSurface wall = checked_wall(c, spec);
+    const TriangleSurface wall = checked_wall(c, spec, *given.wall);
     check_filling(c, spec, wall);
     add_faces(c, spec, wall.triangles, chamber);
   }
@@ -213,9 +214,10 @@ void compile_cavity(Compilation& c, const ActuatorSpec& spec, const std::vector<
 void check_openings(const Compilation& c) {
   for (std::size_t i = 0; i < c.spec.actuators.size(); ++i) {
     const ActuatorSpec& spec = c.spec.actuators[i];
-    const auto* chamber = c.model.actuators[i].as<ChamberDrive>();
-    if (chamber && !chamber->cavity.empty() && (spec.region || spec.wall || !spec.connected.empty()))
-      check_openings(c, spec, *chamber);
+    const auto* given = spec.as<PneumaticSpec>();
+    if (given == nullptr || !(given->region || given->wall || !given->connected.empty())) continue;
+    const ChamberDrive& chamber = *c.model.actuators[i].as<ChamberDrive>();
+    if (!chamber.cavity.empty()) check_openings(c, spec, chamber);
   }
 }
 

@@ -111,9 +111,9 @@ std::vector<Match> matching_spaces(Compilation& c, const TriangleSurface& surfac
   return matches;
 }
 
-void check_size(const Compilation& c, const ActuatorSpec& spec) {
+void check_size(const Compilation& c, const ActuatorSpec& spec, const TriangleSurface& surface) {
   Bounds bounds;
-  for (Index v = 0; v < spec.surface->vertices.rows(); ++v) bounds.extend(vertex_at(spec.surface->vertices, v));
+  for (Index v = 0; v < surface.vertices.rows(); ++v) bounds.extend(vertex_at(surface.vertices, v));
   const double body = diagonal_of(c, spec.robot), diagonal = bounds.diagonal().norm(), ratio = diagonal / body;
   if (ratio < least_size || ratio > most_size)
     refuse(spec, "has a surface of " + number(diagonal) + " mm from corner to corner, " + number(ratio, 3) +
@@ -153,8 +153,7 @@ std::string percent(double share) {
 
 }  // namespace
 
-TriangleSurface checked_surface(const ActuatorSpec& spec) {
-  TriangleSurface surface = *spec.surface;
+TriangleSurface checked_surface(const ActuatorSpec& spec, TriangleSurface surface) {
   try {
     if (!surface.vertices.allFinite()) throw InvalidInput("the surface has a vertex that is not finite");
     surface.triangles = turned_outwards(surface.vertices, std::move(surface.triangles));
@@ -165,11 +164,11 @@ TriangleSurface checked_surface(const ActuatorSpec& spec) {
   return surface;
 }
 
-TriangleSurface checked_wall(const Compilation& c, const ActuatorSpec& spec) {
-  const Region& region = c.regions.find(*spec.wall, spec.origin);
+TriangleSurface checked_wall(const Compilation& c, const ActuatorSpec& spec, const std::string& name) {
+  const Region& region = c.regions.find(name, spec.origin);
   if (region.dimension != 2)
-    refuse(spec, "has a wall, region '" + *spec.wall + "', that is no group of faces" +
-                     (region.dimension == 3 ? "; a volume is named with `region: " + *spec.wall + "`" : ""));
+    refuse(spec, "has a wall, region '" + name + "', that is no group of faces" +
+                     (region.dimension == 3 ? "; a volume is named with `region: " + name + "`" : ""));
   TriangleSurface wall{c.model.rest, {}};
   for (const Index i : region.triangles) wall.triangles.push_back(c.mesh.triangles[i]);
   for (const Index i : region.quads) {
@@ -180,7 +179,7 @@ TriangleSurface checked_wall(const Compilation& c, const ActuatorSpec& spec) {
     wall.triangles = c.sheets.empty() ? turned_outwards(wall.vertices, std::move(wall.triangles))
                                       : turned_outwards_or_flat(wall.vertices, std::move(wall.triangles));
   } catch (const InvalidInput& error) {
-    refuse(spec, "has a wall, region '" + *spec.wall + "', that bounds no chamber: " + error.what() +
+    refuse(spec, "has a wall, region '" + name + "', that bounds no chamber: " + error.what() +
                      "; the region must hold every face around the chamber and no other");
   }
   refuse_nested(spec, wall, shells_of(wall.vertices, wall.triangles));
@@ -200,9 +199,9 @@ void check_filling(Compilation& c, const ActuatorSpec& spec, const TriangleSurfa
                             "' are elements of the body, which resist inside.");
 }
 
-void select_cavity(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
-  TriangleSurface surface = checked_surface(spec);
-  check_size(c, spec);
+void select_cavity(Compilation& c, const ActuatorSpec& spec, const TriangleSurface& given, Actuator& actuator) {
+  TriangleSurface surface = checked_surface(spec, given);
+  check_size(c, spec, given);
   const std::vector<Shell> shells = shells_of(surface.vertices, surface.triangles);
   const std::vector<Match> matches = matching_spaces(c, surface, shells);
   for (const Match& match : matches) {
@@ -218,11 +217,11 @@ void select_cavity(Compilation& c, const ActuatorSpec& spec, Actuator& actuator)
   std::get<ChamberDrive>(actuator.drive).surface = std::move(surface.triangles);
 }
 
-void embed_surface(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
+void embed_surface(Compilation& c, const ActuatorSpec& spec, const TriangleSurface& given, Actuator& actuator) {
   const bool physical = c.spec.formulation == Formulation::physical;
   const Body& body = body_of(c, spec.robot);
   auto& chamber = std::get<ChamberDrive>(actuator.drive);
-  TriangleSurface surface{spec.surface->vertices, chamber.surface};
+  TriangleSurface surface{given.vertices, chamber.surface};
   if (physical) {
     try {
       surface = refined(

@@ -50,9 +50,10 @@ std::vector<bool> chamber_elements(const Compilation& c) {
   std::vector<bool> inside(c.mesh.tetrahedra.size());
   if (c.spec.formulation != Formulation::physical) return inside;
   for (const ActuatorSpec& spec : c.spec.actuators) {
-    if (spec.kind != ActuatorKind::pneumatic) continue;
-    std::vector<std::string> regions = spec.connected;
-    if (spec.region) regions.push_back(*spec.region);
+    const auto* chamber = spec.as<PneumaticSpec>();
+    if (chamber == nullptr) continue;
+    std::vector<std::string> regions = chamber->connected;
+    if (chamber->region) regions.push_back(*chamber->region);
     for (const std::string& name : regions) {
       const Region& region = c.regions.find(name, spec.origin);
       if (region.dimension != 2)

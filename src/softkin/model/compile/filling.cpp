@@ -20,12 +20,11 @@ void require_not_negative(const ActuatorSpec& spec, double value, const char* wh
 
 }  // namespace
 
-void check_filling(const ActuatorSpec& spec, Formulation formulation) {
+void check_filling(const ActuatorSpec& spec, const std::optional<FillingSpec>& given, Formulation formulation) {
   if (formulation != Formulation::physical)
     refuse(spec, "is controlled by what fills it: that needs the physical formulation");
-  if (spec.kind != ActuatorKind::pneumatic || !spec.filling)
-    refuse(spec, "is controlled by what fills it: it needs to be a chamber with a filling");
-  const FillingSpec& filling = *spec.filling;
+  if (!given) refuse(spec, "is controlled by what fills it: it needs to be a chamber with a filling");
+  const FillingSpec& filling = *given;
   require_positive(spec, filling.exponent, "an exponent of its gas");
   require_positive(spec, filling.atmosphere_kPa, "an atmosphere");
   require_not_negative(spec, filling.compressibility, "a compressibility");
@@ -40,14 +39,13 @@ void check_filling(const ActuatorSpec& spec, Formulation formulation) {
     refuse(spec, "cannot push " + number(spec.high) + " mL out of a syringe of " + number(*filling.syringe_mL) + " mL");
 }
 
-void check_connected(const ActuatorSpec& spec, Formulation formulation) {
-  if (spec.connected.empty()) return;
-  if (spec.kind != ActuatorKind::pneumatic) refuse(spec, "takes no connected chambers: only a pneumatic one does");
+void check_connected(const ActuatorSpec& spec, const std::vector<std::string>& connected, Formulation formulation) {
+  if (connected.empty()) return;
   if (formulation != Formulation::physical)
     refuse(spec, "is of connected chambers: that needs the physical formulation");
-  if (spec.connected.size() < 2) refuse(spec, "needs two connected chambers or more");
+  if (connected.size() < 2) refuse(spec, "needs two connected chambers or more");
   std::set<std::string> names;
-  for (const std::string& name : spec.connected)
+  for (const std::string& name : connected)
     if (!names.insert(name).second) refuse(spec, "has '" + name + "' among its connected chambers twice");
 }
 
@@ -77,12 +75,13 @@ void compile_filling(Compilation& c, const FillingSpec& spec, Actuator& actuator
 void check_atmospheres(const RobotSpec& spec) {
   const ActuatorSpec* first = nullptr;
   for (const ActuatorSpec& actuator : spec.actuators) {
-    if (!actuator.filling) continue;
+    const FillingSpec* filling = filling_of(actuator);
+    if (filling == nullptr) continue;
     if (first == nullptr) first = &actuator;
-    if (actuator.filling->atmosphere_kPa == first->filling->atmosphere_kPa) continue;
-    refuse(actuator, "is under an atmosphere of " + number(actuator.filling->atmosphere_kPa) + " kPa, actuator '" +
-                         first->name + "' under one of " + number(first->filling->atmosphere_kPa) +
-                         " kPa: give all scenes of robots the same");
+    const double of_first = filling_of(*first)->atmosphere_kPa;
+    if (filling->atmosphere_kPa == of_first) continue;
+    refuse(actuator, "is under an atmosphere of " + number(filling->atmosphere_kPa) + " kPa, actuator '" + first->name +
+                         "' under one of " + number(of_first) + " kPa: give all scenes of robots the same");
   }
 }
 

@@ -93,20 +93,14 @@ void add_growth(Compilation& c, Index actuator, const GrowthPart& part, Growers&
 
 }  // namespace
 
-void check_growth(const ActuatorSpec& spec, Formulation formulation) {
-  if (spec.kind != ActuatorKind::growth) {
-    if (spec.growth) refuse(spec, "takes no growth: only kind growth does");
-    return;
-  }
-  if (!spec.growth || spec.growth->parts.empty()) refuse(spec, "is a growth: it needs to say what grows");
+void check_growth(const ActuatorSpec& spec, const GrowthSpec& growth, Formulation formulation) {
+  if (growth.parts.empty()) refuse(spec, "is a growth: it needs to say what grows");
   if (formulation != Formulation::physical) refuse(spec, "is a growth: that needs the physical formulation");
-  if (spec.region || spec.surface || spec.wall)
-    refuse(spec, "is a growth: it takes no surface, and its region is that of what grows");
-  const bool heated = spec.growth->parts.front().temperature.has_value();
+  const bool heated = growth.parts.front().temperature.has_value();
   if (spec.control != (heated ? Control::load : Control::ratio))
     refuse(spec, heated ? "is commanded by its temperature" : "is a growth: it is commanded by its stretch");
   check_range(spec);
-  for (const GrowthPart& part : spec.growth->parts) {
+  for (const GrowthPart& part : growth.parts) {
     if (part.keeps_volume && !part.direction) refuse(spec, "keeps its volume as it grows, and so needs a direction");
     if (part.temperature.has_value() != heated)
       refuse(spec, "lets one region grow by a temperature and another by a stretch: one command does one of the two");
@@ -117,10 +111,10 @@ void check_growth(const ActuatorSpec& spec, Formulation formulation) {
 void compile_growth(Compilation& c) {
   Growers growers{std::vector<Index>(c.model.tetrahedra.size(), -1), std::vector<Index>(c.model.prisms.size(), -1)};
   for (std::size_t a = 0; a < c.spec.actuators.size(); ++a) {
-    if (!c.spec.actuators[a].growth) continue;
+    const auto* growth = c.spec.actuators[a].as<GrowthSpec>();
+    if (growth == nullptr) continue;
     c.model.actuators[a].drive = GrowthDrive{static_cast<Index>(c.model.growths.size())};
-    for (const GrowthPart& part : c.spec.actuators[a].growth->parts)
-      add_growth(c, static_cast<Index>(a), part, growers);
+    for (const GrowthPart& part : growth->parts) add_growth(c, static_cast<Index>(a), part, growers);
   }
 }
 

@@ -68,12 +68,13 @@ struct CheckedField {
 };
 
 /// Its place among the model's sources.
-Index place_of(Magnetism& magnetism, std::vector<const FieldSource*>& known, const ActuatorSpec& spec) {
-  const FieldSource* source = spec.field->source.get();
+Index place_of(Magnetism& magnetism, std::vector<const FieldSource*>& known, const ActuatorSpec& spec,
+               const FieldSpec& commanded) {
+  const FieldSource* source = commanded.source.get();
   const auto found = std::find(known.begin(), known.end(), source);
   const auto place = static_cast<Index>(found - known.begin());
   FieldSource checked = *source;
-  std::visit(CheckedField{spec, spec.field->command}, checked.field);
+  std::visit(CheckedField{spec, commanded.command}, checked.field);
   if (found == known.end()) {
     known.push_back(source);
     magnetism.sources.push_back(std::move(checked));
@@ -170,9 +171,10 @@ void compile_magnetism(Compilation& c) {
   std::vector<const FieldSource*> known;
   for (std::size_t a = 0; a < c.spec.actuators.size(); ++a) {
     const ActuatorSpec& spec = c.spec.actuators[a];
-    if (spec.kind != ActuatorKind::magnetic) continue;
+    const auto* field = spec.as<FieldSpec>();
+    if (field == nullptr) continue;
     if (!any) refuse(spec, "is a magnetic field that acts on nothing: give a material a remanence");
-    const MagneticDrive drive{place_of(*magnetism, known, spec), spec.field->command};
+    const MagneticDrive drive{place_of(*magnetism, known, spec, *field), field->command};
     for (std::size_t b = 0; b < a; ++b)
       if (const auto* other = c.model.actuators[b].as<MagneticDrive>();
           other && other->source == drive.source && other->command == drive.command)

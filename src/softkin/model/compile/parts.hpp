@@ -75,18 +75,19 @@ void compile_actuator_elements(Compilation& c);
 /// An actuator's surface as it can be used, normals outwards.
 ///
 /// throws  InvalidInput where it is not closed, or a shell of it lies inside another
-[[nodiscard]] TriangleSurface checked_surface(const ActuatorSpec& spec);
-/// The triangles of an actuator's wall, normals out of the chamber; throws as checked_surface.
-[[nodiscard]] TriangleSurface checked_wall(const Compilation& c, const ActuatorSpec& spec);
+[[nodiscard]] TriangleSurface checked_surface(const ActuatorSpec& spec, TriangleSurface surface);
+/// The triangles of a region that is an actuator's wall, normals out of the chamber; throws as checked_surface.
+[[nodiscard]] TriangleSurface checked_wall(const Compilation& c, const ActuatorSpec& spec, const std::string& name);
 
-/// Physical: the boundary of an actuator's chamber.
+/// Physical: the boundary of a chamber of an actuator, which is not of several.
 ///
-/// elements  of the chamber, in Compilation::chamber_tetrahedra, where the actuator has a region
-void compile_cavity(Compilation& c, const ActuatorSpec& spec, const std::vector<Index>& elements, Actuator& actuator);
+/// elements  of the chamber, in Compilation::chamber_tetrahedra, where it has a region
+void compile_cavity(Compilation& c, const ActuatorSpec& spec, const PneumaticSpec& given,
+                    const std::vector<Index>& elements, Actuator& actuator);
 /// The same by its surface: the empty space that the surface bounds, else the surface itself, which then is embedded.
-void select_cavity(Compilation& c, const ActuatorSpec& spec, Actuator& actuator);
+void select_cavity(Compilation& c, const ActuatorSpec& spec, const TriangleSurface& given, Actuator& actuator);
 /// Embeds the surface of an actuator that has no cavity; physical: cut so finely that it follows the elements.
-void embed_surface(Compilation& c, const ActuatorSpec& spec, Actuator& actuator);
+void embed_surface(Compilation& c, const ActuatorSpec& spec, const TriangleSurface& given, Actuator& actuator);
 
 /// What the elements of the body and of chambers enclose.
 [[nodiscard]] const std::vector<EmptySpace>& empty_spaces(Compilation& c);
@@ -99,7 +100,7 @@ void check_filling(Compilation& c, const ActuatorSpec& spec, const TriangleSurfa
 void compile_magnetism(Compilation& c);
 
 /// Refuses a growth whose numbers, commands or members make no sense, and one of target shapes.
-void check_growth(const ActuatorSpec& spec, Formulation formulation);
+void check_growth(const ActuatorSpec& spec, const GrowthSpec& growth, Formulation formulation);
 /// After the materials. Physical: the elements that actuators let grow, and along which directions.
 void compile_growth(Compilation& c);
 
@@ -133,16 +134,18 @@ void compile_materials(Compilation& c);
 /// Embeds cables and, for target shapes, finds their gaps and apexes; embeds the surfaces of pneumatic actuators.
 void compile_actuator_points(Compilation& c);
 /// The elements of Eq. (6): a triangle over each gap; none in the physical formulation.
-void compile_cable(Compilation& c, const ActuatorSpec& spec, Actuator& actuator);
+void compile_cable(Compilation& c, const ActuatorSpec& spec, const CableSpec& given, Actuator& actuator);
 
 /// "[0, 1.5]"
 [[nodiscard]] inline std::string interval_text(double low, double high) {
   return "[" + number(low) + ", " + number(high) + "]";
 }
 /// Refuses a filling whose numbers or range make no sense, and one of target shapes.
-void check_filling(const ActuatorSpec& spec, Formulation formulation);
+void check_filling(const ActuatorSpec& spec, const std::optional<FillingSpec>& given, Formulation formulation);
 /// Refuses fewer than two connected chambers, one twice, and such of target shapes.
-void check_connected(const ActuatorSpec& spec, Formulation formulation);
+void check_connected(const ActuatorSpec& spec, const std::vector<std::string>& connected, Formulation formulation);
+/// What seals its chamber; null: nothing does.
+[[nodiscard]] const FillingSpec* filling_of(const ActuatorSpec& spec);
 /// Refuses fillings under different atmospheres.
 void check_atmospheres(const RobotSpec& spec);
 /// When the chamber's volume at rest is known.

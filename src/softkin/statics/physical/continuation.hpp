@@ -1,9 +1,9 @@
 #pragma once
 
 #include <optional>
-#include <softkin/statics/physical/summit.hpp>
 #include <softkin/statics/physical/settling.hpp>
 #include <softkin/statics/physical/step_tracer.hpp>
+#include <softkin/statics/physical/summit.hpp>
 
 namespace softkin::physical {
 

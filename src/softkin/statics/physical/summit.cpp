@@ -3,8 +3,8 @@
 #include <cmath>
 #include <limits>
 #include <softkin/core/text.hpp>
-#include <softkin/statics/physical/summit.hpp>
 #include <softkin/statics/physical/contact_steps.hpp>
+#include <softkin/statics/physical/summit.hpp>
 
 namespace softkin::physical {
 
