@@ -41,8 +41,9 @@ double rounding_energy(const Model& model, const ElementSets& sets) {
 
 using End = NewtonSearch::End;
 
-/// Local-global iterations that help Newton's method out in one run.
-constexpr int patience = 300;
+/// Local-global iterations that help Newton's method out in a run after which equilibria on the way are tried, and in
+/// one where these led nowhere either.
+constexpr int first_patience = rescue, patience = 300;
 
 /// Equilibria on the way from one actuation to another; the step is halved where one is not found and doubled where
 /// one is.
@@ -331,11 +332,16 @@ void Newton::solve(const Actuation& start, const StaticsOptions& options, const 
   std::unique_ptr<Workspace> workspace = take_workspace();
   workspace->home.resize(0, 3);
   NewtonSearch search(unknowns_, global_, *workspace, options, progress, team, report);
-  End end = search.run(result.actuation, patience, positions);
+  End end = search.run(result.actuation, first_patience, positions);
   if (end == End::stuck) {
     positions = begin;
     const Actuation from = start.size() == result.actuation.size() ? start : unknowns_.model.rest_actuation();
     end = follow(from, result.actuation, search, positions, report);
+  }
+  if (end == End::stuck) {
+    positions = begin;
+    report.continuation_steps = 1;
+    end = search.run(result.actuation, patience, positions);
   }
   if (end == End::converged && report.factorisations > 0) workspace->home = positions;
   put_back(std::move(workspace));
