@@ -5,7 +5,6 @@
 #include <softkin/model/compile/curving.hpp>
 #include <softkin/model/compile/parts.hpp>
 #include <softkin/model/families.hpp>
-#include <softkin/model/growth.hpp>
 #include <softkin/model/joined.hpp>
 #include <softkin/model/layer.hpp>
 #include <softkin/model/magnetic_field.hpp>

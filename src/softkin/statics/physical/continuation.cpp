@@ -4,8 +4,6 @@
 #include <softkin/statics/physical/buckling.hpp>
 #include <softkin/statics/physical/contact_steps.hpp>
 #include <softkin/statics/physical/continuation.hpp>
-#include <softkin/statics/physical/pull_in.hpp>
-#include <softkin/statics/physical/stability.hpp>
 #include <utility>
 
 namespace softkin::physical {
