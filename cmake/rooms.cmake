@@ -75,9 +75,16 @@ function(softkin_precompile target)
   endif()
 endfunction()
 
-# softkin_compile_together(TARGET): its files in groups, for half the work; not kernels
+# softkin_compile_together(TARGET): its files in groups, for half the work; not kernels. Groups of 20 take a fifth less of
+# the compiler's time than those of 10, and up to 2 GiB each in place of 1.2.
+math(EXPR softkin_large_groups_MiB "2500 * (${softkin_cores} + 2)")
+set(softkin_names_repeat softkin_io softkin_calibration softkin_vision softkin_random)  # what files have for themselves
 function(softkin_compile_together target)
-  set_target_properties(${target} PROPERTIES UNITY_BUILD ${SOFTKIN_UNITY} UNITY_BUILD_BATCH_SIZE 10)
+  set(files 20)
+  if(softkin_memory_MiB LESS softkin_large_groups_MiB OR target IN_LIST softkin_names_repeat)
+    set(files 10)
+  endif()
+  set_target_properties(${target} PROPERTIES UNITY_BUILD ${SOFTKIN_UNITY} UNITY_BUILD_BATCH_SIZE ${files})
   # a class of a test file is nobody else's
   target_compile_options(${target} PRIVATE $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${SOFTKIN_UNITY}>>:-Wno-subobject-linkage>)
 endfunction()

@@ -7,7 +7,7 @@ namespace softkin::estimate {
 namespace {
 
 /// A variance below this share of the largest of a place is that of a direction that is held, as across a flat patch.
-constexpr double least_share = 1e-8;
+constexpr double least_spanned = 1e-8;
 
 /// M with M M^T a covariance, without what it does not span.
 Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance) {
@@ -15,7 +15,7 @@ Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance) {
   const double largest = eigen.values.maxCoeff();
   std::vector<Index> spanned;
   for (Index k = 0; k < static_cast<Index>(eigen.values.size()); ++k)
-    if (eigen.values[k] > least_share * largest) spanned.push_back(k);
+    if (eigen.values[k] > least_spanned * largest) spanned.push_back(k);
   Eigen::MatrixXd root(covariance.rows(), static_cast<Index>(spanned.size()));
   for (Index c = 0; c < static_cast<Index>(spanned.size()); ++c)
     root.col(c) = std::sqrt(eigen.values[spanned[c]]) * eigen.vectors.col(spanned[c]);

@@ -10,7 +10,7 @@ namespace softkin {
 namespace {
 
 // Flatter than this (volume over the cube of the longest edge) an element counts as one without volume.
-constexpr double flat = 1e-9;
+constexpr double flat_volume = 1e-9;
 
 void reverse(Tetrahedron& t) {
   std::swap(t[2], t[3]);
@@ -102,7 +102,7 @@ std::size_t orient(Compilation& c, const std::vector<bool>& left_out, const Kind
     Element element = kind.mesh_elements[i];
     double volume = signed_volume(c.mesh.vertices, element);
     const double edge = longest_edge(c.mesh.vertices, element);
-    if (!(std::abs(volume) > std::max(least_volume, flat * edge * edge * edge))) {
+    if (!(std::abs(volume) > std::max(least_volume, flat_volume * edge * edge * edge))) {
       empty.add(static_cast<Index>(i));
       continue;
     }
