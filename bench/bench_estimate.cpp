@@ -378,8 +378,8 @@ void run_map(const Options& options) {
   const double most_N = map_force_share * options.most_force_N;
   spec.actuators[0].low = 0;
   spec.actuators[0].high = 20;
-  spec.forces[0].at = {Vec3(80, 7.5, 20), {}};
-  spec.forces[0].range = std::array<Vec3, 2>{Vec3::Constant(-most_N), Vec3::Constant(most_N)};
+  spec.loads.forces[0].at = {Vec3(80, 7.5, 20), {}};
+  spec.loads.forces[0].range = std::array<Vec3, 2>{Vec3::Constant(-most_N), Vec3::Constant(most_N)};
   const Model model = compile(spec);
   MapOptions wanted;
   wanted.accuracy_mm = 0.1 * options.noise_mm;
@@ -453,8 +453,8 @@ int main(int argc, char** argv) {
   app.add_flag("--volume-only", options.volume_only, "Read the chamber's volume at a pressure instead of markers");
   return run_benchmark(app, argc, argv, [&] {
     const Model model = compile(touched_finger(options.quadratic));
-    std::printf("%zu tetrahedra of order %d, %lld vertices\n", model.tetrahedra.size(), options.quadratic ? 2 : 1,
-                static_cast<long long>(model.rest.rows()));
+    std::printf("%zu tetrahedra of order %d, %lld vertices\n", model.elements.tetrahedra.size(),
+                options.quadratic ? 2 : 1, static_cast<long long>(model.rest.rows()));
     if (options.map_draws > 0) run_map(options);
     if (options.draws > 0) run_draws(model, options);
     if (options.updates > 1) run_updates(model, options);

@@ -90,7 +90,7 @@ Mesh finger_mesh(double size) {
 RobotSpec knuckle_finger(const std::string& scene, double tetrahedra, int order) {
   RobotSpec spec = read_scene(scene);
   spec.mesh = finger_mesh(size_for(tetrahedra));
-  spec.quadratic = order == 2;
+  spec.mesh_options.quadratic = order == 2;
   const double beside = flat + (cable_z - hinge) * slope;  // of the notch's middle, where the cable leaves its wall
   for (std::size_t a = 0; a < spec.actuators.size() && a < notches.size(); ++a) {
     spec.actuators[a].as<CableSpec>()->points[1].point = Vec3(notches[a] - beside, 0, cable_z);
@@ -131,11 +131,10 @@ struct Followed {
   }
 };
 
-Followed follow(const Model& model, const Statics& statics, const MarkerPath& path, const TrajectoryOptions& options,
-                double limit) {
+Followed follow(const Statics& statics, const MarkerPath& path, const TrajectoryOptions& options, double limit) {
   Followed result;
   const double begin = now();
-  result.waypoints = follow_path(model, statics, path, options, [=](const Progress&) { return now() - begin < limit; });
+  result.waypoints = follow_path(statics, path, options, [=](const Progress&) { return now() - begin < limit; });
   result.seconds = now() - begin;
   result.whole = result.waypoints.size() == path.waypoints.size();
   return result;
@@ -162,7 +161,7 @@ Actuation sample_near(const Model& model, const Statics& statics, const MarkerPa
   constexpr double steps = 10;
   MarkerPath begin{path.markers, path.axes, {path.waypoints.front()}};
   Actuation near =
-      follow_path(model, statics, begin, trajectory(methods[0], Solver::newton, options)).at(0).equilibrium.actuation;
+      follow_path(statics, begin, trajectory(methods[0], Solver::newton, options)).at(0).equilibrium.actuation;
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const double low = model.actuators[a].low, range = model.actuators[a].high - low;
     double& value = near[a];
@@ -199,8 +198,8 @@ void print_row(const Method& method, const Followed& found, const Followed& newt
 void compare(const RobotSpec& spec, Solver solver, const Options& options) {
   const Model model = compile(spec);
   const Statics statics(model);
-  std::printf("\n%zu tetrahedra of order %d, %s, %s inside\n", model.tetrahedra.size(),
-              model.edge_nodes.empty() ? 1 : 2,
+  std::printf("\n%zu tetrahedra of order %d, %s, %s inside\n", model.elements.tetrahedra.size(),
+              model.elements.edge_nodes.empty() ? 1 : 2,
               model.formulation == Formulation::physical ? "physical" : "target-shape",
               solver == Solver::newton ? "newton" : "local-global");
   std::printf("    %-9s %7s  %-12s  %11s  %12s  %6s  %9s  %13s  %10s\n", "method", "asked", "waypoints", "equilibria",
@@ -218,10 +217,10 @@ void compare(const RobotSpec& spec, Solver solver, const Options& options) {
       TrajectoryOptions how = trajectory(method, solver, options);
       how.start = start;
       if (method.method == InverseMethod::newton) {
-        newton = follow(model, statics, path, how, options.limit);
+        newton = follow(statics, path, how, options.limit);
         print_row(method, newton, newton, path.waypoints.size());
       } else {
-        print_row(method, follow(model, statics, path, how, options.limit), newton, path.waypoints.size());
+        print_row(method, follow(statics, path, how, options.limit), newton, path.waypoints.size());
       }
     }
   }

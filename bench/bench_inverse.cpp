@@ -107,7 +107,7 @@ class Bench {
     inverse_.other_starts = options.other_starts;
     if (options.method == "gradient") inverse_.method = InverseMethod::gradient;
     std::printf("%s: %zu tetrahedra of order %d, %zu actuators, marker '%s'; seed %u\n", options.robot.c_str(),
-                model_.tetrahedra.size(), model_.edge_nodes.empty() ? 1 : 2, model_.actuators.size(),
+                model_.elements.tetrahedra.size(), model_.elements.edge_nodes.empty() ? 1 : 2, model_.actuators.size(),
                 model_.markers.at(0).name.c_str(), options.seed);
     std::fflush(stdout);
   }
@@ -258,7 +258,7 @@ class Bench {
   Answer solve(const std::vector<Goal>& goals, const State& start, const Sensitivity* sensitivity = nullptr) {
     inverse_.start_sensitivity = sensitivity;
     const std::clock_t begin = std::clock();
-    Answer answer{solve_inverse(model_, statics_, goals, start, inverse_), 0};
+    Answer answer{solve_inverse(statics_, goals, start, inverse_), 0};
     answer.processor = static_cast<double>(std::clock() - begin) / CLOCKS_PER_SEC;
     return answer;
   }

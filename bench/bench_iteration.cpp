@@ -96,8 +96,8 @@ int main() {
     const double one = milliseconds(statics, 1, true), all = milliseconds(statics, 0, true);
     const double accelerated = milliseconds(statics, 0, false);
     sizes.push_back(static_cast<double>(model.rest.rows()));
-    std::printf("%9.0f %11zu %10.3f | %12.3f %13.3f %10.3f | %16.3f %14.3f\n", sizes.back(), model.tetrahedra.size(),
-                setup, local, global, one, all, accelerated);
+    std::printf("%9.0f %11zu %10.3f | %12.3f %13.3f %10.3f | %16.3f %14.3f\n", sizes.back(),
+                model.elements.tetrahedra.size(), setup, local, global, one, all, accelerated);
     std::fflush(stdout);
     locals.push_back(local);
     globals.push_back(global);

@@ -47,7 +47,7 @@ int serve(const Options& options, int pipe) {
   StaticsOptions solver;
   solver.threads = options.threads;
   LiveServer server(0);
-  LiveRobot robot(model, statics, document, solver, statics.solve(model.rest_actuation(), statics.rest(), solver),
+  LiveRobot robot(statics, document, solver, statics.solve(model.rest_actuation(), statics.rest(), solver),
                   [&](auto answer) { server.show(std::move(answer)); });
   const int port = server.port();
   if (::write(pipe, &port, sizeof port) != sizeof port) return 1;

@@ -84,7 +84,7 @@ int measure(const Options& options) {
     task.known.resize(plan.groups[task.group].size());
     std::vector<WorkspaceSample> samples;
     double start = processor_time();
-    (void)solve_group(model, statics, plan, {}, task, [&](const WorkspaceSample& sample) {
+    (void)solve_group(statics, plan, {}, task, [&](const WorkspaceSample& sample) {
       const double time = processor_time() - start;
       (samples.empty() ? first : next).add(sample.status, sample.iterations, time);
       grouped.add(sample.status, sample.iterations, time);

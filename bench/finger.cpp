@@ -350,7 +350,7 @@ RobotSpec finger_robot(Mesh mesh, FingerKind kind, const std::string& origin) {
     material.shape_ratio = 1;
   } else {
     spec.formulation = Formulation::physical;
-    spec.quadratic = kind == FingerKind::physical_quadratic;
+    spec.mesh_options.quadratic = kind == FingerKind::physical_quadratic;
     material.shape_ratio.reset();
     ElasticSpec elastic;
     elastic.law = Law::st_venant_kirchhoff;

@@ -43,11 +43,11 @@ Answers answer(const FingerSource& source, FingerKind kind, const std::vector<do
   const Index chamber = kind == FingerKind::target_shape
                             ? static_cast<Index>(model.actuators[0].as<ChamberDrive>()->tetrahedra.size())
                             : 0;
-  answers.body_tetrahedra = static_cast<int>(model.tetrahedra.size()) - chamber;
+  answers.body_tetrahedra = static_cast<int>(model.elements.tetrahedra.size()) - chamber;
   for (Index v = 0; v < model.rest.rows(); ++v) {
-    if (!model.used[v]) continue;
+    if (!model.elements.used[v]) continue;
     ++answers.vertices;
-    for (const bool fixed : model.fixed[v]) answers.unknowns += fixed ? 0 : 1;
+    for (const bool fixed : model.held.fixed[v]) answers.unknowns += fixed ? 0 : 1;
   }
   for (const BentShape& shape : find_bends(model, statics, tip_face(spec.mesh, source.name()), angles, options)) {
     Target& target = answers.targets[answers.count++];
@@ -150,7 +150,7 @@ class Deck {
 
   void write(const CalculixTask& task) {
     write_mesh();
-    const ElasticLaw& law = model_.materials[0].elastic;
+    const ElasticLaw& law = model_.elements.materials[0].elastic;
     const double poisson = law.lambda / (2 * (law.lambda + law.mu));
     put("*MATERIAL, NAME=RUBBER\n*ELASTIC\n%.17g, %.17g\n*SOLID SECTION, ELSET=BODY, MATERIAL=RUBBER\n",
         1000 * 2 * law.mu * (1 + poisson), poisson);
@@ -179,20 +179,20 @@ class Deck {
   void write_mesh() {
     put("*NODE, NSET=ALL\n");
     for (Index v = 0; v < model_.rest.rows(); ++v)
-      if (model_.used[v])
+      if (model_.elements.used[v])
         put("%d, %.17g, %.17g, %.17g\n", v + 1, model_.rest(v, 0), model_.rest(v, 1), model_.rest(v, 2));
-    const bool quadratic = !model_.edge_nodes.empty();
+    const bool quadratic = !model_.elements.edge_nodes.empty();
     put("*ELEMENT, TYPE=%s, ELSET=BODY\n", quadratic ? "C3D10" : "C3D4");
-    for (std::size_t e = 0; e < model_.tetrahedra.size(); ++e) {
+    for (std::size_t e = 0; e < model_.elements.tetrahedra.size(); ++e) {
       put("%zu", e + 1);
-      for (const Index v : model_.tetrahedra[e]) put(", %d", v + 1);
+      for (const Index v : model_.elements.tetrahedra[e]) put(", %d", v + 1);
       if (quadratic)
-        for (const Index v : model_.edge_nodes[e]) put(", %d", v + 1);
+        for (const Index v : model_.elements.edge_nodes[e]) put(", %d", v + 1);
       put("\n");
     }
     put("*NSET, NSET=HELD\n");
     for (Index v = 0; v < model_.rest.rows(); ++v)
-      if (model_.used[v] && model_.fixed[v][0]) put("%d,\n", v + 1);
+      if (model_.elements.used[v] && model_.held.fixed[v][0]) put("%d,\n", v + 1);
     put("*NSET, NSET=TIP\n");
     for (const Index v : model_.markers[0].point.vertices) put("%d,\n", v + 1);
   }
@@ -201,9 +201,9 @@ class Deck {
     std::map<std::array<Index, 3>, bool> walls;
     for (const CavityFace& face : model_.actuators[0].as<ChamberDrive>()->cavity) walls[sorted(face.corners)] = false;
     put("*DLOAD\n");
-    for (std::size_t e = 0; e < model_.tetrahedra.size(); ++e)
+    for (std::size_t e = 0; e < model_.elements.tetrahedra.size(); ++e)
       for (int f = 0; f < 4; ++f) {
-        const Tetrahedron& t = model_.tetrahedra[e];
+        const Tetrahedron& t = model_.elements.tetrahedra[e];
         const auto wall =
             walls.find(sorted({t[calculix_faces[f][0]], t[calculix_faces[f][1]], t[calculix_faces[f][2]]}));
         if (wall == walls.end()) continue;
@@ -329,8 +329,9 @@ CalculixRun run_calculix(const FingerSource& source, FingerKind kind, const Answ
 }
 
 void write_calculix_deck(const std::string& path, const Model& model, const CalculixTask& task) {
-  if (model.formulation != Formulation::physical || !model.prisms.empty() || model.materials.size() != 1 ||
-      model.actuators.empty() || model.markers.empty() || model.materials[0].elastic.law != Law::st_venant_kirchhoff)
+  if (model.formulation != Formulation::physical || !model.elements.prisms.empty() ||
+      model.elements.materials.size() != 1 || model.actuators.empty() || model.markers.empty() ||
+      model.elements.materials[0].elastic.law != Law::st_venant_kirchhoff)
     throw InvalidInput({.file = path},
                        "a deck is for tetrahedra of one St. Venant-Kirchhoff material with a chamber and a marker");
   Deck(path, model).write(task);

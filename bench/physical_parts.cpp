@@ -51,8 +51,9 @@ PhysicalParts::Times PhysicalParts::measure(int repeat) {
   const double whole =
       seconds_of(repeat, [&] { (void)system_.factorise(at_, demand_, active_, balance_, {}, work_, team_); });
   Eigen::MatrixXd none(unknowns(), 0);
-  times.factor = seconds_of(
-      repeat, [&] { (void)work_.saddle.factor().factorise(work_.values, 0, work_.saddle.precision(), none, team_); });
+  times.factor = seconds_of(repeat, [&] {
+    (void)work_.saddle.factor().factorise(work_.stiffness.values, 0, work_.saddle.precision(), none, team_);
+  });
   Eigen::VectorXd step, change;
   work_.saddle.step(balance_, step, change, team_);
   Eigen::MatrixXd column;
@@ -83,14 +84,14 @@ PhysicalParts::Times PhysicalParts::measure(int repeat) {
 Eigen::SparseMatrix<double> PhysicalParts::matrix() const {
   const linear::BlockColumns& columns = pattern();
   std::vector<Eigen::Triplet<double>> entries;
-  entries.reserve(work_.values.size());
+  entries.reserve(work_.stiffness.values.size());
   for (Index node = 0; node < columns.nodes(); ++node)
     for (Index e = columns.starts[node]; e < columns.starts[node + 1]; ++e) {
       const Index row = columns.rows[e], height = columns.width(row);
       for (Index c = 0; c < columns.width(node); ++c)
         for (Index r = row == node ? c : 0; r < height; ++r)
           entries.emplace_back(columns.unknowns[row] + r, columns.unknowns[node] + c,
-                               work_.values[columns.offsets[e] + c * height + r]);
+                               work_.stiffness.values[columns.offsets[e] + c * height + r]);
     }
   Eigen::SparseMatrix<double> matrix(columns.size(), columns.size());
   matrix.setFromTriplets(entries.begin(), entries.end());

@@ -28,8 +28,8 @@ class PhysicalParts {
   [[nodiscard]] Index unknowns() const { return pattern().size(); }
 
   /// The last stiffness, lower triangle in elimination order, as softkin's factorisation takes it.
-  [[nodiscard]] const linear::BlockColumns& pattern() const { return work_.layout->reduced.columns(); }
-  [[nodiscard]] const LargeVector<double>& values() const { return work_.values; }
+  [[nodiscard]] const linear::BlockColumns& pattern() const { return work_.stiffness.layout->reduced.columns(); }
+  [[nodiscard]] const LargeVector<double>& values() const { return work_.stiffness.values; }
   [[nodiscard]] Eigen::SparseMatrix<double> matrix() const;
   /// Was it made positive definite element by element?
   [[nodiscard]] bool projected() const { return projected_; }

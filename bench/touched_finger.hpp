@@ -21,7 +21,7 @@ inline RobotSpec touched_finger(bool quadratic) {
     return p.x() > 16 && p.x() < 84 && std::abs(p.y() - 7.5) < 3.3 && std::abs(p.z() - 10) < 4.4;
   });
   spec.formulation = Formulation::physical;
-  spec.quadratic = quadratic;
+  spec.mesh_options.quadratic = quadratic;
   MaterialSpec material;
   material.region = "body";
   material.shape_ratio.reset();
@@ -39,7 +39,7 @@ inline RobotSpec touched_finger(bool quadratic) {
   air.high = 60;
   air.rest = 0;
   spec.actuators = {air};
-  spec.forces = {
+  spec.loads.forces = {
       {"touch", {std::string("z_high"), {}}, {0, 0, 0}, std::array<Vec3, 2>{Vec3::Constant(-3), Vec3::Constant(3)}}};
   spec.markers = {{"m1", {Vec3(30, 0.5, 3), {}}},
                   {"m2", {Vec3(55, 14.5, 3), {}}},

@@ -128,7 +128,7 @@ class FkRun {
       : model_(model),
         answers_(answers),
         options_(options),
-        job_(model, answers.statics(), steps, options.path, solving(options), std::move(start)),
+        job_(answers.statics(), steps, options.path, solving(options), std::move(start)),
         run_(model, job_, {options.report, options.series() ? options.output : ""},
              runs::report_head(model, options.scene, solving(options), answers.map()), {}),
         page_(options.page, model, runs::kept_command()),
@@ -262,7 +262,7 @@ class FkRun {
     run_.log().each([&](std::size_t number, const StepRecord& step) {
       if (number + 1 < run_.done()) {  // the findings tell of the last one
         overlaps.add(number, step);
-        if (step.unstable_modes > 0) unstable.push_back(number);
+        if (step.physical.unstable_modes > 0) unstable.push_back(number);
       }
       if (step.status == Status::converged) return;
       all[step.status].numbers.push_back(number);

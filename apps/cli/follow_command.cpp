@@ -159,7 +159,7 @@ class ShownTrajectory {
     if (!options_.page.empty()) say(page_.told());
     std::vector<std::size_t> unstable;
     for (std::size_t i = 0; i < done.size(); ++i)
-      if (done[i].unstable_modes > 0) unstable.push_back(i);
+      if (done[i].physical.unstable_modes > 0) unstable.push_back(i);
     if (!unstable.empty()) say(unstable_text("waypoint", unstable));
     const std::string missed = missed_text(done, options_.nearest());
     if (missed.empty()) return cli::done;
@@ -208,9 +208,8 @@ int run_follow(const FollowOptions& options) {
   for (const std::string& doubt : doubts)
     std::fprintf(stderr, "softkin: warning: %s: %s\n", options.path.c_str(), doubt.c_str());
   if (!options.json) print(head_text(model, options, answers));
-  runs::FollowRun follow(model, answers.statics(),
-                         {options.scene, options.path, std::move(path), answers.map(), line_turned}, trajectory,
-                         options.files());
+  runs::FollowRun follow(answers.statics(), {options.scene, options.path, std::move(path), answers.map(), line_turned},
+                         trajectory, options.files());
   runs::RunPage page(options.page, model, runs::kept_command());
   page.bend_by(answers.map_data());
   page.watch(follow.run(), &answers.statics());

@@ -67,12 +67,12 @@ void check_usage(const GraspOptions& options) {
 
 class GraspRun {
  public:
-  GraspRun(const Model& model, const Statics& statics, const GraspOptions& options, Index body)
-      : model_(model), statics_(statics), options_(options), body_(body) {}
+  GraspRun(const Statics& statics, const GraspOptions& options, Index body)
+      : model_(statics.model()), statics_(statics), options_(options), body_(body) {}
 
   int run(const std::vector<Actuation>& closing, const std::vector<PullDirection>& directions) {
     const auto stage = [&](const std::string& done, const Equilibrium& shape) { tell_stage(done, shape); };
-    const Grasp grasp = close_around(model_, statics_, closing, body_, options_.statics(), shown(), stage);
+    const Grasp grasp = close_around(statics_, closing, body_, options_.statics(), shown(), stage);
     line_.clear();
     if (!grasp.held) {
       std::string text = grasp.last.report.stopped ? why_stopped() + ": " + grasp.remark : grasp.remark;
@@ -120,7 +120,7 @@ class GraspRun {
     bool stopped = false, lost = false;
     for (const PullDirection& direction : directions) {
       const Pull found =
-          largest_pull(model_, statics_, grasp, {body_, direction, options_.most_N}, options_.statics(), shown());
+          largest_pull(statics_, grasp, {body_, direction, options_.most_N}, options_.statics(), shown());
       line_.clear();
       stopped = found.last.report.stopped;
       lost = lost || found.status == Status::not_converged;
@@ -175,7 +175,7 @@ int run_grasp(const GraspOptions& options) {
   catch_interrupt();
   const OutputFolders folders(options.outputs());
   if (!options.json) print(options.scene + ": " + runs::model_summary(model, options.solver_name) + "\n");
-  return GraspRun(model, statics, options, body).run(closing, directions);
+  return GraspRun(statics, options, body).run(closing, directions);
 }
 
 }  // namespace

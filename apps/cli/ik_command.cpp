@@ -84,9 +84,8 @@ class IkRun {
       line.show(-1, text);
       return !interrupted();
     };
-    found_ = search_.shape
-                 ? solve_inverse(model_, answers_.statics(), search_.goals, *search_.shape, search_.inverse, show)
-                 : answers_.inverse(search_.goals, search_.start, search_.inverse, show);
+    found_ = search_.shape ? solve_inverse(answers_.statics(), search_.goals, *search_.shape, search_.inverse, show)
+                           : answers_.inverse(search_.goals, search_.start, search_.inverse, show);
     line.clear();
     if (found_.errors_mm.size() == 0) return no_start();
     write();
@@ -138,7 +137,7 @@ class IkRun {
   [[nodiscard]] std::string sliding_text(const runs::InverseRecord& record) const {
     std::string text;
     if (!found_.sensitivity.regular) return text;
-    for (const auto& [on, by] : runs::sliding_pairs(model_, record.contacts))
+    for (const auto& [on, by] : runs::sliding_pairs(model_, record.forces.contacts))
       text += (text.empty() ? "" : ", ") + on + " on " + by;
     return text.empty() ? text : "the Jacobian is one-sided: that for sliding on, of " + text + "\n";
   }

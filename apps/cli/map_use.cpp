@@ -32,7 +32,9 @@ void check_times(const Model& model, const std::string& path, const SolveOptions
   if (options.instant)
     throw InvalidInput("--instant: " + path + " has times (t_s), so that the material relaxes by them; leave one out");
   const auto is_viscous = [](const Material& material) { return !material.viscosity.empty(); };
-  if (use.map.empty() || use.polish || std::none_of(model.materials.begin(), model.materials.end(), is_viscous)) return;
+  if (use.map.empty() || use.polish ||
+      std::none_of(model.elements.materials.begin(), model.elements.materials.end(), is_viscous))
+    return;
   throw InvalidInput("a map knows relaxed shapes alone, and " + path +
                      " has times (t_s) by which the material relaxes: --map needs --polish, or the times left out");
 }

@@ -185,7 +185,7 @@ class WorkspaceRun {
     const auto work = [&](GroupDesk& groups) {
       if (ranks_.size() == 1 && file_->complete()) return;
       const Statics assembled(asked_.model);
-      solve_groups(asked_.model, assembled, asked_.plan, options_.statics(), thread_count(options_.threads), groups,
+      solve_groups(assembled, asked_.plan, options_.statics(), thread_count(options_.threads), groups,
                    [](const Progress&) { return !interrupted(); });
     };
     ranks_.share(asked_.model, asked_.plan, desk ? &*desk : nullptr, work);

@@ -40,8 +40,8 @@ TargetAnswer target_answer(const Model& model, const TargetRequest& request, con
 
 }  // namespace
 
-std::optional<LiveShape> live_shape(const Model& model, const Statics& statics, const runs::PageDocument& page,
-                                    const Equilibrium& found) {
+std::optional<LiveShape> live_shape(const Statics& statics, const runs::PageDocument& page, const Equilibrium& found) {
+  const Model& model = statics.model();
   const Points& positions = found.state.positions;
   if (!positions.allFinite()) return std::nullopt;
   LiveShape shape;
@@ -64,16 +64,16 @@ std::optional<LiveShape> live_shape(const Model& model, const Statics& statics, 
   return shape;
 }
 
-LiveRobot::LiveRobot(const Model& model, const Statics& statics, const runs::PageDocument& page,
-                     const StaticsOptions& options, Equilibrium rest, Publish publish, LiveEstimator* estimator)
-    : model_(model),
+LiveRobot::LiveRobot(const Statics& statics, const runs::PageDocument& page, const StaticsOptions& options,
+                     Equilibrium rest, Publish publish, LiveEstimator* estimator)
+    : model_(statics.model()),
       statics_(statics),
       page_(page),
       options_(options),
       publish_(std::move(publish)),
       estimator_(estimator) {
   options_.keep_history = false;
-  std::optional<LiveShape> shape = live_shape(model_, statics_, page_, rest);
+  std::optional<LiveShape> shape = live_shape(statics_, page_, rest);
   if (!shape) throw InvalidInput("the robot's shape at rest is not finite");
   stand(std::move(rest), std::move(*shape));
   say(0, shape_);
@@ -170,7 +170,7 @@ void LiveRobot::solve(const CommandRequest& request, std::uint64_t asker) {
   Equilibrium found = statics_.solve(request.commands, last_.state, options_, patience(patience_of_solves));
   if (found.report.status == Status::interrupted) return;
   std::optional<LiveShape> shape;
-  if (found.report.status == Status::converged) shape = live_shape(model_, statics_, page_, found);
+  if (found.report.status == Status::converged) shape = live_shape(statics_, page_, found);
   if (shape) {
     stand(std::move(found), std::move(*shape));
     shape = shape_;
@@ -194,7 +194,7 @@ InverseResult LiveRobot::searched(const std::vector<Goal>& goals, int other_star
   options.statics = options_;
   options.other_starts = other_starts;
   if (sensitivity_) options.start_sensitivity = &*sensitivity_;
-  return solve_inverse(model_, statics_, goals, last_, options, patience(patience_of_searches));
+  return solve_inverse(statics_, goals, last_, options, patience(patience_of_searches));
 }
 
 /// From the last shape; where that leads to no end, from elsewhere too.
@@ -207,7 +207,7 @@ void LiveRobot::search(const TargetRequest& request, std::uint64_t asker) {
     const bool stands = found.equilibrium.report.status == Status::converged && found.errors_mm.size() > 0;
     if (other_starts > 0 && !(stands && found.errors_mm[0] < 0.99 * before)) return;
     std::optional<LiveShape> shape;
-    if (stands) shape = live_shape(model_, statics_, page_, found.equilibrium);
+    if (stands) shape = live_shape(statics_, page_, found.equilibrium);
     if (shape) {
       shape->iterations = found.iterations;
       shape->seconds = found.seconds;
@@ -243,7 +243,7 @@ void LiveRobot::tell(const ReadingsRequest& request, std::uint64_t asker) {
     found.report.status = told.status;
     found.report.iterations = told.iterations;
     found.report.seconds = told.seconds;
-    shape = live_shape(model_, statics_, page_, found);
+    shape = live_shape(statics_, page_, found);
     if (shape) stand(std::move(found), std::move(*shape));
   }
   LiveShape answer = shape_;

@@ -30,8 +30,8 @@ struct LiveAnswer {
 /// What the solver found, as the page shows it; none where it is not finite.
 ///
 /// page  of the same model
-[[nodiscard]] std::optional<LiveShape> live_shape(const Model& model, const Statics& statics,
-                                                  const runs::PageDocument& page, const Equilibrium& found);
+[[nodiscard]] std::optional<LiveShape> live_shape(const Statics& statics, const runs::PageDocument& page,
+                                                  const Equilibrium& found);
 
 /// A robot that is bent while it is asked: a thread that solves the newest request, each from the last equilibrium.
 ///
@@ -46,8 +46,8 @@ class LiveRobot {
 
   /// All must outlive the object. rest: an equilibrium, where it begins; page: of the same model; estimator: tells from
   /// readings, none: those are answered by an error
-  LiveRobot(const Model& model, const Statics& statics, const runs::PageDocument& page, const StaticsOptions& options,
-            Equilibrium rest, Publish publish, LiveEstimator* estimator = nullptr);
+  LiveRobot(const Statics& statics, const runs::PageDocument& page, const StaticsOptions& options, Equilibrium rest,
+            Publish publish, LiveEstimator* estimator = nullptr);
   ~LiveRobot();
   LiveRobot(const LiveRobot&) = delete;
   LiveRobot& operator=(const LiveRobot&) = delete;

@@ -36,17 +36,21 @@ struct LiveServer::Parts : Host {
   [[nodiscard]] const Model& model() const override { return *model_; }
 
   [[nodiscard]] LiveState state_of(const Connection& connection) const override {
-    return {content_.model, connection.has_secret(), controller_ == &connection, controller_ == nullptr && !lent_,
-            lent_,          presence().watchers};
+    return {content_.model,
+            connection.has_secret(),
+            control_.holder == &connection,
+            control_.holder == nullptr && !control_.lent,
+            control_.lent,
+            presence().watchers};
   }
 
   [[nodiscard]] Presence presence() const {
-    return {greeted_.size() - (controller_ != nullptr ? 1 : 0), controller_ != nullptr, lent_};
+    return {greeted_.size() - (control_.holder != nullptr ? 1 : 0), control_.holder != nullptr, control_.lent};
   }
 
   void greet(Connection& connection) override {
     greeted_.insert(&connection);
-    if (connection.has_secret() && controller_ == nullptr && !lent_) {
+    if (connection.has_secret() && control_.holder == nullptr && !control_.lent) {
       give_control(&connection);
     } else {
       connection.tell_state();  // the others with the next sweep
@@ -58,24 +62,24 @@ struct LiveServer::Parts : Host {
   void obey(Connection& connection, const ClientMessage& message) override {
     if (std::holds_alternative<Take>(message)) {
       if (!connection.has_secret()) throw Refusal("only who has the secret of the address takes control");
-      if (lent_) throw Refusal("readings are streamed to the robot, which has no other control meanwhile");
-      if (controller_ != &connection) give_control(&connection);
+      if (control_.lent) throw Refusal("readings are streamed to the robot, which has no other control meanwhile");
+      if (control_.holder != &connection) give_control(&connection);
       return;
     }
-    if (controller_ != &connection) throw Refusal("another one has control, or nobody", id_of(message));
+    if (control_.holder != &connection) throw Refusal("another one has control, or nobody", id_of(message));
     if (const auto* command = std::get_if<CommandRequest>(&message))
-      ask_({turn_, *command});
+      ask_({control_.turn, *command});
     else if (const auto* target = std::get_if<TargetRequest>(&message))
-      ask_({turn_, *target});
+      ask_({control_.turn, *target});
     else if (const auto* readings = std::get_if<ReadingsRequest>(&message))
-      ask_({turn_, *readings});
+      ask_({control_.turn, *readings});
     else
       give_control(nullptr);  // release
   }
 
   void retire(Connection& connection) override {
-    if (lender_ == &connection) lender_ = nullptr;
-    if (greeted_.erase(&connection) > 0 && controller_ == &connection) give_control(nullptr);
+    if (control_.lender == &connection) control_.lender = nullptr;
+    if (greeted_.erase(&connection) > 0 && control_.holder == &connection) give_control(nullptr);
   }
 
   void leave(const std::shared_ptr<Connection>& connection) override {
@@ -85,8 +89,8 @@ struct LiveServer::Parts : Host {
   }
 
   void give_control(Connection* connection) {
-    controller_ = connection;
-    ++turn_;
+    control_.holder = connection;
+    ++control_.turn;
     for (Connection* each : greeted_) {
       if (each->has_frame()) each->show(nobodys_frame());  // its number is of another's request
       each->tell_state();
@@ -94,9 +98,9 @@ struct LiveServer::Parts : Host {
   }
 
   void lend(bool lent) {
-    if (std::exchange(lent_, lent) == lent) return;
-    if (lent) lender_ = controller_;
-    give_control(lent ? nullptr : std::exchange(lender_, nullptr));
+    if (std::exchange(control_.lent, lent) == lent) return;
+    if (lent) control_.lender = control_.holder;
+    give_control(lent ? nullptr : std::exchange(control_.lender, nullptr));
   }
 
   /// The shape for who did not ask for it.
@@ -108,12 +112,12 @@ struct LiveServer::Parts : Host {
   void take_shape(std::shared_ptr<const LiveAnswer> answer) {
     current_ = std::move(answer);
     nobodys_frame_.reset();
-    const bool asked = controller_ != nullptr && current_->asker == turn_;
+    const bool asked = control_.holder != nullptr && current_->asker == control_.turn;
     const Bytes frame =
         asked ? std::make_shared<const std::string>(frame_bytes(current_->shape, current_->shape.id)) : nobodys_frame();
-    if (controller_ != nullptr) controller_->show(frame);
+    if (control_.holder != nullptr) control_.holder->show(frame);
     for (Connection* each : greeted_)
-      if (each != controller_) each->show(frame);
+      if (each != control_.holder) each->show(frame);
   }
 
   void take_map(Bytes text) {
@@ -183,10 +187,14 @@ struct LiveServer::Parts : Host {
   Notice notice_;
 
   Connections connections_, refused_;
-  Connection* controller_ = nullptr;
-  Connection* lender_ = nullptr;   // had control before the robot was lent
-  bool lent_ = false;              // to a stream of readings
-  std::uint64_t turn_ = 0;         // counts who had control
+  /// Who says what the robot does.
+  struct Control {
+    Connection* holder = nullptr;
+    Connection* lender = nullptr;  // had control before the robot was lent
+    bool lent = false;             // to a stream of readings
+    std::uint64_t turn = 0;        // counts who had control
+  };
+  Control control_;
   std::set<Connection*> greeted_;  // of connections_
   Presence told_;
   std::shared_ptr<const LiveAnswer> current_;

@@ -133,10 +133,10 @@ std::string fingerprint_of(const Model& model, const ViewOptions& options) {
 }
 
 /// The shape at rest; Ctrl-C ends the search for it.
-Equilibrium at_rest(const Model& model, const Statics& statics, const StaticsOptions& options) {
+Equilibrium at_rest(const Statics& statics, const StaticsOptions& options) {
   ProgressLine line;
   EquilibriumProgress share;
-  return statics.solve(model.rest_actuation(), statics.rest(), options, [&](const Progress& p) {
+  return statics.solve(statics.model().rest_actuation(), statics.rest(), options, [&](const Progress& p) {
     line.show(share.share(p), EquilibriumProgress::text(p));
     return !interrupted();
   });
@@ -182,7 +182,7 @@ class ViewRun {
 
   /// stream: of readings; null: none
   int run(view::LiveServer& server, view::ReadingStream* stream) {
-    Equilibrium rest = at_rest(model_, statics_, options_.statics());
+    Equilibrium rest = at_rest(statics_, options_.statics());
     const ElementDeformation deformation = statics_.measured(rest.state);
     const StepRecord record = runs::step_record(model_, rest, deformation);
     if (rest.report.status != Status::converged) {
@@ -201,7 +201,7 @@ class ViewRun {
                               model, fresh_secret(), estimator_ ? estimator_->columns().size() : 0};
     const std::string address = "http://127.0.0.1:" + std::to_string(server.port()) + "/#" + content.secret;
     view::LiveRobot robot(
-        model_, statics_, document_, options_.statics(), std::move(rest),
+        statics_, document_, options_.statics(), std::move(rest),
         [&server, stream](auto answer) {
           if (stream != nullptr) stream->answer(answer);
           server.show(std::move(answer));

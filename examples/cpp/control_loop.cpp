@@ -87,7 +87,7 @@ int main(int argc, char** argv) try {
   }
   std::sort(times.begin(), times.end());
   std::printf("%zu tetrahedra, %d ticks: median %.0f us, slowest %.0f us; the tip was at most %.3f mm off\n",
-              model.tetrahedra.size(), ticks, times[times.size() / 2], times.back(), farthest);
+              model.elements.tetrahedra.size(), ticks, times[times.size() / 2], times.back(), farthest);
   return 0;
 } catch (const softkin::InvalidInput& error) {
   std::fprintf(stderr, "%s\n", error.what());

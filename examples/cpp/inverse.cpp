@@ -28,8 +28,7 @@ int main(int argc, char** argv) try {
     told = now.iteration;
     return true;  // false stops the search
   };
-  const softkin::InverseResult found =
-      softkin::solve_inverse(model, statics, {{goal}}, statics.rest(), options, progress);
+  const softkin::InverseResult found = softkin::solve_inverse(statics, {{goal}}, statics.rest(), options, progress);
 
   std::printf("%s: %.4f mm away after %d equilibria, %.3f s\n", softkin::name_of(found.status), found.errors_mm[0],
               found.equilibria, found.seconds);

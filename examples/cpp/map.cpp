@@ -51,12 +51,11 @@ int main(int argc, char** argv) try {
     const softkin::Vec3 target = i % 5 == 4 ? 1.15 * tips[i] : tips[i];
     const std::vector<softkin::Goal> goals{{softkin::PositionGoal{0, target}, 1}};
     begin = microseconds();
-    const softkin::InverseResult found =
-        softkin::solve_inverse_from(robot.model(), robot.statics(), goals, model.rest_actuation());
+    const softkin::InverseResult found = softkin::solve_inverse_from(robot.statics(), goals, model.rest_actuation());
     times.push_back(microseconds() - begin);
     reached += found.status == softkin::InverseStatus::reached ? 1 : 0;
     if (static_cast<int>(i) >= solved) continue;
-    const softkin::InverseResult exact = softkin::solve_inverse_from(model, statics, goals, model.rest_actuation());
+    const softkin::InverseResult exact = softkin::solve_inverse_from(statics, goals, model.rest_actuation());
     ++compared;
     alike += exact.status == found.status ? 1 : 0;
     apart_mm = std::max(apart_mm, (robot.model().markers[0].point.at(found.equilibrium.state.positions) -

@@ -32,15 +32,15 @@ namespace {
 /// The elements of each region of the model, and the materials, as the solver has them.
 std::vector<std::string> materials_of(const Model& model) {
   std::vector<std::string> names;
-  for (const Material& material : model.materials) names.push_back(material.region);
+  for (const Material& material : model.elements.materials) names.push_back(material.region);
   return names;
 }
 
 template <class Of>
 std::vector<Index> roles_of(const Model& model, const Of& of) {
   std::vector<Index> values;
-  for (const ElementRole& role : model.tetrahedron_roles) values.push_back(of(role));
-  for (const ElementRole& role : model.prism_roles) values.push_back(of(role));
+  for (const ElementRole& role : model.elements.tetrahedron_roles) values.push_back(of(role));
+  for (const ElementRole& role : model.elements.prism_roles) values.push_back(of(role));
   return values;
 }
 
@@ -106,7 +106,7 @@ void bind_robot(nb::module_& module) {
       .def_prop_ro("notes", [](const Robot& r) { return r.model().notes; })
       .def_prop_ro("warnings", [](const Robot& r) { return r.model().warnings; })
       .def_prop_ro("materials", [](const Robot& r) { return materials_of(r.model()); })
-      .def_prop_ro("region_names", [](const Robot& r) { return r.model().region_names; })
+      .def_prop_ro("region_names", [](const Robot& r) { return r.model().elements.region_names; })
       .def_prop_ro("actuators", [](const Robot& r) { return r.model().actuators; })
       .def_prop_ro("markers",
                    [](const Robot& r) {
@@ -117,18 +117,20 @@ void bind_robot(nb::module_& module) {
       .def_prop_ro("supports",
                    [](const Robot& r) {
                      std::vector<std::string> names;
-                     for (const Support& support : r.model().supports) names.push_back(support.name);
+                     for (const Support& support : r.model().held.supports) names.push_back(support.name);
                      return names;
                    })
       .def_prop_ro(
           "rest", [](nb::pointer_and_handle<Robot> self) { return view_of(self.p->model().rest, self.h); },
           nb::rv_policy::automatic)
       .def_prop_ro(
-          "tetrahedra", [](const Robot& r) { return cells_out(r.model().tetrahedra); }, nb::rv_policy::automatic)
+          "tetrahedra", [](const Robot& r) { return cells_out(r.model().elements.tetrahedra); },
+          nb::rv_policy::automatic)
       .def_prop_ro(
-          "edge_nodes", [](const Robot& r) { return cells_out(r.model().edge_nodes); }, nb::rv_policy::automatic)
+          "edge_nodes", [](const Robot& r) { return cells_out(r.model().elements.edge_nodes); },
+          nb::rv_policy::automatic)
       .def_prop_ro(
-          "prisms", [](const Robot& r) { return cells_out(r.model().prisms); }, nb::rv_policy::automatic)
+          "prisms", [](const Robot& r) { return cells_out(r.model().elements.prisms); }, nb::rv_policy::automatic)
       .def_prop_ro(
           "element_regions",
           [](const Robot& r) {

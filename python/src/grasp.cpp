@@ -61,11 +61,11 @@ std::shared_ptr<GraspOut> grasp(const RobotPtr& robot, const NamedSteps& closing
         const GraspProgress told = [&callback](const std::string&, const Progress& p) { return callback(p); };
         auto out = std::make_shared<GraspOut>();
         out->body = asked.body;
-        out->grasp = close_around(model, statics, asked.closing, asked.body, asked.options, told);
+        out->grasp = close_around(statics, asked.closing, asked.body, asked.options, told);
         for (const PullDirection& direction : asked.directions) {
           if (!out->grasp.held || (!out->pulls.empty() && out->pulls.back().status == Status::interrupted)) break;
-          out->pulls.push_back(largest_pull(model, statics, out->grasp.last.state,
-                                            {asked.body, direction, asked.most_N}, asked.options, told));
+          out->pulls.push_back(
+              largest_pull(statics, out->grasp.last.state, {asked.body, direction, asked.most_N}, asked.options, told));
         }
         return out;
       };

@@ -92,8 +92,8 @@ std::shared_ptr<Answer> inverse(const Goals& goals, const SessionPtr& session, c
     known.statics = remembering(with->statics, start ? start->found().state : State(), known.statics);
     const bool timed = with->statics.viscous() && std::isfinite(options.statics.elapsed_s);
     if (last && last->found.sensitivity.regular && !timed) known.start_sensitivity = &last->found.sensitivity;
-    return start ? solve_inverse(robot->model(), with->statics, plain, start->found(), known, callback)
-                 : solve_inverse_from(robot->model(), with->statics, plain, begin, known, callback);
+    return start ? solve_inverse(with->statics, plain, start->found(), known, callback)
+                 : solve_inverse_from(with->statics, plain, begin, known, callback);
   };
   auto answer = std::make_shared<Answer>();
   answer->found = watched_solve(*robot, progress, work);

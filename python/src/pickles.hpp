@@ -39,13 +39,18 @@ void members(A& archive, LoadBranch& b) {
   archive(actuator, points);
 }
 template <class A>
+void members(A& archive, PhysicalReport& r) {
+  auto& [residual_N, pull_N, unstable_modes, buckled, buckled_mm, snapped_mm, snapped_from, friction_change,
+         unstable_from, branch] = r;
+  archive(residual_N, pull_N, unstable_modes, buckled, buckled_mm, snapped_mm, snapped_from, friction_change,
+          unstable_from, branch);
+}
+template <class A>
 void members(A& archive, SolveReport& r) {
   auto& [status, stopped, solver, iterations, factorisations, in_double, projections, shifts, steps, reached, remark,
-         energy, step_mm, tolerance_mm, gradient_norm, residual_N, pull_N, unstable_modes, buckled, buckled_mm,
-         snapped_mm, snapped_from, friction_change, unstable_from, error_mm, history, trace, branch, seconds] = r;
+         energy, step_mm, tolerance_mm, gradient_norm, physical, error_mm, history, trace, seconds] = r;
   archive(status, stopped, solver, iterations, factorisations, in_double, projections, shifts, steps, reached, remark,
-          energy, step_mm, tolerance_mm, gradient_norm, residual_N, pull_N, unstable_modes, buckled, buckled_mm,
-          snapped_mm, snapped_from, friction_change, unstable_from, error_mm, history, trace, branch, seconds);
+          energy, step_mm, tolerance_mm, gradient_norm, physical, error_mm, history, trace, seconds);
 }
 template <class A>
 void members(A& archive, Anchor& a) {

@@ -98,7 +98,7 @@ class PathRun : public Runner<runs::StepRecord> {
       : Runner(robot, options),
         session_(robot, map, polish),
         steps_(std::move(steps)),
-        job_(model(), session_.statics, steps_, name, options),
+        job_(session_.statics, steps_, name, options),
         used_(session_.used()),
         run_(model(), job_, files_in(store),
              runs::report_head(model(), model().name, options, used_ ? &*used_ : nullptr), {}) {
@@ -127,7 +127,7 @@ class FollowRun : public Runner<runs::WaypointRecord> {
       : Runner(robot, options.inverse.statics),
         session_(robot, map, polish),
         used_(session_.used()),
-        follow_(model(), session_.statics, {model().name, name, std::move(path), used_ ? &*used_ : nullptr}, options,
+        follow_(session_.statics, {model().name, name, std::move(path), used_ ? &*used_ : nullptr}, options,
                 runs::FollowFolder(made(store))) {
     resume(store);
   }

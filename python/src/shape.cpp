@@ -104,7 +104,7 @@ void bind_fields(nb::class_<Shape>& type) {
           [](const Shape& s) {
             using Three = std::array<double, 3>;
             std::vector<std::tuple<Three, Three, Three>> all;
-            for (const Reaction& r : s.record().reactions)
+            for (const Reaction& r : s.record().forces.reactions)
               all.emplace_back(array_of(r.force), array_of(r.moment), array_of(r.center));
             return all;
           },
@@ -114,7 +114,7 @@ void bind_fields(nb::class_<Shape>& type) {
           [](const Shape& s) {
             using Three = std::array<double, 3>;
             std::optional<std::tuple<Three, Three, Three>> load;
-            if (const auto& of = s.record().magnetic)
+            if (const auto& of = s.record().forces.magnetic)
               load.emplace(array_of(of->force), array_of(of->moment), array_of(of->center));
             return load;
           },
@@ -123,9 +123,9 @@ void bind_fields(nb::class_<Shape>& type) {
           "fibres",
           [](const Shape& s) {
             std::vector<std::tuple<std::string, std::array<double, 3>, std::array<double, 3>, double, double>> all;
-            for (std::size_t f = 0; f < s.record().fibres.size(); ++f) {
-              const FibreForces& of = s.record().fibres[f];
-              all.emplace_back(s.model().fibres[f].name, std::array{of.mean_N, of.largest_N, of.least_N},
+            for (std::size_t f = 0; f < s.record().forces.fibres.size(); ++f) {
+              const FibreForces& of = s.record().forces.fibres[f];
+              all.emplace_back(s.model().reinforcement.fibres[f].name, std::array{of.mean_N, of.largest_N, of.least_N},
                                array_of(of.where), of.stretch, of.slack);
             }
             return all;
@@ -136,9 +136,9 @@ void bind_fields(nb::class_<Shape>& type) {
           [](const Shape& s) {
             using Three = std::array<double, 3>;
             std::vector<std::tuple<std::string, std::array<double, 2>, Three, Three>> all;
-            for (std::size_t l = 0; l < s.record().layers.size(); ++l) {
-              const LayerForces& of = s.record().layers[l];
-              all.emplace_back(s.model().layers[l]->name, std::array{of.largest_N_mm, of.least_N_mm},
+            for (std::size_t l = 0; l < s.record().forces.layers.size(); ++l) {
+              const LayerForces& of = s.record().forces.layers[l];
+              all.emplace_back(s.model().reinforcement.layers[l]->name, std::array{of.largest_N_mm, of.least_N_mm},
                                array_of(of.where), std::array{of.strain, of.wrinkled, of.slack});
             }
             return all;
@@ -150,9 +150,9 @@ void bind_fields(nb::class_<Shape>& type) {
           [](const Shape& s) {
             using Three = std::array<double, 3>;
             std::vector<std::tuple<std::string, std::string, Three, Three, Three, std::array<double, 4>>> all;
-            if (!s.record().contacts) return all;
+            if (!s.record().forces.contacts) return all;
             const auto name = [&](Index part) { return s.model().contact.parts[part].name; };
-            for (const PairForces& pair : *s.record().contacts)
+            for (const PairForces& pair : *s.record().forces.contacts)
               all.emplace_back(name(pair.a), name(pair.b), array_of(pair.force), array_of(pair.moment),
                                array_of(pair.center),
                                std::array{pair.normal_N, pair.pressure_kPa, pair.area_mm2, pair.gap_mm});
@@ -209,7 +209,7 @@ void bind_shape(nb::module_& module) {
       .def_prop_ro("remark", [](const Shape& s) { return s.found().report.remark; })
       .def_prop_ro("iterations", [](const Shape& s) { return s.found().report.iterations; })
       .def_prop_ro("seconds", [](const Shape& s) { return s.found().report.seconds; })
-      .def_prop_ro("unstable_modes", [](const Shape& s) { return s.found().report.unstable_modes; })
+      .def_prop_ro("unstable_modes", [](const Shape& s) { return s.found().report.physical.unstable_modes; })
       .def("report",
            [](const Shape& s) {
              const nb::gil_scoped_release released;

@@ -83,8 +83,7 @@ std::vector<WorkspaceSample> solve_all(const Robot& robot, const WorkspacePlan& 
                                        int threads, Watch& watch, const Counter& kept) {
   MemoryDesk desk(plan, watch);
   const auto work = [&] {
-    solve_groups(robot.model(), robot.statics(), plan, options, threads, desk,
-                 [&](const Progress&) { return watch.go_on(); });
+    solve_groups(robot.statics(), plan, options, threads, desk, [&](const Progress&) { return watch.go_on(); });
   };
   watch.watch(work, [&] { kept(desk.done()); });
   return desk.finish();
@@ -100,8 +99,7 @@ std::vector<WorkspaceSample> solve_into(const Robot& robot, const SamplingOption
       plan, file, [&] { return watch.go_on(); }, [&] { done = file.done(); });
   const auto work = [&] {
     if (file.complete()) return;
-    solve_groups(robot.model(), robot.statics(), plan, options, threads, desk,
-                 [&](const Progress&) { return watch.go_on(); });
+    solve_groups(robot.statics(), plan, options, threads, desk, [&](const Progress&) { return watch.go_on(); });
   };
   watch.watch(work, [&] { kept(done.load()); });
   return file.finish();

@@ -253,7 +253,7 @@ TEST(CalculixDeck, LoadsEveryWallOnce) {
     int face = 0;
     if (!reading || std::sscanf(line.c_str(), "%zu, P%d", &element, &face) != 2) continue;
     ++loads;
-    const Tetrahedron& t = model.tetrahedra[element - 1];
+    const Tetrahedron& t = model.elements.tetrahedra[element - 1];
     const auto corner = [&](int c) { return Vec3(model.rest.row(t[faces[face - 1][c]])); };
     force += 0.5 * (corner(1) - corner(0)).cross(corner(2) - corner(0));
   }

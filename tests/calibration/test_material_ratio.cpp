@@ -176,7 +176,7 @@ TEST(SpecimenTest, AgreesWithTheExample) {
   for (const Formulation formulation : {Formulation::physical, Formulation::target_shape}) {
     const bool physical = formulation == Formulation::physical;
     scene.formulation = formulation;
-    scene.quadratic = physical;
+    scene.mesh_options.quadratic = physical;
     const Model model = compile(scene);
     const Statics statics(model);
     const Equilibrium found = statics.solve(Actuation(0), statics.rest());

@@ -411,7 +411,7 @@ TEST(GivenNumbers, AreOfTheFrameAndStay) {
   const MeasuringFrame frame = robot.frame(three);
   EXPECT_LT((frame.rotation * Vec3(0, 0, 1) - Vec3(1, 0, 0)).norm(), 1e-12) << "base.ry, and then about x";
   EXPECT_LT((frame.place - Vec3(0, 3, 0)).norm(), 1e-12) << "base.z is seen as y";
-  const Points& weight = robot.model(three).dead_load;
+  const Points& weight = robot.model(three).loads.dead;
   EXPECT_NEAR(weight.col(0).sum(), 1100 * 6e-6 * 9.81, 1e-9)
       << "gravity turns in the robot's frame with the base alone";
   EXPECT_NEAR(weight.col(1).sum(), 0, 1e-9);

@@ -19,10 +19,10 @@ void check(const EmbeddedPoint& point, Index vertices) {
 
 void check(const Model& model) {
   const auto vertices = static_cast<Index>(model.rest.rows());
-  require(model.rest.allFinite() && model.held.allFinite() && model.dead_load.allFinite(),
+  require(model.rest.allFinite() && model.held.at.allFinite() && model.loads.dead.allFinite(),
           "a place or load is not finite");
   require_finite(model.diagonal_mm, "the size is not finite");
-  for (const auto* volumes : {&model.tetrahedron_volumes, &model.prism_volumes})
+  for (const auto* volumes : {&model.elements.tetrahedron_volumes, &model.elements.prism_volumes})
     for (const double volume : *volumes) require(std::isfinite(volume) && volume > 0, "an element without volume");
   for (const Actuator& actuator : model.actuators) {
     require(actuator.low <= actuator.high, "a range without values");
@@ -37,7 +37,7 @@ void check(const Model& model) {
     if (const auto* force = actuator.as<ForceCommand>(); force && force->place) check(*force->place, vertices);
   }
   for (const Marker& marker : model.markers) check(marker.point, vertices);
-  for (const Material& material : model.materials) {
+  for (const Material& material : model.elements.materials) {
     const ElasticLaw& law = material.elastic;
     require_finite(law.mu + law.lambda + law.c10 + law.c01 + law.c20 + law.c30 + law.bulk + law.jm,
                    "a modulus is not finite");

@@ -19,7 +19,7 @@ void solve(const char* scene) {
 
   std::vector<Index> markers;
   for (std::size_t i = 0; i < model.markers.size(); ++i) markers.push_back(static_cast<Index>(i));
-  std::cout << "Jacobian [mm per unit]:\n" << jacobian(model, statics, found, markers) << "\n";
+  std::cout << "Jacobian [mm per unit]:\n" << jacobian(statics, found, markers) << "\n";
 
   const runs::StepRecord record = runs::step_record(model, found, measured);
   std::printf("%zu findings; report:\n", runs::findings(model, record).size());

@@ -131,9 +131,9 @@ TEST(Scene, CavitiesAndErrorsOfTheMesh) {
   EXPECT_FALSE(none.as<PneumaticSpec>()->surface || none.as<PneumaticSpec>()->region || none.as<PneumaticSpec>()->wall);
   const RobotSpec strict = parse("softkin: 1\nmesh:\n  file: a.msh\n"),
                   lenient = parse("softkin: 1\nmesh: {file: a.msh, accept_errors: true}\n");
-  EXPECT_FALSE(strict.accept_mesh_errors);
-  EXPECT_EQ(strict.mesh_origin.line, 3u);
-  EXPECT_TRUE(lenient.accept_mesh_errors);
+  EXPECT_FALSE(strict.mesh_options.accept_errors);
+  EXPECT_EQ(strict.mesh_options.origin.line, 3u);
+  EXPECT_TRUE(lenient.mesh_options.accept_errors);
 }
 
 TEST(Scene, WholeSceneCableAndMarkers) {
@@ -159,8 +159,8 @@ TEST(Scene, WholeSceneCableAndMarkers) {
 TEST(Scene, PhysicalSceneMaterials) {
   const RobotSpec spec = parse(physical_scene);
   EXPECT_EQ(spec.formulation, Formulation::physical);
-  EXPECT_TRUE(spec.quadratic);
-  EXPECT_EQ(spec.gravity, Vec3(0, 0.5, -9.81));
+  EXPECT_TRUE(spec.mesh_options.quadratic);
+  EXPECT_EQ(spec.loads.gravity, Vec3(0, 0.5, -9.81));
   ASSERT_EQ(spec.materials.size(), 5u);
   const MaterialSpec &both = spec.materials[0], &rib = spec.materials[1], &plate = spec.materials[4];
   ASSERT_TRUE(both.elastic && rib.elastic);
@@ -212,13 +212,13 @@ TEST(Scene, PhysicalSceneLoads) {
   EXPECT_EQ(tendon.as<CableSpec>()->apexes.size(), 1u);
   EXPECT_EQ(bag.control, Control::ratio);
   EXPECT_EQ(bag.rest, 1);
-  ASSERT_EQ(spec.forces.size(), 2u);
-  EXPECT_EQ(spec.forces[0].name, "load");
-  EXPECT_EQ(region(spec.forces[0].at), "tip");
-  EXPECT_EQ(spec.forces[0].at.origin.line, 21u);
-  EXPECT_EQ(spec.forces[0].force, Vec3(0, 0, -0.5));
-  expect_near(position(spec.forces[1].at), 120, 0, 10);
-  EXPECT_EQ(spec.forces[1].force, Vec3(1, 0, 0));
+  ASSERT_EQ(spec.loads.forces.size(), 2u);
+  EXPECT_EQ(spec.loads.forces[0].name, "load");
+  EXPECT_EQ(region(spec.loads.forces[0].at), "tip");
+  EXPECT_EQ(spec.loads.forces[0].at.origin.line, 21u);
+  EXPECT_EQ(spec.loads.forces[0].force, Vec3(0, 0, -0.5));
+  expect_near(position(spec.loads.forces[1].at), 120, 0, 10);
+  EXPECT_EQ(spec.loads.forces[1].force, Vec3(1, 0, 0));
 }
 
 TEST(Scene, Tractions) {
@@ -229,13 +229,13 @@ TEST(Scene, Tractions) {
       "  - {name: water, box: [[0, 0, 0], [1, 2, 3]], pressure: 5}\n"
       "  - {name: palm, region: side, pressure: 2, range: [0, 9]}\n"
       "  - {name: hand, region: side, range: [-1, 9]}\n");
-  ASSERT_EQ(spec.tractions.size(), 5u);
-  EXPECT_EQ(spec.tractions[3].pressure_kPa, 2);
-  EXPECT_EQ(spec.tractions[3].range_kPa, (std::array<double, 2>{0, 9}));
-  EXPECT_TRUE(spec.tractions[4].follows);
-  EXPECT_EQ(spec.tractions[4].range_kPa, (std::array<double, 2>{-1, 9}));
-  EXPECT_FALSE(spec.tractions[2].range_kPa);
-  const TractionSpec &wind = spec.tractions[0], &skin = spec.tractions[1], &water = spec.tractions[2];
+  ASSERT_EQ(spec.loads.tractions.size(), 5u);
+  EXPECT_EQ(spec.loads.tractions[3].pressure_kPa, 2);
+  EXPECT_EQ(spec.loads.tractions[3].range_kPa, (std::array<double, 2>{0, 9}));
+  EXPECT_TRUE(spec.loads.tractions[4].follows);
+  EXPECT_EQ(spec.loads.tractions[4].range_kPa, (std::array<double, 2>{-1, 9}));
+  EXPECT_FALSE(spec.loads.tractions[2].range_kPa);
+  const TractionSpec &wind = spec.loads.tractions[0], &skin = spec.loads.tractions[1], &water = spec.loads.tractions[2];
   EXPECT_EQ(wind.name, "wind");
   EXPECT_EQ(wind.kilopascals, Vec3(1, -2, 3));
   EXPECT_EQ(wind.where.origin.line, 4u);
@@ -253,14 +253,14 @@ TEST(Scene, Wrenches) {
       "softkin: 1\nmesh: {file: a.msh}\nforces:\n"
       "  - {name: twist, region: tip, moment: [1, -2, 3]}\n"
       "  - {name: tool, region: tip, range: [[-1, 1], [0, 0], [0, 2]], moment_range: [[0, 0], [-5, 5], [0, 0]]}\n");
-  ASSERT_EQ(spec.forces.size(), 2u);
-  EXPECT_EQ(spec.forces[0].moment, Vec3(1, -2, 3));
-  EXPECT_EQ(spec.forces[0].force, Vec3(0, 0, 0));
-  EXPECT_FALSE(spec.forces[0].moment_range);
-  ASSERT_TRUE(spec.forces[1].moment_range && spec.forces[1].range);
-  EXPECT_EQ((*spec.forces[1].moment_range)[0], Vec3(0, -5, 0));
-  EXPECT_EQ((*spec.forces[1].moment_range)[1], Vec3(0, 5, 0));
-  EXPECT_EQ((*spec.forces[1].range)[1], Vec3(1, 0, 2));
+  ASSERT_EQ(spec.loads.forces.size(), 2u);
+  EXPECT_EQ(spec.loads.forces[0].moment, Vec3(1, -2, 3));
+  EXPECT_EQ(spec.loads.forces[0].force, Vec3(0, 0, 0));
+  EXPECT_FALSE(spec.loads.forces[0].moment_range);
+  ASSERT_TRUE(spec.loads.forces[1].moment_range && spec.loads.forces[1].range);
+  EXPECT_EQ((*spec.loads.forces[1].moment_range)[0], Vec3(0, -5, 0));
+  EXPECT_EQ((*spec.loads.forces[1].moment_range)[1], Vec3(0, 5, 0));
+  EXPECT_EQ((*spec.loads.forces[1].range)[1], Vec3(1, 0, 2));
 }
 
 TEST(Scene, Fibres) {
@@ -337,14 +337,15 @@ TEST(Scene, KeysOfThePhysicalFormulationAreAllowedInTheOther) {
       "softkin: 1\nformulation: target-shape\nmesh: {file: quadratic.msh, order: 2}\ngravity: [0, 0, 1]\n"
       "materials: [{shape_ratio: 1, youngs_modulus: 1, poisson_ratio: 0.3, density: 0}]\n"
       "forces: [{name: f, region: tip, force: [1, 0, 0]}]\n");
-  EXPECT_TRUE(spec.quadratic);
+  EXPECT_TRUE(spec.mesh_options.quadratic);
   EXPECT_EQ(spec.mesh.edge_nodes.size(), 2u);
-  EXPECT_EQ(spec.forces.size(), 1u);
+  EXPECT_EQ(spec.loads.forces.size(), 1u);
 }
 
 TEST(Scene, CurvedEdges) {
   const auto curve = [](const std::string& text) {
-    return parse("softkin: 1\nunits: {length: cm}\nmesh: {file: a.msh, order: 2, curve: " + text + "}\n").curve;
+    return parse("softkin: 1\nunits: {length: cm}\nmesh: {file: a.msh, order: 2, curve: " + text + "}\n")
+        .mesh_options.curve;
   };
   EXPECT_FALSE(curve("false"));
   ASSERT_TRUE(curve("true"));
@@ -387,9 +388,9 @@ TEST(Scene, Feet) {
 TEST(Scene, LeastSceneHasDefaults) {
   const RobotSpec spec = parse("\xEF\xBB\xBF# a comment\r\nsoftkin: 1\r\nmesh: {file: a.msh}\r\n");
   EXPECT_EQ(spec.mesh.tetrahedra.size(), 2u);
-  EXPECT_FALSE(spec.quadratic);
-  EXPECT_EQ(spec.gravity, Vec3(0, 0, 0));
-  EXPECT_TRUE(spec.forces.empty());
+  EXPECT_FALSE(spec.mesh_options.quadratic);
+  EXPECT_EQ(spec.loads.gravity, Vec3(0, 0, 0));
+  EXPECT_TRUE(spec.loads.forces.empty());
   EXPECT_TRUE(spec.materials.empty() && spec.actuators.empty() && spec.fixed.empty() && spec.markers.empty());
 }
 
@@ -500,7 +501,7 @@ TEST(Scene, ExamplesOfTheManualAreScenes) {
   EXPECT_EQ(specs[0].formulation, Formulation::target_shape);
   EXPECT_EQ(specs[1].formulation, Formulation::physical);
   EXPECT_EQ(specs[1].actuators.at(0).control, Control::load);
-  EXPECT_EQ(specs[1].forces.size(), 1u);
+  EXPECT_EQ(specs[1].loads.forces.size(), 1u);
   ASSERT_EQ(specs[3].robots.size(), 2u);
   EXPECT_EQ(specs[3].robots[1].name, "right");
   EXPECT_EQ(specs[4].materials.at(0).elastic.value().poisson_ratio, 0.5);
@@ -512,8 +513,8 @@ TEST(Scene, ExamplesOfTheManualAreScenes) {
   EXPECT_EQ(specs[8].actuators[0].as<CableSpec>()->sheath_friction, 0.05);
   EXPECT_EQ(specs[8].actuators[0].as<CableSpec>()->sheath_turns_degrees, 270);
   EXPECT_TRUE(specs[9].actuators.at(0).is<GrowthSpec>());
-  EXPECT_TRUE(specs[10].forces.at(0).moment_range);
-  EXPECT_TRUE(specs[10].tractions.at(0).range_kPa);
+  EXPECT_TRUE(specs[10].loads.forces.at(0).moment_range);
+  EXPECT_TRUE(specs[10].loads.tractions.at(0).range_kPa);
   EXPECT_EQ(specs[11].fibres.size(), 2u);
   ASSERT_EQ(specs[12].layers.size(), 2u);
   EXPECT_TRUE(specs[12].layers[0]->bending);

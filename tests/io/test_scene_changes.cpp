@@ -44,9 +44,9 @@ TEST(SceneChanges, NumbersByTheirPath) {
   EXPECT_EQ(with(arm, {"materials.all.youngs_modulus=0.8"}).materials[2].elastic->youngs_modulus, 0.8);
   EXPECT_EQ(with(arm, {"materials.left.rib.youngs_modulus = 5"}).materials[1].elastic->youngs_modulus, 5);
   EXPECT_EQ(with(arm, {"materials.2.poisson_ratio=0.1"}).materials[1].elastic->poisson_ratio, 0.1);
-  EXPECT_EQ(with(arm, {"gravity.3=-1.62"}).gravity, Vec3(0, 0, -1.62));
-  EXPECT_EQ(with(arm, {"gravity=[1, 2, 3]"}).gravity, Vec3(1, 2, 3));
-  EXPECT_EQ(with(arm, {"gravity=[3, 2, 3]", "gravity.3=5"}).gravity, Vec3(3, 2, 5));  // numbers are no names
+  EXPECT_EQ(with(arm, {"gravity.3=-1.62"}).loads.gravity, Vec3(0, 0, -1.62));
+  EXPECT_EQ(with(arm, {"gravity=[1, 2, 3]"}).loads.gravity, Vec3(1, 2, 3));
+  EXPECT_EQ(with(arm, {"gravity=[3, 2, 3]", "gravity.3=5"}).loads.gravity, Vec3(3, 2, 5));  // numbers are no names
   EXPECT_EQ(with(arm, {"actuators.air.range.2=90"}).actuators[0].high, 90);
   EXPECT_EQ(with(arm, {"materials.2.density=1070"}).materials[1].density, 1070);  // a key that was not there
   const RobotSpec both = with(arm, {"materials.2.youngs_modulus=4", "materials.2.poisson_ratio=0.2"});

@@ -106,12 +106,12 @@ TEST(SceneRobots, WhatIsSaidOfTheWhole) {
       "forces: [{name: push, region: last, force: [1, 0, 0]}]\nmarkers: [{name: tip, region: last}]\n"
       "contact: {friction: 0.4, pairs: [{a: a, b: b, friction: 1}]}\n");
   EXPECT_EQ(spec.formulation, Formulation::physical);
-  EXPECT_EQ(spec.gravity, Vec3(0, 0, -5));
+  EXPECT_EQ(spec.loads.gravity, Vec3(0, 0, -5));
   EXPECT_EQ(std::get<VertexList>(spec.regions.at(2).selector).vertices, std::vector<Index>{9});
   EXPECT_EQ(spec.fixed.at(0).name, "last");
   EXPECT_EQ(spec.rigid.at(1).name, "rigid_2");
   EXPECT_EQ(spec.actuators.at(0).control, Control::load);
-  EXPECT_EQ(spec.forces.at(0).name, "push");
+  EXPECT_EQ(spec.loads.forces.at(0).name, "push");
   EXPECT_EQ(spec.markers.at(0).name, "tip");
   EXPECT_EQ(spec.contact->friction, 0.4);
 }
@@ -120,7 +120,7 @@ TEST(SceneRobots, TheFormulationIsTheirs) {
   EXPECT_EQ(scene_of_robots("robots: [{name: a, scene: physical.yaml}]\n").formulation, Formulation::physical);
   EXPECT_EQ(scene_of_robots("robots: [{name: a, scene: physical.yaml}]\nformulation: target-shape\n").formulation,
             Formulation::target_shape);
-  EXPECT_EQ(scene_of_robots("robots: [{name: a, scene: heavy.yaml}]\n").gravity, Vec3(0, 0, -9.81));
+  EXPECT_EQ(scene_of_robots("robots: [{name: a, scene: heavy.yaml}]\n").loads.gravity, Vec3(0, 0, -9.81));
 }
 
 TEST(SceneRobots, Refusals) {

@@ -29,13 +29,14 @@ std::string refusal_with(const std::string& material, const std::string& top = "
 
 TEST(SceneSubmerged, ByLevelAndBySurface) {
   const std::string gravity = "gravity: [0, 3, -4]\n";
-  const LiquidAroundSpec level = *scene_with("", gravity + "submerged: {density: 1025, level: 0.5}\n").liquid_around;
+  const LiquidAroundSpec level =
+      *scene_with("", gravity + "submerged: {density: 1025, level: 0.5}\n").loads.liquid_around;
   EXPECT_EQ(level.density, 1025);
   EXPECT_LT((level.surface - Vec3(0, -300, 400)).norm(), 1e-9);
-  const LiquidAroundSpec surface = *scene_with("", "submerged: {surface: [0.1, 0, 0.2]}\n").liquid_around;
+  const LiquidAroundSpec surface = *scene_with("", "submerged: {surface: [0.1, 0, 0.2]}\n").loads.liquid_around;
   EXPECT_EQ(surface.density, 1000);
   EXPECT_EQ(surface.surface, Vec3(100, 0, 200));
-  EXPECT_FALSE(scene_with("").liquid_around);
+  EXPECT_FALSE(scene_with("").loads.liquid_around);
 }
 
 TEST(SceneSubmerged, Refusals) {

@@ -11,7 +11,7 @@ namespace softkin::testing {
 inline RobotSpec touched_finger() {
   RobotSpec spec = bending_finger();
   spec.actuators[0] = by_load(spec.actuators[0]);
-  spec.forces = {
+  spec.loads.forces = {
       {"touch", {std::string("z_high"), {}}, {0, 0, 0}, std::array<Vec3, 2>{Vec3(-1, -1, -1), Vec3(1, 1, 1)}}};
   spec.markers = {{"a", {Vec3(20, 1, 15), {}}},
                   {"b", {Vec3(35, 11, 15), {}}},

@@ -36,8 +36,8 @@ TEST(Estimator, SlopesAreThoseOfDifferences) {
       });
       add_volume_region(spec.mesh, "first", [](const Vec3& p) { return p.x() < 10; });
       add_volume_region(spec.mesh, "last", [](const Vec3& p) { return p.x() > 50; });
-      spec.forces[0].at.point = std::string("z_low");
-      spec.quadratic = true;
+      spec.loads.forces[0].at.point = std::string("z_low");
+      spec.mesh_options.quadratic = true;
     }
     const Model model = compile(spec);
     const Problem problem(model, {{"touch", true}, {model.actuators[0].name}}, all_columns(model), exactly(), 1e-9);
@@ -126,7 +126,7 @@ struct Touch {
 
 Touch touched(const Vec3& force, const Vec3& place, double pressure) {
   RobotSpec spec = touched_finger();
-  spec.forces = {{"touch", {place, {}}, force}};
+  spec.loads.forces = {{"touch", {place, {}}, force}};
   const Model model = compile(spec);
   const Statics statics(model);
   Touch touch{commands_of(model, pressure), force, place, {}, {}};
@@ -337,7 +337,7 @@ TEST(Estimator, SaysWhatAVolumeDoesNotTell) {
 /// markers and the strain along the sole.
 TEST(Estimator, TellsCommandsThatWereNotMeasured) {
   RobotSpec spec = touched_finger();
-  spec.forces[0].at.point = Vec3(50, 6, 16);
+  spec.loads.forces[0].at.point = Vec3(50, 6, 16);
   const Model model = compile(spec);
   const Statics statics(model);
   Actuation commands = model.rest_actuation();

@@ -30,7 +30,7 @@ TEST(GradientMethod, ReachesWhatNewtonReaches) {
   const Statics statics(model);
   const Equilibrium made = settled(statics, values({1.3, 1.2}));
   const std::vector<Goal> goals{{PositionGoal{0, marker_at(model, made)}}};
-  const InverseResult result = solve_inverse(model, statics, goals, statics.rest(), by_gradient(0.2));
+  const InverseResult result = solve_inverse(statics, goals, statics.rest(), by_gradient(0.2));
   ASSERT_EQ(result.status, InverseStatus::reached) << result.remark;
   EXPECT_LE((marker_at(model, result.equilibrium) - marker_at(model, made)).norm(), 0.2);
   // each iteration takes two equilibria per actuator and those of its line search
@@ -40,7 +40,7 @@ TEST(GradientMethod, ReachesWhatNewtonReaches) {
       EXPECT_GE(record.actuation[a], 1);
       EXPECT_LE(record.actuation[a], 1.6);
     }
-  const InverseResult newton = solve_inverse(model, statics, goals, statics.rest());
+  const InverseResult newton = solve_inverse(statics, goals, statics.rest());
   EXPECT_EQ(newton.status, InverseStatus::reached);
   EXPECT_LT(3 * newton.equilibria, result.equilibria);
 }
@@ -53,14 +53,14 @@ TEST(GradientMethod, DescendsAndSaysWhereItStopped) {
   double last = goal_errors(model, goals, model.rest)[0];
   for (const int iterations : {1, 2, 4}) {
     options.max_iterations = iterations;
-    const InverseResult result = solve_inverse(model, statics, goals, statics.rest(), options);
+    const InverseResult result = solve_inverse(statics, goals, statics.rest(), options);
     EXPECT_EQ(result.status, InverseStatus::not_converged);
     EXPECT_NE(result.remark, "");
     EXPECT_LE(result.iterations, iterations);
     EXPECT_LE(result.errors_mm[0], last);
     last = result.errors_mm[0];
   }
-  const InverseResult newton = solve_inverse(model, statics, goals, statics.rest());
+  const InverseResult newton = solve_inverse(statics, goals, statics.rest());
   EXPECT_EQ(newton.status, InverseStatus::unreachable);
   EXPECT_LE(newton.errors_mm[0], last + 1e-6);
 }
@@ -70,8 +70,8 @@ TEST(GradientMethod, CanBeInterrupted) {
   const Statics statics(model);
   const std::vector<Goal> goals{{PositionGoal{0, {45, 10, 16}}}};
   int calls = 0;
-  const InverseResult result = solve_inverse(model, statics, goals, statics.rest(), by_gradient(0.2),
-                                             [&](const Progress&) { return ++calls < 12; });
+  const InverseResult result =
+      solve_inverse(statics, goals, statics.rest(), by_gradient(0.2), [&](const Progress&) { return ++calls < 12; });
   EXPECT_EQ(result.status, InverseStatus::interrupted);
   EXPECT_TRUE(result.equilibrium.state.positions.allFinite());
 }

@@ -31,7 +31,7 @@ TEST(GrowthKinematics, InverseKinematicsFindsTheTemperature) {
   const Statics statics(model);
   const Vec3 target = marker_at(model, settled(statics, values({71})));
   EXPECT_GT((target - Vec3(40, 2, 2)).norm(), 2);
-  const InverseResult result = solve_inverse(model, statics, {{PositionGoal{0, target}}}, statics.rest());
+  const InverseResult result = solve_inverse(statics, {{PositionGoal{0, target}}}, statics.rest());
   EXPECT_EQ(result.status, InverseStatus::reached) << result.remark;
   EXPECT_NEAR(result.equilibrium.actuation[0], 71, 0.5);
 }

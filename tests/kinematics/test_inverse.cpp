@@ -77,7 +77,7 @@ void expect_reached(RobotSpec spec, int targets, unsigned seed) {
   std::mt19937 engine(seed);
   for (int i = 0; i < targets; ++i) {
     const Equilibrium made = settled(statics, random_actuation(model, engine));
-    const InverseResult result = solve_inverse(model, statics, at_point(marker_at(model, made)), statics.rest());
+    const InverseResult result = solve_inverse(statics, at_point(marker_at(model, made)), statics.rest());
     ASSERT_EQ(result.status, InverseStatus::reached) << result.remark << ", error " << result.errors_mm.transpose();
     EXPECT_LE((marker_at(model, result.equilibrium) - marker_at(model, made)).norm(), 1e-3);
     EXPECT_NEAR((marker_at(model, result.equilibrium) - marker_at(model, made)).norm(), result.errors_mm[0], 1e-9);
@@ -142,7 +142,7 @@ double weighted_error(const std::vector<Goal>& goals, const InverseResult& resul
 void expect_nearest(const RobotSpec& spec, const std::vector<Goal>& goals, int cells, double resolution_mm) {
   const Model model = compile(spec);
   const Statics statics(model);
-  const InverseResult result = solve_inverse(model, statics, goals, statics.rest());
+  const InverseResult result = solve_inverse(statics, goals, statics.rest());
   EXPECT_EQ(result.status, InverseStatus::unreachable) << result.remark;
   EXPECT_NE(result.remark, "");
   const double least = least_on_grid(model, statics, goals, cells), found = weighted_error(goals, result);
@@ -172,7 +172,7 @@ TEST(Inverse, WeightsDecideBetweenGoals) {
 TEST(Inverse, TellsWhichRangesBind) {
   const Model model = compile(chambers(2));
   const Statics statics(model);
-  const InverseResult far = solve_inverse(model, statics, at_point({200, 10, 100}), statics.rest());
+  const InverseResult far = solve_inverse(statics, at_point({200, 10, 100}), statics.rest());
   EXPECT_EQ(far.status, InverseStatus::unreachable);
   for (Index a = 0; a < 2; ++a) {
     const auto& actuator = model.actuators[a];
@@ -193,7 +193,7 @@ TEST(Inverse, OfManyAnswersTheNearest) {
   for (const Actuation& preferred : {Actuation(), values({1.5, 1.5})}) {
     InverseOptions options;
     options.preferred = preferred;
-    const InverseResult result = solve_inverse(model, statics, goals, first.state, options);
+    const InverseResult result = solve_inverse(statics, goals, first.state, options);
     ASSERT_EQ(result.status, InverseStatus::reached) << result.remark;
     const Actuation& near = preferred.size() > 0 ? preferred : first.actuation;
     double least = HUGE_VAL;
@@ -219,7 +219,7 @@ TEST(Inverse, PullsASlackCableAndLeavesTheOtherSlack) {
   const Statics statics(model);
   const Equilibrium made = settled(statics, values({0.85, 1.1}));
   const Equilibrium slack = settled(statics, values({1.1, 1.08}));
-  const InverseResult result = solve_inverse(model, statics, at_point(marker_at(model, made)), slack.state);
+  const InverseResult result = solve_inverse(statics, at_point(marker_at(model, made)), slack.state);
   ASSERT_EQ(result.status, InverseStatus::reached) << result.remark;
   EXPECT_NEAR(result.equilibrium.actuation[0], 0.85, 1e-4);
   EXPECT_DOUBLE_EQ(result.equilibrium.actuation[1], 1.08);  // as it was at the start
@@ -237,7 +237,7 @@ TEST(Inverse, PlanesAndDirections) {
   const Vec3 tip = marker_at(model, made), side = marker_at(model, made, 1), normal(1, 2, -0.5);
   const std::vector<Goal> goals{{PlaneGoal{0, tip + normal.cross(Vec3(0, 0, 9)), normal}, 2},
                                 {DirectionGoal{0, 1, 3 * (side - tip), 20}}};
-  const InverseResult result = solve_inverse(model, statics, goals, statics.rest());
+  const InverseResult result = solve_inverse(statics, goals, statics.rest());
   ASSERT_EQ(result.status, InverseStatus::reached) << result.remark;
   const Vec3 found_tip = marker_at(model, result.equilibrium), found_side = marker_at(model, result.equilibrium, 1);
   EXPECT_LT(std::abs((found_tip - tip).dot(normal.normalized())), 1e-3);
@@ -253,13 +253,13 @@ TEST(Inverse, FixedActuatorsStay) {
   const Equilibrium start = settled(statics, values({1.0, 1.1, 1.4}));
   InverseOptions options;
   options.free = {true, true, false};
-  const InverseResult result = solve_inverse(model, statics, at_point(marker_at(model, made)), start.state, options);
+  const InverseResult result = solve_inverse(statics, at_point(marker_at(model, made)), start.state, options);
   ASSERT_EQ(result.status, InverseStatus::reached) << result.remark;
   EXPECT_EQ(result.equilibrium.actuation[2], 1.4);
   EXPECT_LT((result.equilibrium.actuation - made.actuation).norm(), 1e-3);
   for (const InverseTrial& record : result.history) EXPECT_EQ(record.actuation[2], 1.4);
   options.free = {false, false, false};
-  const InverseResult still = solve_inverse(model, statics, at_point(marker_at(model, made)), start.state, options);
+  const InverseResult still = solve_inverse(statics, at_point(marker_at(model, made)), start.state, options);
   EXPECT_EQ(still.status, InverseStatus::unreachable);
   EXPECT_EQ(still.equilibrium.actuation, start.actuation);
 }
@@ -274,12 +274,12 @@ TEST(Inverse, AWarmTargetCostsOneEquilibriumOrTwo) {
   int equilibria = 0;
   for (int i = 1; i <= 10; ++i) {
     const Vec3 target = marker_at(model, settled(statics, on_path(i)));
-    InverseResult next = solve_inverse(model, statics, at_point(target), last.equilibrium.state, options);
+    InverseResult next = solve_inverse(statics, at_point(target), last.equilibrium.state, options);
     ASSERT_EQ(next.status, InverseStatus::reached);
     const InverseResult computed = [&] {
       InverseOptions fresh = options;
       fresh.start_sensitivity = nullptr;
-      return solve_inverse(model, statics, at_point(target), last.equilibrium.state, fresh);
+      return solve_inverse(statics, at_point(target), last.equilibrium.state, fresh);
     }();
     EXPECT_LT((computed.equilibrium.actuation - next.equilibrium.actuation).norm(), 1e-4);
     EXPECT_EQ(computed.equilibria, next.equilibria);
@@ -289,15 +289,14 @@ TEST(Inverse, AWarmTargetCostsOneEquilibriumOrTwo) {
   }
   EXPECT_LE(equilibria, 20);
   // and where it is already, none
-  EXPECT_EQ(solve_inverse(model, statics, at_point(marker_at(model, last.equilibrium)), last.equilibrium).equilibria,
-            0);
+  EXPECT_EQ(solve_inverse(statics, at_point(marker_at(model, last.equilibrium)), last.equilibrium).equilibria, 0);
 }
 
 TEST(Inverse, SensitivityIsThatOfTheAnswer) {
   const Model model = compile(loaded_robot());
   const Statics statics(model);
   const Equilibrium made = settled(statics, values({1.3, 20, 0.95}));
-  const InverseResult result = solve_inverse(model, statics, at_point(marker_at(model, made)), statics.rest());
+  const InverseResult result = solve_inverse(statics, at_point(marker_at(model, made)), statics.rest());
   ASSERT_EQ(result.status, InverseStatus::reached);
   const Eigen::MatrixXd found = jacobian(model, result.equilibrium.state.positions, result.sensitivity, {0});
   for (Index a = 0; a < 3; ++a) {
@@ -320,7 +319,7 @@ TEST(Inverse, StopsWhereEquilibriaEnd) {
   const Statics statics(model);
   InverseOptions options;
   options.other_starts = 0;
-  const InverseResult result = solve_inverse(model, statics, at_point({-500, 6, -500}), statics.rest(), options);
+  const InverseResult result = solve_inverse(statics, at_point({-500, 6, -500}), statics.rest(), options);
   expect_inside(model, result);
   EXPECT_TRUE(result.status == InverseStatus::unreachable || result.status == InverseStatus::not_converged);
   EXPECT_NE(result.remark, "");
@@ -342,7 +341,7 @@ TEST(Inverse, CanBeInterrupted) {
   const Statics statics(model);
   int calls = 0;
   const InverseResult result =
-      solve_inverse(model, statics, at_point({40, 10, 0}), statics.rest(), {}, [&](const Progress& p) {
+      solve_inverse(statics, at_point({40, 10, 0}), statics.rest(), {}, [&](const Progress& p) {
         EXPECT_GE(p.iteration, 0);
         return ++calls < 6;
       });
@@ -358,7 +357,7 @@ TEST(Inverse, EndsWithItsAllowance) {
   InverseOptions options;
   options.max_equilibria = 2;
   const Vec3 target = marker_at(model, settled(statics, values({1.5, 1.2})));
-  const InverseResult result = solve_inverse(model, statics, at_point(target), statics.rest(), options);
+  const InverseResult result = solve_inverse(statics, at_point(target), statics.rest(), options);
   EXPECT_EQ(result.status, InverseStatus::not_converged);
   EXPECT_EQ(result.equilibria, 2);
   EXPECT_NE(result.remark.find("2 equilibria"), std::string::npos) << result.remark;
@@ -368,7 +367,7 @@ TEST(Inverse, RefusesBadOptions) {
   const Model model = compile(chambers(2));
   const Statics statics(model);
   const auto refused = [&](const State& start, const InverseOptions& options) {
-    EXPECT_THROW((void)solve_inverse(model, statics, at_point({48, 10, 5}), start, options), InvalidInput);
+    EXPECT_THROW((void)solve_inverse(statics, at_point({48, 10, 5}), start, options), InvalidInput);
   };
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const auto with = [](const auto& change) {
@@ -393,8 +392,8 @@ TEST(Inverse, RefusesBadOptions) {
   start = statics.rest();
   start.positions(0, 0) = nan;
   refused(start, {});
-  EXPECT_THROW((void)solve_inverse(model, statics, at_point({nan, 0, 0}), statics.rest()), InvalidInput);
-  EXPECT_THROW((void)solve_inverse(model, statics, {}, statics.rest()), InvalidInput);
+  EXPECT_THROW((void)solve_inverse(statics, at_point({nan, 0, 0}), statics.rest()), InvalidInput);
+  EXPECT_THROW((void)solve_inverse(statics, {}, statics.rest()), InvalidInput);
 }
 
 }  // namespace

@@ -52,7 +52,7 @@ struct Pressing {
 
   [[nodiscard]] Vec3 force(const ForceGoal& goal, const Equilibrium& found) const {
     const std::vector<Goal> goals{{goal}};
-    return inverse::exertions_of(model, statics, goals, found.state)[0].force;
+    return inverse::exertions_of(statics, goals, found.state)[0].force;
   }
   [[nodiscard]] ForceGoal asked(const std::string& name, const Vec3& force, std::array<bool, 3> axes) const {
     ForceGoal goal = force_on(model, name);
@@ -70,14 +70,14 @@ std::vector<inverse::ExertionSlopes> slopes_at(const Pressing& robot, const std:
                                                const Equilibrium& found, Sensitivity& sensitivity) {
   inverse::Pose pose;
   pose.equilibrium = found;
-  pose.exertions = inverse::exertions_of(robot.model, robot.statics, goals, found.state);
-  return inverse::exertion_slopes(robot.model, robot.statics, goals, pose, tight(), 1e-10, sensitivity);
+  pose.exertions = inverse::exertions_of(robot.statics, goals, found.state);
+  return inverse::exertion_slopes(robot.statics, goals, pose, tight(), 1e-10, sensitivity);
 }
 
 /// Terms of forces by the commands, against those of equilibria beside.
 void expect_slopes(const Pressing& robot, const std::vector<Goal>& goals, const Actuation& at, double accuracy) {
   const Equilibrium found = settled(robot.statics, at);
-  const auto exertions = inverse::exertions_of(robot.model, robot.statics, goals, found.state);
+  const auto exertions = inverse::exertions_of(robot.statics, goals, found.state);
   Sensitivity sensitivity = robot.statics.sensitivity(found.state, tight(), 1e-10);
   const auto changes = slopes_at(robot, goals, found, sensitivity);
   const Eigen::MatrixXd slopes =
@@ -87,8 +87,7 @@ void expect_slopes(const Pressing& robot, const std::vector<Goal>& goals, const 
     Actuation beside = at;
     beside[a] += change;
     const State there = robot.statics.solve(beside, found.state, tight()).state;
-    return inverse::goal_terms(robot.model, goals, there.positions,
-                               inverse::exertions_of(robot.model, robot.statics, goals, there));
+    return inverse::goal_terms(robot.model, goals, there.positions, inverse::exertions_of(robot.statics, goals, there));
   };
   for (Index a = 0; a < 3; ++a) {  // chambers
     const Eigen::VectorXd near = (terms_at(a, reach) - terms_at(a, -reach)) / (2 * reach);
@@ -134,14 +133,14 @@ TEST(InverseForces, SlopesOfAForceThatRubsAreThoseForSlidingOn) {
   for (const double high : {2.8, 2.9, 3.0})
     found = robot.statics.solve(values({1, 1, high}), found.state, tight(1e-10));
   ASSERT_EQ(found.report.status, Status::converged);
-  const auto exertions = inverse::exertions_of(robot.model, robot.statics, goals, found.state);
+  const auto exertions = inverse::exertions_of(robot.statics, goals, found.state);
   EXPECT_GT(std::abs(exertions[0].force.x()), 0.1);
   Sensitivity sensitivity = robot.statics.sensitivity(found.state, tight(), 1e-10);
   const auto changes = slopes_at(robot, goals, found, sensitivity);
   constexpr double step = 1e-4;
   const Equilibrium further = robot.statics.solve(values({1, 1, 3 + step}), found.state, tight(1e-11));
   const Vec3 difference =
-      (inverse::exertions_of(robot.model, robot.statics, goals, further.state)[0].force - exertions[0].force) / step;
+      (inverse::exertions_of(robot.statics, goals, further.state)[0].force - exertions[0].force) / step;
   EXPECT_LT((changes[0].force.col(2) - difference).norm(), 1e-2 * difference.norm())
       << changes[0].force.col(2).transpose() << " and " << difference.transpose();
 }
@@ -151,7 +150,7 @@ TEST(InverseForces, SlopesOfAGapEqualDifferences) {
   const Pressing robot(beam_over_a_floor());
   const std::vector<Goal> goals{{robot.asked("floor", {0, 0, -2}, only_z)}};
   const Equilibrium found = settled(robot.statics, values({1.05, 1.02, 1.1}));
-  const auto exertions = inverse::exertions_of(robot.model, robot.statics, goals, found.state);
+  const auto exertions = inverse::exertions_of(robot.statics, goals, found.state);
   ASSERT_TRUE(exertions[0].gap.has_value());
   EXPECT_GT(exertions[0].gap->width_mm, 0.1);
   EXPECT_LT(exertions[0].gap->towards.z(), -0.999);
@@ -168,7 +167,7 @@ TEST(InverseForces, ALoadCellIsPressedAsAsked) {
     const Vec3 force = robot.force(any, made);
     const std::vector<Goal> goals{{robot.asked("cell", force, {false, true, true})},
                                   {PositionGoal{1, marker_at(robot.model, made, 1), only_x}}};
-    const InverseResult result = solve_inverse(robot.model, robot.statics, goals, robot.statics.rest());
+    const InverseResult result = solve_inverse(robot.statics, goals, robot.statics.rest());
     ASSERT_EQ(result.status, InverseStatus::reached) << result.remark << ", errors " << result.errors_mm.transpose();
     const Equilibrium again = settled(robot.statics, result.equilibrium.actuation);
     EXPECT_LT((robot.force(any, again) - force).tail<2>().norm(), 2e-3 * force.norm());
@@ -193,7 +192,7 @@ TEST(InverseForces, AFloorIsPressedWhileAMarkerStays) {
     const Vec3 there = marker_at(robot.model, made);
     const std::vector<Goal> goals{{robot.asked("floor", {0, 0, force}, only_z)},
                                   {PositionGoal{0, there, {true, true, false}}}};
-    const InverseResult result = solve_inverse(robot.model, robot.statics, goals, robot.statics.rest());
+    const InverseResult result = solve_inverse(robot.statics, goals, robot.statics.rest());
     ASSERT_EQ(result.status, InverseStatus::reached) << result.remark << ", errors " << result.errors_mm.transpose();
     const Equilibrium again = settled(robot.statics, result.equilibrium.actuation);
     EXPECT_NEAR(robot.force(any, again).z(), force, 2e-3 * std::abs(force));
@@ -209,7 +208,7 @@ TEST(InverseForces, AFloorThatRubsIsPressedAsAsked) {
   const std::vector<Goal> goals{{robot.asked("floor", {0, 0, -2}, only_z)}};
   ASSERT_EQ(doubts_about(robot.model, goals).size(), 1u);
   EXPECT_NE(doubts_about(robot.model, goals)[0].find("remembers its way"), std::string::npos);
-  const InverseResult result = solve_inverse(robot.model, robot.statics, goals, robot.statics.rest());
+  const InverseResult result = solve_inverse(robot.statics, goals, robot.statics.rest());
   ASSERT_EQ(result.status, InverseStatus::reached) << result.remark << ", errors " << result.errors_mm.transpose();
   EXPECT_NEAR(robot.force(robot.asked("floor", {0, 0, -2}, only_z), result.equilibrium).z(), -2, 0.0021);
 }
@@ -217,14 +216,14 @@ TEST(InverseForces, AFloorThatRubsIsPressedAsAsked) {
 TEST(InverseForces, SaysWhatIsOutOfReach) {
   const Pressing robot(beam_over_a_floor());
   const std::vector<Goal> much{{robot.asked("floor", {0, 0, -200}, only_z)}};
-  const InverseResult most = solve_inverse(robot.model, robot.statics, much, robot.statics.rest());
+  const InverseResult most = solve_inverse(robot.statics, much, robot.statics.rest());
   EXPECT_EQ(most.status, InverseStatus::unreachable) << most.remark;
   EXPECT_NE(most.active, (std::vector<int>{0, 0, 0}));
   EXPECT_GT(most.errors_mm[0], 0.9);
   EXPECT_LT(robot.force(robot.asked("floor", {0, 0, -1}, only_z), most.equilibrium).z(), -2);
   // a floor does not hold back
   const std::vector<Goal> pull{{robot.asked("floor", {0, 0, 2}, only_z)}};
-  const InverseResult none = solve_inverse(robot.model, robot.statics, pull, robot.statics.rest());
+  const InverseResult none = solve_inverse(robot.statics, pull, robot.statics.rest());
   EXPECT_EQ(none.status, InverseStatus::unreachable);
   EXPECT_NE(none.remark.find("nothing touches 'floor' there"), std::string::npos) << none.remark;
   EXPECT_NEAR(none.errors_mm[0], 1, 1e-12);
@@ -236,7 +235,7 @@ TEST(InverseForces, AnObstacleOutOfReachStaysUntouched) {
   spec.contact->obstacles = {{"wall", Halfspace{{0, 0, -60}, {0, 0, 1}}, std::nullopt, {}}};
   const Pressing robot(spec);
   const std::vector<Goal> goals{{robot.asked("wall", {0, 0, -2}, only_z)}};
-  const InverseResult result = solve_inverse(robot.model, robot.statics, goals, robot.statics.rest());
+  const InverseResult result = solve_inverse(robot.statics, goals, robot.statics.rest());
   EXPECT_EQ(result.status, InverseStatus::unreachable) << result.remark;
   EXPECT_NE(result.remark.find("nothing touches 'wall' there"), std::string::npos) << result.remark;
   EXPECT_EQ(result.active[2], 1);  // it came as near as it can

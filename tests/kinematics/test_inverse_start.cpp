@@ -43,8 +43,8 @@ void expect_told(const SettledBeam& beam, const InverseResult& result) {
   EXPECT_EQ(told.tolerance_mm, known.tolerance_mm);
   EXPECT_GT(told.step_mm, 0);
   EXPECT_LE(told.step_mm, told.tolerance_mm);
-  EXPECT_NEAR(told.pull_N, known.pull_N, 1e-6 * known.pull_N);
-  EXPECT_LE(told.residual_N, 1e-6 * told.pull_N);
+  EXPECT_NEAR(told.physical.pull_N, known.physical.pull_N, 1e-6 * known.physical.pull_N);
+  EXPECT_LE(told.physical.residual_N, 1e-6 * told.physical.pull_N);
   EXPECT_NEAR(told.energy, known.energy, 1e-9 * known.energy);
   EXPECT_EQ(result.equilibrium.actuation, beam.start.actuation);
   EXPECT_LT(distance(result.equilibrium.state.positions, beam.start.state.positions), 1e-5);
@@ -58,8 +58,7 @@ TEST(InverseStart, StoppedItKeepsTheBest) {
   double least = at_start;
   for (int looks = 0;; looks += 5) {
     const auto stop = [looks](const Progress&) mutable { return looks-- > 0; };
-    const InverseResult found =
-        solve_inverse(beam.model, beam.statics, beam.tip_at(target), beam.start, InverseOptions(), stop);
+    const InverseResult found = solve_inverse(beam.statics, beam.tip_at(target), beam.start, InverseOptions(), stop);
     if (!found.stopped) break;
     ASSERT_EQ(found.status, InverseStatus::interrupted) << looks;
     EXPECT_LE(found.errors_mm[0], at_start + 1e-9);
@@ -71,26 +70,25 @@ TEST(InverseStart, StoppedItKeepsTheBest) {
   EXPECT_LT(least, at_start) << "nothing was stopped on its way";
   InverseOptions options;
   options.statics.deadline = Deadline(1e-9);
-  const InverseResult late = solve_inverse(beam.model, beam.statics, beam.tip_at(target), beam.start, options);
+  const InverseResult late = solve_inverse(beam.statics, beam.tip_at(target), beam.start, options);
   EXPECT_EQ(late.status, InverseStatus::not_converged);
   EXPECT_EQ(late.remark, "the budget of 1e-09 s was spent");
   EXPECT_TRUE(late.stopped);
-  const InverseResult none =
-      solve_inverse_from(beam.model, beam.statics, beam.tip_at(target), beam.start.actuation, options);
+  const InverseResult none = solve_inverse_from(beam.statics, beam.tip_at(target), beam.start.actuation, options);
   EXPECT_EQ(none.status, InverseStatus::not_converged);
   EXPECT_EQ(none.errors_mm.size(), 1);
 }
 
 TEST(InverseStart, ThatStaysBestIsMeasured) {
   const SettledBeam beam;
-  const InverseResult reached = solve_inverse(beam.model, beam.statics, beam.tip_at(beam.tip()), beam.start.state);
+  const InverseResult reached = solve_inverse(beam.statics, beam.tip_at(beam.tip()), beam.start.state);
   EXPECT_EQ(reached.status, InverseStatus::reached);
   EXPECT_EQ(reached.equilibria, 1);
   expect_told(beam, reached);
   InverseOptions options;
   options.free = {false, false, false};
   const InverseResult missed =
-      solve_inverse(beam.model, beam.statics, beam.tip_at(beam.tip() + Vec3(0, 0, 1)), beam.start.state, options);
+      solve_inverse(beam.statics, beam.tip_at(beam.tip() + Vec3(0, 0, 1)), beam.start.state, options);
   EXPECT_EQ(missed.status, InverseStatus::unreachable);
   EXPECT_NEAR(missed.errors_mm[0], 1, 1e-5);
   expect_told(beam, missed);
@@ -98,11 +96,11 @@ TEST(InverseStart, ThatStaysBestIsMeasured) {
 
 TEST(InverseStart, WithAReportKeepsIt) {
   const SettledBeam beam;
-  const InverseResult result = solve_inverse(beam.model, beam.statics, beam.tip_at(beam.tip()), beam.start);
+  const InverseResult result = solve_inverse(beam.statics, beam.tip_at(beam.tip()), beam.start);
   EXPECT_EQ(result.status, InverseStatus::reached);
   EXPECT_EQ(result.equilibria, 0);
   EXPECT_EQ(result.equilibrium.report.iterations, beam.start.report.iterations);
-  EXPECT_EQ(result.equilibrium.report.residual_N, beam.start.report.residual_N);
+  EXPECT_EQ(result.equilibrium.report.physical.residual_N, beam.start.report.physical.residual_N);
   EXPECT_EQ(result.equilibrium.state.positions, beam.start.state.positions);
   expect_told(beam, result);
 }
@@ -111,8 +109,8 @@ TEST(InverseStart, OfASolveThatDidNotConvergeIsMeasured) {
   const SettledBeam beam;
   Equilibrium lost = beam.start;
   lost.report.status = Status::limit;  // farther on; its state is an equilibrium
-  lost.report.pull_N = 0;
-  const InverseResult result = solve_inverse(beam.model, beam.statics, beam.tip_at(beam.tip()), lost);
+  lost.report.physical.pull_N = 0;
+  const InverseResult result = solve_inverse(beam.statics, beam.tip_at(beam.tip()), lost);
   EXPECT_EQ(result.equilibria, 1);
   expect_told(beam, result);
 }
@@ -127,10 +125,10 @@ TEST(InverseStart, OfAWaypointIsThatOfItsPrediction) {
     waypoint.targets = {marker_at(beam.model, settled(beam.statics, actuation))};
     path.waypoints.push_back(waypoint);
   }
-  for (const InverseResult& each : follow_path(beam.model, beam.statics, path)) {
+  for (const InverseResult& each : follow_path(beam.statics, path)) {
     EXPECT_EQ(each.status, InverseStatus::reached);
     EXPECT_EQ(each.equilibrium.report.solver, "newton");
-    EXPECT_GT(each.equilibrium.report.pull_N, 0);
+    EXPECT_GT(each.equilibrium.report.physical.pull_N, 0);
     EXPECT_GT(each.equilibrium.report.tolerance_mm, 0);
   }
 }

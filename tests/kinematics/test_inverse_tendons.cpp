@@ -13,7 +13,7 @@ using namespace testing;
 
 RobotSpec arm_with_two_tendons() {
   RobotSpec spec = physical_robot(block_mesh({10, 2, 2}, {80, 8, 8}));
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   spec.materials[0].elastic = elastic(Law::neo_hookean, 3, 0.4);
   spec.markers = {{"tip", {std::string("x_high"), {}}}};
   spec.actuators = {by_load(cable("upper", {{0, 4, 7}, {80, 4, 7}}), 0, 6),
@@ -37,7 +37,7 @@ TEST(InverseTendons, AnswersAreReachedFromTheStart) {
       const Equilibrium there = statics.solve(commands, start, tight());
       ASSERT_EQ(there.report.status, Status::converged);
       const std::vector<Goal> goals{{PositionGoal{0, marker_at(model, there)}}};
-      const InverseResult found = solve_inverse(model, statics, goals, start, options);
+      const InverseResult found = solve_inverse(statics, goals, start, options);
       ASSERT_EQ(found.status, InverseStatus::reached) << found.remark;
       const Equilibrium again = statics.solve(found.equilibrium.actuation, start, tight());
       EXPECT_LT((marker_at(model, again) - marker_at(model, there)).norm(), 2 * options.tolerance_mm);

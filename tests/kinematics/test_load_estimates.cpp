@@ -19,16 +19,16 @@ using namespace testing;
 RobotSpec finger_with_tool() {
   RobotSpec spec = touched_finger();
   spec.rigid = {{{Box{{54, -1, -1}, {61, 13, 17}}, {}}, "plate"}};
-  spec.forces = {{"tool",
-                  {std::string("x_high"), {}},
-                  {0, 0, 0},
-                  std::array<Vec3, 2>{Vec3::Constant(-0.3), Vec3::Constant(0.3)},
-                  {0, 0, 0},
-                  std::array<Vec3, 2>{Vec3::Constant(-8), Vec3::Constant(8)}}};
+  spec.loads.forces = {{"tool",
+                        {std::string("x_high"), {}},
+                        {0, 0, 0},
+                        std::array<Vec3, 2>{Vec3::Constant(-0.3), Vec3::Constant(0.3)},
+                        {0, 0, 0},
+                        std::array<Vec3, 2>{Vec3::Constant(-8), Vec3::Constant(8)}}};
   spec.regions.push_back({"palm", {Box{{20, -1, -0.1}, {45, 13, 0.1}}}, {}});
   TractionSpec press{"press", {std::string("palm"), {}}, true, {0, 0, 0}, 0};
   press.range_kPa = {-4, 4};
-  spec.tractions = {press};
+  spec.loads.tractions = {press};
   spec.markers.push_back({"e", {Vec3(60, 1, 15), {}}});
   return spec;
 }
@@ -118,7 +118,7 @@ RobotSpec two_materials(double body, double tip) {
     spec.materials[m].elastic = elastic(Law::neo_hookean, m == 0 ? body : tip, 0.4);
     spec.materials[m].density = 1100;
   }
-  spec.gravity = {0, 0, -9.81};
+  spec.loads.gravity = {0, 0, -9.81};
   return spec;
 }
 

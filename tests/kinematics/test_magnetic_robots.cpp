@@ -30,7 +30,7 @@ TEST(MagneticKinematics, InverseKinematicsFindsTheField) {
   const Model model = compile(steered_strip(true));
   const Statics statics(model);
   const Vec3 target = marker_at(model, settled(statics, values({2, -4, 0.5})));
-  const InverseResult result = solve_inverse(model, statics, {{PositionGoal{0, target}}}, statics.rest());
+  const InverseResult result = solve_inverse(statics, {{PositionGoal{0, target}}}, statics.rest());
   EXPECT_EQ(result.status, InverseStatus::reached) << result.remark;
   EXPECT_LT((marker_at(model, result.equilibrium) - target).norm(), 0.05);
   for (Index a = 0; a < 3; ++a) EXPECT_LE(std::abs(result.equilibrium.actuation[a]), model.actuators[a].high);

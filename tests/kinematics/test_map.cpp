@@ -118,7 +118,7 @@ TEST(Map, SlopesAreTheJacobian) {
   Eigen::VectorXd values(map.outputs());
   maps::RowMatrix slopes(map.inputs(), map.outputs());
   ASSERT_TRUE(map.evaluate(commands.data(), values.data(), slopes.data()));
-  const Eigen::MatrixXd expected = jacobian(model, statics, settled(statics, commands), {0});
+  const Eigen::MatrixXd expected = jacobian(statics, settled(statics, commands), {0});
   EXPECT_LT((slopes.leftCols(3).transpose() - expected).cwiseAbs().maxCoeff(), 1e-3 * expected.norm());
 }
 
@@ -182,8 +182,8 @@ TEST(Map, InverseKinematicsAsWithTheSolver) {
       ASSERT_TRUE(map.evaluate(commands.row(i).data(), values.data()));
       const Vec3 target = values.head<3>() + (i == 3 ? Vec3(0, 40, 40) : Vec3::Zero());  // out of reach
       const std::vector<Goal> goals{{PositionGoal{0, target, {true, false, true}}}};
-      const InverseResult by_map = solve_inverse_from(robot.model(), robot.statics(), goals, model.rest_actuation());
-      const InverseResult solved = solve_inverse_from(model, statics, goals, model.rest_actuation());
+      const InverseResult by_map = solve_inverse_from(robot.statics(), goals, model.rest_actuation());
+      const InverseResult solved = solve_inverse_from(statics, goals, model.rest_actuation());
       EXPECT_EQ(by_map.status, solved.status);
       EXPECT_NEAR(by_map.errors_mm[0], solved.errors_mm[0], 2e-3);
       const Equilibrium there = settled(statics, by_map.equilibrium.actuation);

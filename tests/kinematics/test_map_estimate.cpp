@@ -22,8 +22,9 @@ RobotSpec weighed_finger() {
   spec.actuators[0] = by_load(spec.actuators[0]);
   spec.actuators[0].low = 0;
   spec.actuators[0].high = 15;
-  spec.forces = {{"touch", {Vec3(50, 6, 16), {}}, {0, 0, 0}, std::array<Vec3, 2>{Vec3(-1, -1, -1), Vec3(1, 1, 1)}}};
-  spec.forces[0].range = std::array<Vec3, 2>{Vec3(-0.2, -0.2, -0.3), Vec3(0.2, 0.2, 0.3)};
+  spec.loads.forces = {
+      {"touch", {Vec3(50, 6, 16), {}}, {0, 0, 0}, std::array<Vec3, 2>{Vec3(-1, -1, -1), Vec3(1, 1, 1)}}};
+  spec.loads.forces[0].range = std::array<Vec3, 2>{Vec3(-0.2, -0.2, -0.3), Vec3(0.2, 0.2, 0.3)};
   spec.markers = {{"a", {Vec3(25, 1, 15), {}}}, {"b", {Vec3(45, 11, 15), {}}}, {"c", {Vec3(59, 1, 2), {}}}};
   return spec;
 }

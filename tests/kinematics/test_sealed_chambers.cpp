@@ -31,7 +31,7 @@ TEST(SealedKinematics, InverseKinematicsFindsWhatIsPushed) {
   const Model model = compile(finger_on_a_syringe());
   const Statics statics(model);
   const Vec3 target = marker_at(model, settled(statics, values({1.7})));
-  const InverseResult result = solve_inverse(model, statics, {{PositionGoal{0, target}}}, statics.rest());
+  const InverseResult result = solve_inverse(statics, {{PositionGoal{0, target}}}, statics.rest());
   EXPECT_EQ(result.status, InverseStatus::reached) << result.remark;
   EXPECT_NEAR(result.equilibrium.actuation[0], 1.7, 0.05);
   EXPECT_LT((marker_at(model, result.equilibrium) - target).norm(), 0.05);

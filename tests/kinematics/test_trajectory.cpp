@@ -82,7 +82,7 @@ class FollowPath : public ::testing::TestWithParam<Formulation> {};
 TEST_P(FollowPath, LeadsTheTipAlongAReachableCurve) {
   const Robot robot(GetParam());
   const MarkerPath path = made_by_actuation(robot, 25);
-  const std::vector<InverseResult> found = follow_path(robot.model, robot.statics, path);
+  const std::vector<InverseResult> found = follow_path(robot.statics, path);
   expect_reached(robot, path, found, 1e-3);
   EXPECT_LE(mean_equilibria(found), 3);
   for (std::size_t i = 1; i < found.size(); ++i)  // three coordinates, three chambers: one solution nearby
@@ -96,8 +96,8 @@ TEST(Trajectory, PredictionSavesEquilibria) {
   const MarkerPath path = made_by_actuation(robot, 21);
   TrajectoryOptions without;
   without.predict = false;
-  const auto plain = follow_path(robot.model, robot.statics, path, without);
-  const auto predicted = follow_path(robot.model, robot.statics, path);
+  const auto plain = follow_path(robot.statics, path, without);
+  const auto predicted = follow_path(robot.statics, path);
   expect_reached(robot, path, predicted, 1e-3);
   EXPECT_LT(mean_equilibria(predicted), 0.9 * mean_equilibria(plain));
 }
@@ -123,8 +123,8 @@ TEST(Trajectory, NearestTakesTheNearestOfAllSamples) {
     TrajectoryOptions made, given;
     made.nearest = count;
     given.nearest = known;
-    const auto by_grid = follow_path(robot.model, robot.statics, path, made);
-    const auto by_known = follow_path(robot.model, robot.statics, path, given);
+    const auto by_grid = follow_path(robot.statics, path, made);
+    const auto by_known = follow_path(robot.statics, path, given);
     ASSERT_EQ(by_grid.size(), path.waypoints.size());
     ASSERT_EQ(by_known.size(), path.waypoints.size());
     for (std::size_t w = 0; w < path.waypoints.size(); ++w) {
@@ -154,10 +154,10 @@ TEST(Trajectory, NearestNeedsSamples) {
   TrajectoryOptions none, no_grid;
   none.nearest = std::vector<WorkspaceSample>();
   no_grid.nearest = 10;  // of three actuators 8 or 27
-  EXPECT_THROW(PathFollower(robot.model, robot.statics, path, none), InvalidInput);
-  EXPECT_THROW(PathFollower(robot.model, robot.statics, path, no_grid), InvalidInput);
+  EXPECT_THROW(PathFollower(robot.statics, path, none), InvalidInput);
+  EXPECT_THROW(PathFollower(robot.statics, path, no_grid), InvalidInput);
   no_grid.nearest = 8;
-  PathFollower follower(robot.model, robot.statics, path, no_grid);
+  PathFollower follower(robot.statics, path, no_grid);
   const InverseResult stopped = follower.advance([](const Progress&) { return false; });
   EXPECT_TRUE(stopped.stopped);
   EXPECT_EQ(follower.next(), 0u);
@@ -170,7 +170,7 @@ TEST(Trajectory, NearestNeedsSamples) {
 TEST(Trajectory, AWaypointCostsOneEquilibrium) {
   const Robot robot;
   const MarkerPath path = made_by_actuation(robot, 41);
-  const auto found = follow_path(robot.model, robot.statics, path);
+  const auto found = follow_path(robot.statics, path);
   expect_reached(robot, path, found, 1e-3);
   EXPECT_LT(mean_equilibria(found), 1.2);
 }
@@ -186,7 +186,7 @@ TEST(Trajectory, OutsideTheWorkspaceItKeepsToTheNearestPointsAndComesBack) {
     waypoint.targets = {inside + Vec3(12 * std::sin(std::numbers::pi * i / (count - 1)), 0, 0)};
     path.waypoints.push_back(waypoint);
   }
-  const auto found = follow_path(robot.model, robot.statics, path);
+  const auto found = follow_path(robot.statics, path);
   ASSERT_EQ(found.size(), static_cast<std::size_t>(count));
   int out = 0;
   for (std::size_t i = 0; i < found.size(); ++i) {
@@ -221,7 +221,7 @@ TEST(Trajectory, CoordinatesThatDoNotCountAreFree) {
   MarkerPath path = made_by_actuation(robot, 9);
   path.axes[0] = {false, true, true};
   for (Waypoint& waypoint : path.waypoints) waypoint.targets[0].x() = 0;
-  for (const InverseResult& each : follow_path(robot.model, robot.statics, path)) {
+  for (const InverseResult& each : follow_path(robot.statics, path)) {
     EXPECT_EQ(each.status, InverseStatus::reached) << each.remark;
     EXPECT_GT(robot.tip(each.equilibrium.state).x(), 40);
   }
@@ -230,16 +230,16 @@ TEST(Trajectory, CoordinatesThatDoNotCountAreFree) {
 TEST(Trajectory, InterruptedItKeepsWhatIsDoneAndGoesOnFromThere) {
   const Robot robot;
   const MarkerPath path = made_by_actuation(robot, 12);
-  const auto whole = follow_path(robot.model, robot.statics, path);
+  const auto whole = follow_path(robot.statics, path);
 
-  PathFollower follower(robot.model, robot.statics, path, {});
+  PathFollower follower(robot.statics, path, {});
   State last;
   for (int i = 0; i < 5; ++i) last = follower.advance().equilibrium.state;
   const InverseResult stopped = follower.advance([](const Progress&) { return false; });
   EXPECT_EQ(stopped.status, InverseStatus::interrupted);
   EXPECT_EQ(follower.next(), 5u);
 
-  PathFollower again(robot.model, robot.statics, path, {});
+  PathFollower again(robot.statics, path, {});
   again.resume(5, last);
   while (!again.done()) {
     const std::size_t i = again.next();
@@ -248,8 +248,7 @@ TEST(Trajectory, InterruptedItKeepsWhatIsDoneAndGoesOnFromThere) {
     EXPECT_LE((found.equilibrium.actuation - whole[i].equilibrium.actuation).norm(), 1e-3) << i;
   }
   int calls = 0;
-  const auto part =
-      follow_path(robot.model, robot.statics, path, {}, [&calls](const Progress&) { return ++calls < 40; });
+  const auto part = follow_path(robot.statics, path, {}, [&calls](const Progress&) { return ++calls < 40; });
   EXPECT_GT(part.size(), 0u);
   EXPECT_LT(part.size(), path.waypoints.size());
   for (const InverseResult& each : part) EXPECT_EQ(each.status, InverseStatus::reached);
@@ -261,8 +260,8 @@ TEST(Trajectory, StartsWhereItIsTold) {
   path.waypoints.resize(1);
   TrajectoryOptions near;
   near.start = turn(0);
-  const auto from_rest = follow_path(robot.model, robot.statics, path);
-  const auto from_near = follow_path(robot.model, robot.statics, path, near);
+  const auto from_rest = follow_path(robot.statics, path);
+  const auto from_near = follow_path(robot.statics, path, near);
   EXPECT_LE(from_near[0].equilibria, 2);
   EXPECT_LT(from_near[0].equilibria, from_rest[0].equilibria);
   EXPECT_LE((from_near[0].equilibrium.actuation - turn(0)).norm(), 1e-4);
@@ -276,9 +275,9 @@ TEST(Trajectory, AlgorithmTwoFollowsToo) {
   gradient.inverse.method = InverseMethod::gradient;
   gradient.inverse.tolerance_mm = 0.2;
   gradient.start = turn(0);
-  const auto slow = follow_path(robot.model, robot.statics, begin, gradient);
+  const auto slow = follow_path(robot.statics, begin, gradient);
   expect_reached(robot, begin, slow, 0.2);
-  EXPECT_GT(mean_equilibria(slow), mean_equilibria(follow_path(robot.model, robot.statics, begin)));
+  EXPECT_GT(mean_equilibria(slow), mean_equilibria(follow_path(robot.statics, begin)));
 }
 
 TEST(Densified, InsertsEvenlyOnTheStraightLines) {
@@ -305,10 +304,10 @@ TEST(Densified, InsertsEvenlyOnTheStraightLines) {
 TEST(Trajectory, RefusesWhatIsNoPath) {
   const Robot robot;
   const auto refused = [&](const MarkerPath& path, const TrajectoryOptions& options = {}) {
-    EXPECT_THROW(PathFollower(robot.model, robot.statics, path, options), InvalidInput);
+    EXPECT_THROW(PathFollower(robot.statics, path, options), InvalidInput);
   };
   MarkerPath path{{0}, {{true, true, true}}, {{{Vec3(60, 10, 10)}, {}, 0, false}}};
-  EXPECT_NO_THROW(PathFollower(robot.model, robot.statics, path, {}));
+  EXPECT_NO_THROW(PathFollower(robot.statics, path, {}));
   refused({{0}, {{true, true, true}}, {}});
   refused({{}, {}, path.waypoints});
   refused({{7}, path.axes, path.waypoints});

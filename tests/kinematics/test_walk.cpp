@@ -74,7 +74,7 @@ TEST(Walk, LengthsAreThoseUnderDeadLoads) {
   RobotSpec loaded = bar(forward(0));
   loaded.feet.clear();
   const auto length_under = [&](double command, double force) {
-    loaded.forces = {{"floor", {std::string("x_high"), {}}, {force, 0, 0}}};
+    loaded.loads.forces = {{"floor", {std::string("x_high"), {}}, {force, 0, 0}}};
     const Model model = compile(loaded);
     const Statics statics(model);
     const Equilibrium found = testing::settled(statics, testing::values({command}));
@@ -215,14 +215,14 @@ TEST(Walk, Refusals) {
   spec.fixed.back().axes = {true, true, true};
   expect_refused(spec, "held along x on both sides");
   spec = good;
-  spec.forces = {{"wind", {std::string("x_high"), {}}, {0.1, 0, 0}}};
+  spec.loads.forces = {{"wind", {std::string("x_high"), {}}, {0.1, 0, 0}}};
   expect_refused(spec, "act along the direction of travel with 0.1");
-  spec.forces.clear();
-  spec.tractions = {{"water", {std::string("z_high"), {}}, true, {0, 0, 0}, 1}};
+  spec.loads.forces.clear();
+  spec.loads.tractions = {{"water", {std::string("z_high"), {}}, true, {0, 0, 0}, 1}};
   expect_refused(spec, "a pressure, traction or moment may push");
   spec = good;
   spec.fixed.back().axes = {false, true, false};
-  spec.gravity = {0, 0, -9.81};
+  spec.loads.gravity = {0, 0, -9.81};
   spec.materials[0].density = 1000;
   expect_refused(spec, "the feet leave the line between them");
 }

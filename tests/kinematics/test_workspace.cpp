@@ -69,7 +69,7 @@ class Memory : public GroupDesk {
 std::map<Index, WorkspaceSample> solved(const PlannedRobot& robot, int threads,
                                         std::map<Index, WorkspaceSample> before = {}) {
   Memory desk(robot.plan, std::move(before));
-  solve_groups(robot.model, robot.statics, robot.plan, {}, threads, desk);
+  solve_groups(robot.statics, robot.plan, {}, threads, desk);
   return desk.samples;
 }
 
@@ -185,7 +185,7 @@ TEST(Workspace, StopsWhereProgressSaysSoAndKeepsWhatIsDone) {
   const auto whole = solved(robot, 1);
   Memory desk(robot.plan);
   const auto go_on = [&](const Progress&) { return desk.samples.size() < 5; };
-  solve_groups(robot.model, robot.statics, robot.plan, {}, 1, desk, go_on);
+  solve_groups(robot.statics, robot.plan, {}, 1, desk, go_on);
   EXPECT_GE(desk.samples.size(), 5u);
   EXPECT_LT(desk.samples.size(), 16u);
   expect_same(whole, solved(robot, 1, desk.samples));
@@ -198,7 +198,7 @@ TEST(Workspace, FailuresOfTheDeskComeThrough) {
   };
   const PlannedRobot robot(two_ranged_cables(), Sampling::grid, 16);
   Full desk(robot.plan);
-  EXPECT_THROW(solve_groups(robot.model, robot.statics, robot.plan, {}, 2, desk), std::runtime_error);
+  EXPECT_THROW(solve_groups(robot.statics, robot.plan, {}, 2, desk), std::runtime_error);
 }
 
 TEST(Neighbourhood, PredictsToFirstOrder) {

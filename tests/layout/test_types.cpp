@@ -5,7 +5,7 @@
 #include <map>
 #include <sstream>
 
-#include "layout/cpp_types.hpp"
+#include "layout/cpp_members.hpp"
 
 namespace softkin {
 namespace {
@@ -70,6 +70,14 @@ std::vector<std::string> defined_twice_in(const fs::path& root) {
   return found;
 }
 
+/// "type: members" of each with more than so many.
+std::vector<std::string> larger_than(std::size_t most, const std::string& text) {
+  std::vector<std::string> found;
+  for (const testing::MemberCount& type : testing::MemberCounter(text).types())
+    if (type.members > most) found.push_back(type.name + ": " + std::to_string(type.members));
+  return found;
+}
+
 using Names = std::vector<std::string>;
 
 }  // namespace
@@ -85,6 +93,31 @@ TEST(Types, ThoseOfTheSampleDefinedTwiceAreFound) {
             (Names{"softkin::Pose: src/pose.hpp:7 src/statics.cpp:9",
                    "softkin::inner::Kind: src/pose.hpp:13 src/statics.cpp:15",
                    "softkin::Row: first/table.cpp:4 src/pose.hpp:18"}));
+}
+
+TEST(Types, HaveAtMostTwentyMembers) {
+  for (const char* folder : {"src", "apps", "python/src", "bench"})
+    for (const auto& entry : fs::recursive_directory_iterator(source_folder / folder)) {
+      if (entry.path().extension() != ".hpp" && entry.path().extension() != ".cpp") continue;
+      std::ostringstream text;
+      text << std::ifstream(entry.path()).rdbuf();
+      for (const std::string& type : larger_than(20, text.str())) ADD_FAILURE() << entry.path() << ": " << type;
+    }
+}
+
+TEST(Types, MembersAreCounted) {
+  EXPECT_EQ(larger_than(0, "struct A { int i; double a = 0, b{1}, c[3]; std::map<int, int> m{{1, 2}}; };"),
+            Names{"A: 5"});
+  EXPECT_EQ(larger_than(0,
+                        "class B : public A { public: B() : a_(1), b_{2} {} ~B(); int f(int, int) const { return 1; }"
+                        " static int s; using T = int; friend struct C; private: const int a_ = f(1, 2), b_; };"),
+            Names{"B: 2"});
+  EXPECT_EQ(larger_than(0,
+                        "template <class T> struct C { struct D { int i, j; }; D d; enum class E { x, y }; E e;"
+                        " template <class U> void g(U u) { struct F { int k; }; } std::function<void(int)> h; };"),
+            (Names{"C: 3", "D: 2"}));
+  EXPECT_EQ(larger_than(0, "void f() { struct G { int i; } g; struct H* h(struct I& i); bool operator==(const J&); }"),
+            Names{"G: 1"});
 }
 
 TEST(Types, NamespacesAndNestingMakeTheName) {

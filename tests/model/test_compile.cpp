@@ -14,20 +14,21 @@ TEST(Compile, ABlockKeepsItsElementsAndVolume) {
   for (const Split split : {Split::five, Split::six, Split::prisms}) {
     const RobotSpec spec = block_robot(block_mesh({3, 2, 2}, {30, 20, 10}, split));
     const Model model = compile(spec);
-    EXPECT_EQ(model.tetrahedra, spec.mesh.tetrahedra);
-    EXPECT_EQ(model.prisms, spec.mesh.prisms);
-    EXPECT_NEAR(sum(model.tetrahedron_volumes) + sum(model.prism_volumes), 6000, 1e-9);
+    EXPECT_EQ(model.elements.tetrahedra, spec.mesh.tetrahedra);
+    EXPECT_EQ(model.elements.prisms, spec.mesh.prisms);
+    EXPECT_NEAR(sum(model.elements.tetrahedron_volumes) + sum(model.elements.prism_volumes), 6000, 1e-9);
     EXPECT_DOUBLE_EQ(model.diagonal_mm, std::sqrt(1400.0));
-    EXPECT_EQ(model.region_names, std::vector<std::string>{"body"});
-    for (const ElementRole& role : split == Split::prisms ? model.prism_roles : model.tetrahedron_roles) {
+    EXPECT_EQ(model.elements.region_names, std::vector<std::string>{"body"});
+    for (const ElementRole& role :
+         split == Split::prisms ? model.elements.prism_roles : model.elements.tetrahedron_roles) {
       EXPECT_EQ(role.material, 0);
       EXPECT_EQ(role.actuator, -1);
       EXPECT_EQ(role.region, 0);
     }
     for (Index v = 0; v < model.rest.rows(); ++v) {
-      EXPECT_TRUE(model.used[v]);
+      EXPECT_TRUE(model.elements.used[v]);
       const bool held = model.rest(v, 0) == 0;
-      EXPECT_EQ(model.fixed[v], (std::array<bool, 3>{held, held, held}));
+      EXPECT_EQ(model.held.fixed[v], (std::array<bool, 3>{held, held, held}));
     }
     EXPECT_TRUE(model.notes.empty());
   }
@@ -38,7 +39,7 @@ TEST(Compile, ReversedElementsAreTurned) {
   const std::vector<Tetrahedron> good = spec.mesh.tetrahedra;
   for (const std::size_t i : {1u, 4u, 7u}) std::swap(spec.mesh.tetrahedra[i][2], spec.mesh.tetrahedra[i][3]);
   Model model = compile(spec);
-  EXPECT_EQ(model.tetrahedra, good);
+  EXPECT_EQ(model.elements.tetrahedra, good);
   EXPECT_TRUE(has_note(model, "3 elements were reordered"));
 
   RobotSpec shell = block_robot(block_mesh({2, 1, 1}, {2, 1, 1}, Split::prisms));
@@ -46,14 +47,14 @@ TEST(Compile, ReversedElementsAreTurned) {
   Prism& turned = shell.mesh.prisms[2];
   turned = {turned[3], turned[4], turned[5], turned[0], turned[1], turned[2]};
   model = compile(shell);
-  EXPECT_EQ(model.prisms, upright);
+  EXPECT_EQ(model.elements.prisms, upright);
   EXPECT_TRUE(has_note(model, "1 element was reordered"));
   // also where the triangles run the wrong way round
   std::swap(shell.mesh.prisms[1][1], shell.mesh.prisms[1][2]);
   std::swap(shell.mesh.prisms[1][4], shell.mesh.prisms[1][5]);
   model = compile(shell);
-  EXPECT_NEAR(sum(model.prism_volumes), 2, 1e-12);
-  for (const Prism& p : model.prisms)
+  EXPECT_NEAR(sum(model.elements.prism_volumes), 2, 1e-12);
+  for (const Prism& p : model.elements.prisms)
     for (int i = 0; i < 3; ++i)
       EXPECT_NEAR((model.rest.row(p[i + 3]) - model.rest.row(p[i])).norm(), 1, 1e-12) << "side edges pair";
 }
@@ -62,14 +63,14 @@ TEST(Compile, VoidElementsGoAndTheirVerticesStay) {
   RobotSpec spec = block_robot(block_mesh({3, 1, 1}, {30, 10, 10}));
   spec.voids.push_back(shaped(Box{{20, 0, 0}, {30, 10, 10}}));
   const Model model = compile(spec);
-  EXPECT_EQ(model.tetrahedra.size(), 12u);
-  EXPECT_NEAR(sum(model.tetrahedron_volumes), 2000, 1e-9);
+  EXPECT_EQ(model.elements.tetrahedra.size(), 12u);
+  EXPECT_NEAR(sum(model.elements.tetrahedron_volumes), 2000, 1e-9);
   EXPECT_DOUBLE_EQ(model.diagonal_mm, std::sqrt(400.0 + 100 + 100));
   EXPECT_EQ(model.rest.rows(), 16);
   for (Index v = 0; v < 16; ++v) {
-    EXPECT_EQ(model.used[v], model.rest(v, 0) < 25);
-    const bool held = model.rest(v, 0) < 5 || !model.used[v];
-    EXPECT_EQ(model.fixed[v], (std::array<bool, 3>{held, held, held}));
+    EXPECT_EQ(model.elements.used[v], model.rest(v, 0) < 25);
+    const bool held = model.rest(v, 0) < 5 || !model.elements.used[v];
+    EXPECT_EQ(model.held.fixed[v], (std::array<bool, 3>{held, held, held}));
   }
   EXPECT_TRUE(has_note(model, "4 vertices belong to no element"));
 }
@@ -87,14 +88,14 @@ TEST(Compile, LaterMaterialsOverrideEarlierOnes) {
     spec.materials.push_back(material);
   }
   const Model model = compile(spec);
-  EXPECT_EQ(model.region_names, (std::vector<std::string>{"body", "tip", "stiff"}));
-  ASSERT_EQ(model.materials.size(), 3u);
-  EXPECT_EQ(model.materials[2].region, "tip");
-  EXPECT_EQ(model.materials[1].shape_ratio, 0.5);
-  EXPECT_EQ(model.materials[1].weight, 2);
-  EXPECT_EQ(*model.materials[1].linear_range, 0.1);
+  EXPECT_EQ(model.elements.region_names, (std::vector<std::string>{"body", "tip", "stiff"}));
+  ASSERT_EQ(model.elements.materials.size(), 3u);
+  EXPECT_EQ(model.elements.materials[2].region, "tip");
+  EXPECT_EQ(model.elements.materials[1].shape_ratio, 0.5);
+  EXPECT_EQ(model.elements.materials[1].weight, 2);
+  EXPECT_EQ(*model.elements.materials[1].linear_range, 0.1);
   std::array<int, 3> count{};
-  for (const ElementRole& role : model.tetrahedron_roles) ++count[role.material];
+  for (const ElementRole& role : model.elements.tetrahedron_roles) ++count[role.material];
   EXPECT_EQ(count, (std::array<int, 3>{12, 6, 6}));
 }
 
@@ -104,9 +105,9 @@ TEST(Compile, ElementsAreNamedByTheFirstVolumeRegion) {
   add_volume_region(spec.mesh, "b", [](const Vec3& p) { return p[0] > 20; });
   add_volume_region(spec.mesh, "a", [](const Vec3& p) { return p[0] > 10; });
   const Model model = compile(spec);
-  EXPECT_EQ(model.region_names, (std::vector<std::string>{"b", "a"}));
+  EXPECT_EQ(model.elements.region_names, (std::vector<std::string>{"b", "a"}));
   std::array<int, 3> count{};
-  for (const ElementRole& role : model.tetrahedron_roles) ++count[role.region + 1];
+  for (const ElementRole& role : model.elements.tetrahedron_roles) ++count[role.region + 1];
   EXPECT_EQ(count, (std::array<int, 3>{6, 12, 6}));
 }
 

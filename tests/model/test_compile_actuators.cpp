@@ -31,8 +31,8 @@ TEST(Pneumatic, ARegionBecomesTheChamber) {
   EXPECT_EQ(compiled.distribution, Distribution::uniform);
   EXPECT_TRUE(compiled.as<ChamberDrive>()->points.empty());
   int members = 0;
-  for (std::size_t i = 0; i < model.tetrahedra.size(); ++i) {
-    const ElementRole& role = model.tetrahedron_roles[i];
+  for (std::size_t i = 0; i < model.elements.tetrahedra.size(); ++i) {
+    const ElementRole& role = model.elements.tetrahedron_roles[i];
     members += role.actuator == 0;
     EXPECT_EQ(role.material, role.actuator == 0 ? -1 : 0);
   }
@@ -46,11 +46,11 @@ TEST(Pneumatic, IndicesFollowTheDroppedVoids) {
   spec.voids.push_back(shaped(Box{{20, 0, 0}, {30, 30, 10}}));
   spec.actuators.push_back(chamber("chamber"));
   const Model model = compile(spec);
-  EXPECT_EQ(model.tetrahedra.size(), 24u * 6);
+  EXPECT_EQ(model.elements.tetrahedra.size(), 24u * 6);
   EXPECT_NEAR(model.actuators[0].rest_measure, 1000, 1e-9);
   for (const Index i : model.actuators[0].as<ChamberDrive>()->tetrahedra) {
     Vec3 centroid = Vec3::Zero();
-    for (const Index v : model.tetrahedra[i]) centroid += 0.25 * model.rest.row(v).transpose();
+    for (const Index v : model.elements.tetrahedra[i]) centroid += 0.25 * model.rest.row(v).transpose();
     EXPECT_LT((centroid - Vec3(15, 15, 15)).cwiseAbs().maxCoeff(), 5);
   }
 }
@@ -104,7 +104,7 @@ TEST(Dea, MeasuresItsMeanArea) {
   // a triangle is 2 mm^2 at the bottom and 0.5 mm^2 at the top
   EXPECT_NEAR(model.actuators[0].rest_measure, count * 1.25, 1e-12);
   EXPECT_EQ(model.rest_actuation()[0], 1.2);
-  for (const Index i : model.actuators[0].as<DeaDrive>()->prisms) EXPECT_EQ(model.prism_roles[i].actuator, 0);
+  for (const Index i : model.actuators[0].as<DeaDrive>()->prisms) EXPECT_EQ(model.elements.prism_roles[i].actuator, 0);
 }
 
 /// 30 x 10 x 20 mm with the notch 10 < x < 20, z > 10.

@@ -23,7 +23,7 @@ ActuatorSpec bag_of(const std::optional<TriangleSurface>& surface, const std::st
 /// A cube of 30 mm around the empty cube (10, 10, 10) to (20, 20, 20).
 RobotSpec hollow_robot(const std::optional<TriangleSurface>& surface, bool quadratic = false) {
   RobotSpec spec = physical_robot(hollow_mesh());
-  spec.quadratic = quadratic;
+  spec.mesh_options.quadratic = quadratic;
   spec.voids = {named("chamber")};
   spec.actuators = {bag_of(surface)};
   return spec;

@@ -18,14 +18,14 @@ using namespace testing;
 RobotSpec round_rod(bool curved) {
   RobotSpec spec = physical_robot(rod_mesh(12, 1, 6, 10, 60));
   spec.fixed = {{{Halfspace{{1e-6, 0, 0}, {-1, 0, 0}}, {}}}};
-  spec.quadratic = true;
-  if (curved) spec.curve.emplace().smooth = true;
+  spec.mesh_options.quadratic = true;
+  if (curved) spec.mesh_options.curve.emplace().smooth = true;
   return spec;
 }
 
 double volume_of(const Model& model) {
   double volume = 0;
-  for (const double v : model.tetrahedron_volumes) volume += v;
+  for (const double v : model.elements.tetrahedron_volumes) volume += v;
   return volume;
 }
 
@@ -49,10 +49,10 @@ TEST(CompileCurve, VolumesAndWeightAreThoseOfTheRoundBody) {
   const double round = std::numbers::pi * 100 * 60;
   RobotSpec spec = round_rod(true);
   spec.materials[0].density = 1000;
-  spec.gravity = {0, 0, -10};
+  spec.loads.gravity = {0, 0, -10};
   const Model model = compile(spec);
   EXPECT_NEAR(volume_of(model), round, 2e-3 * round);
-  EXPECT_NEAR(model.dead_load.col(2).sum(), -volume_of(model) * 1e-6 * 10, 1e-9);
+  EXPECT_NEAR(model.loads.dead.col(2).sum(), -volume_of(model) * 1e-6 * 10, 1e-9);
   EXPECT_TRUE(mentions(model.notes, "'curve' moved ")) << "and says so";
   EXPECT_FALSE(mentions(model.warnings, "The edges are straight"));
 }
@@ -60,15 +60,15 @@ TEST(CompileCurve, VolumesAndWeightAreThoseOfTheRoundBody) {
 TEST(CompileCurve, WarnsOfStraightEdgesAndOfNothingElse) {
   EXPECT_TRUE(mentions(compile(round_rod(false)).warnings, "about 5 % too small"));
   RobotSpec block = physical_robot(block_mesh({6, 2, 2}, {60, 10, 10}));
-  block.quadratic = true;
+  block.mesh_options.quadratic = true;
   EXPECT_FALSE(mentions(compile(block).warnings, "The edges are straight"));
   RobotSpec own = round_rod(true);  // a mesh that brings its curved edges
   own.mesh = elevated(own.mesh);
-  curve_edges(own.mesh, labels_of(own.mesh, own.mesh.regions), *own.curve);
-  own.curve.reset();
+  curve_edges(own.mesh, labels_of(own.mesh, own.mesh.regions), *own.mesh_options.curve);
+  own.mesh_options.curve.reset();
   EXPECT_FALSE(mentions(compile(own).warnings, "The edges are straight"));
   RobotSpec linear = round_rod(false);
-  linear.quadratic = false;
+  linear.mesh_options.quadratic = false;
   EXPECT_FALSE(mentions(compile(linear).warnings, "The edges are straight"));
 }
 
@@ -78,20 +78,20 @@ TEST(CompileCurve, ShapesChooseAsWithStraightEdges) {
   for (RobotSpec* spec : {&straight, &curved})
     spec->fixed.push_back({{Cylinder{{50, 0, 0}, {70, 0, 0}, 9.7}, {}}, {false, true, false}});
   const Model one = compile(straight), other = compile(curved);
-  EXPECT_EQ(one.fixed, other.fixed);
+  EXPECT_EQ(one.held.fixed, other.held.fixed);
   EXPECT_EQ(one.rest.topRows(91), other.rest.topRows(91));
   EXPECT_GT((one.rest - other.rest).cwiseAbs().maxCoeff(), 0.3);
 }
 
 TEST(CompileCurve, RefusesWhatCannotBeMeant) {
   RobotSpec spec = round_rod(true);
-  spec.curve->surfaces.push_back({Cylinder{{0, 0, 0}, {60, 0, 0}, 12}, {"s.yaml", 7}});
+  spec.mesh_options.curve->surfaces.push_back({Cylinder{{0, 0, 0}, {60, 0, 0}, 12}, {"s.yaml", 7}});
   EXPECT_NE(refusal_of_curve(spec).find("s.yaml:7: no edge of the mesh's surface has both ends on this cylinder"),
             std::string::npos);
   spec = round_rod(true);
-  spec.curve->origin = {"s.yaml", 3};
+  spec.mesh_options.curve->origin = {"s.yaml", 3};
   spec.mesh = elevated(spec.mesh);
-  curve_edges(spec.mesh, labels_of(spec.mesh, spec.mesh.regions), *spec.curve);
+  curve_edges(spec.mesh, labels_of(spec.mesh, spec.mesh.regions), *spec.mesh_options.curve);
   EXPECT_NE(refusal_of_curve(spec).find("s.yaml:3: the mesh's edges are curved already"), std::string::npos);
 }
 

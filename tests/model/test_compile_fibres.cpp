@@ -31,7 +31,7 @@ FibreSpec coil() {
 
 RobotSpec block(bool quadratic, Split split = Split::five) {
   RobotSpec spec = physical_robot(block_mesh({5, 3, 2}, {30, 12, 10}, split));
-  spec.quadratic = quadratic;
+  spec.mesh_options.quadratic = quadratic;
   return spec;
 }
 
@@ -81,7 +81,7 @@ TEST(CompileFibres, StraightOnesStretchAsTheShapeDoes) {
       RobotSpec spec = block(quadratic, split);
       spec.fibres = {thread(way)};
       const Model model = compile(spec);
-      const Fibre& fibre = model.fibres.at(0);
+      const Fibre& fibre = model.reinforcement.fibres.at(0);
       EXPECT_NEAR(length_of(fibre), length_of(way), 1e-9);
       const Vec3 t = (way[1] - way[0]).normalized();
       EXPECT_NEAR(stretch_of(fibre, model.rest * shape.transpose()), (shape * t).norm(), 1e-9);
@@ -107,7 +107,7 @@ TEST(CompileFibres, OrderTwoFollowsCurvedShapes) {
   constexpr int steps = 20000;
   for (int i = 0; i < steps; ++i)
     length += (bent(from + (i + 1.0) / steps * (to - from)) - bent(from + double(i) / steps * (to - from))).norm();
-  EXPECT_NEAR(stretch_of(model.fibres[0], positions) * (to - from).norm(), length, 1e-4 * length);
+  EXPECT_NEAR(stretch_of(model.reinforcement.fibres[0], positions) * (to - from).norm(), length, 1e-4 * length);
 }
 
 TEST(CompileFibres, Helices) {
@@ -118,10 +118,10 @@ TEST(CompileFibres, Helices) {
     spec.fibres = {fibre};
     const Model model = compile(spec);
     const double turn = 2 * std::numbers::pi * 3;
-    EXPECT_NEAR(length_of(model.fibres[0]), 4.5 * std::hypot(turn, 4), 2e-4 * 4.5 * turn);
+    EXPECT_NEAR(length_of(model.reinforcement.fibres[0]), 4.5 * std::hypot(turn, 4), 2e-4 * 4.5 * turn);
     std::size_t quarter = 0;  // the knot nearest to a quarter of a turn
     const Vec3 expected(6, 6, left ? 2 : 8);
-    const auto& knots = model.fibres[0].knots;
+    const auto& knots = model.reinforcement.fibres[0].knots;
     for (std::size_t k = 0; k < knots.size(); ++k)
       if ((knots[k].at(model.rest) - expected).norm() < (knots[quarter].at(model.rest) - expected).norm()) quarter = k;
     EXPECT_LT((knots[quarter].at(model.rest) - expected).norm(), 0.3);
@@ -136,7 +136,7 @@ TEST(CompileFibres, RegionsAndRobots) {
   spec.fibres = {thread({{1, 5, 5}, {13, 5, 5}})};
   spec.fibres[0].region = "left";
   const Model model = compile(spec);
-  for (const FibrePlace& place : model.fibres[0].places)
+  for (const FibrePlace& place : model.reinforcement.fibres[0].places)
     for (const Index v : place.vertices) EXPECT_LE(model.rest(v, 0), 12 + 1e-9);
   Placement moved;
   moved.translation = Vec3(0, 12, 0);
@@ -144,14 +144,16 @@ TEST(CompileFibres, RegionsAndRobots) {
   RobotSpec one = block(false);
   one.fibres = {coil()};
   const Model pair = compile(joined({{"a", one, {}, line(3)}, {"b", one, moved, line(4)}}, {"pair.yaml", {}, {}, {}}));
-  ASSERT_EQ(pair.fibres.size(), 2u);
-  EXPECT_EQ(pair.fibres[1].name, "b.thread");
+  ASSERT_EQ(pair.reinforcement.fibres.size(), 2u);
+  EXPECT_EQ(pair.reinforcement.fibres[1].name, "b.thread");
   const Index half = static_cast<Index>(pair.rest.rows()) / 2;
-  for (const FibrePlace& place : pair.fibres[0].places)
+  for (const FibrePlace& place : pair.reinforcement.fibres[0].places)
     for (const Index v : place.vertices) EXPECT_LT(v, half);
-  for (const FibrePlace& place : pair.fibres[1].places)
+  for (const FibrePlace& place : pair.reinforcement.fibres[1].places)
     for (const Index v : place.vertices) EXPECT_GE(v, half);
-  const auto end = [&](std::size_t f, const auto& of) { return Vec3(of(pair.fibres[f].knots).at(pair.rest)); };
+  const auto end = [&](std::size_t f, const auto& of) {
+    return Vec3(of(pair.reinforcement.fibres[f].knots).at(pair.rest));
+  };
   const auto first = [](const auto& knots) { return knots.front(); };
   EXPECT_LT((end(1, first) - (moved.rotation * end(0, first) + moved.translation)).norm(), 1e-9);
 }
@@ -160,7 +162,7 @@ TEST(CompileFibres, TargetShapesLeaveThemOut) {
   RobotSpec spec = block_robot(block_mesh({2, 1, 1}, {20, 10, 10}));
   spec.fibres = {thread({{1, 5, 5}, {13, 5, 5}})};
   const Model model = compile(spec);
-  EXPECT_TRUE(model.fibres.empty());
+  EXPECT_TRUE(model.reinforcement.fibres.empty());
   EXPECT_NE(model.notes.back().find("fibre is left out"), std::string::npos);
 }
 

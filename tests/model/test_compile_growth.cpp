@@ -57,11 +57,11 @@ TEST(CompileGrowth, TakesTheElementsOfItsRegions) {
     EXPECT_EQ(model.actuators[0].as<GrowthDrive>()->growth, 0);
     for (const auto& growth : model.growths) {
       EXPECT_EQ(growth->actuator, 0);
-      EXPECT_EQ(2 * growth->tetrahedra.size(), model.tetrahedra.size());
-      EXPECT_EQ(2 * growth->prisms.size(), model.prisms.size());
+      EXPECT_EQ(2 * growth->tetrahedra.size(), model.elements.tetrahedra.size());
+      EXPECT_EQ(2 * growth->prisms.size(), model.elements.prisms.size());
     }
     EXPECT_TRUE(model.growths[0]->directions.empty());
-    ASSERT_EQ(2 * model.growths[1]->directions.size(), model.tetrahedra.size() + model.prisms.size());
+    ASSERT_EQ(2 * model.growths[1]->directions.size(), model.elements.tetrahedra.size() + model.elements.prisms.size());
     for (const Vec3& direction : model.growths[1]->directions) EXPECT_EQ(direction, Vec3(0, 0, 1));
     EXPECT_EQ(command_unit(model.actuators[0]), "");
     EXPECT_EQ(std::string(control_name(model.actuators[0])), "stretch");
@@ -75,7 +75,7 @@ TEST(CompileGrowth, LeavesOutChambers) {
   ActuatorSpec air = actuator("air", PneumaticSpec{.region = "chamber"}, 0.5, 2);
   spec.actuators = {air, growing({{"all"}})};
   const Model model = compile(spec);
-  EXPECT_EQ(model.growths.at(0)->tetrahedra.size(), model.tetrahedra.size());
+  EXPECT_EQ(model.growths.at(0)->tetrahedra.size(), model.elements.tetrahedra.size());
   EXPECT_EQ(model.growths[0]->actuator, 1);
 }
 
@@ -90,7 +90,7 @@ TEST(CompileGrowth, DirectionsAboutALine) {
   for (const auto& growth : model.growths)
     for (std::size_t i = 0; i < growth->tetrahedra.size(); ++i) {
       Vec3 at = -center;
-      for (const Index v : model.tetrahedra[growth->tetrahedra[i]]) at += 0.25 * vertex_at(model.rest, v);
+      for (const Index v : model.elements.tetrahedra[growth->tetrahedra[i]]) at += 0.25 * vertex_at(model.rest, v);
       const Vec3 d = growth->directions[i], out = at - at.dot(axis) / 9 * axis;
       EXPECT_NEAR(d.norm(), 1, 1e-14);
       const bool turned = growth == model.growths[1];
@@ -114,7 +114,7 @@ TEST(CompileGrowth, DirectionsOfTheNearestSample) {
   const Growth& growth = *model.growths.at(0);
   for (std::size_t i = 0; i < growth.tetrahedra.size(); ++i) {
     double x = 0;
-    for (const Index v : model.tetrahedra[growth.tetrahedra[i]]) x += 0.25 * model.rest(v, 0);
+    for (const Index v : model.elements.tetrahedra[growth.tetrahedra[i]]) x += 0.25 * model.rest(v, 0);
     EXPECT_EQ(growth.directions[i], x < 10 ? Vec3(0, 1, 0) : Vec3(0, 0, -1));
   }
   spec.actuators = {growing({along("all", samples)})};

@@ -28,7 +28,7 @@ LayerSpec paper(const std::string& region = "z_low") {
 
 RobotSpec sheeted_block(bool quadratic = false, Split split = Split::six) {
   RobotSpec spec = physical_robot(block_mesh({5, 3, 2}, {30, 12, 10}, split));
-  spec.quadratic = quadratic;
+  spec.mesh_options.quadratic = quadratic;
   return spec;
 }
 
@@ -50,8 +50,8 @@ TEST(CompileLayers, HaveTheAreaAndTheDirectionsOfTheirFaces) {
     LayerSpec spec = paper("y_high");
     spec.direction = Vec3(1, 5, 1);  // laid onto the face: along x and z
     const Model model = compile(with(sheeted_block(quadratic), spec));
-    ASSERT_EQ(model.layers.size(), 1u);
-    const Layer& layer = *model.layers[0];
+    ASSERT_EQ(model.reinforcement.layers.size(), 1u);
+    const Layer& layer = *model.reinforcement.layers[0];
     EXPECT_NEAR(area_of(layer), 300, 1e-9);
     EXPECT_EQ(layer.faces.size(), 20u);
     EXPECT_TRUE(layer.bends.empty());
@@ -69,7 +69,7 @@ TEST(CompileLayers, BendInEveryTriangle) {
   LayerSpec spec = paper();
   spec.bending = true;
   const Model model = compile(with(sheeted_block(true), spec));
-  const Layer& layer = *model.layers[0];
+  const Layer& layer = *model.reinforcement.layers[0];
   EXPECT_EQ(layer.bends.size(), 3u * 30u);
   EXPECT_EQ(layer.joints.size(), 2u * 37u);  // inner edges: (3 * 30 - 16) / 2
   for (const LayerJoint& joint : layer.joints) EXPECT_NEAR(joint.joint.angle, 0, 1e-15);
@@ -87,12 +87,12 @@ TEST(CompileLayers, TurnFreelyWhereTheyAreFoldedAndAreClampedByWhatIsHeld) {
     return std::count_if(layer.joints.begin(), layer.joints.end(),
                          [](const LayerJoint& joint) { return std::abs(joint.joint.angle) > 1.5; });
   };
-  EXPECT_EQ(folded(*whole.layers[0]), 2 * 4 * (5 + 3 + 2));
+  EXPECT_EQ(folded(*whole.reinforcement.layers[0]), 2 * 4 * (5 + 3 + 2));
   LayerSpec spec = paper();
   spec.bending = true;
   robot.fixed = {{{Selector(Box{{-1, -1, -1}, {6, 20, 20}}), {}}, {true, true, true}}};
   const Model clamped = compile(with(robot, spec));
-  const Layer& layer = *clamped.layers[0];
+  const Layer& layer = *clamped.reinforcement.layers[0];
   EXPECT_EQ(layer.bends.size(), 3u * 24u);
   EXPECT_EQ(std::count_if(layer.joints.begin(), layer.joints.end(),
                           [](const LayerJoint& joint) { return joint.joint.share[0] == 1; }),
@@ -108,9 +108,9 @@ TEST(CompileLayers, OfASurfaceHaveItsArea) {
   spec.where = surface;
   for (const bool quadratic : {false, true}) {
     const Model model = compile(with(sheeted_block(quadratic), spec));
-    EXPECT_NEAR(area_of(*model.layers[0]), 270, 1e-9);
-    EXPECT_GT(model.layers[0]->places.size(), 60u);
-    EXPECT_TRUE(model.layers[0]->faces.empty());
+    EXPECT_NEAR(area_of(*model.reinforcement.layers[0]), 270, 1e-9);
+    EXPECT_GT(model.reinforcement.layers[0]->places.size(), 60u);
+    EXPECT_TRUE(model.reinforcement.layers[0]->faces.empty());
   }
 }
 
@@ -119,8 +119,8 @@ TEST(CompileLayers, WeighWhatTheirDensitySays) {
   spec.density = 900;
   for (const bool quadratic : {false, true}) {
     RobotSpec robot = with(sheeted_block(quadratic), spec);
-    robot.gravity = {0, 0, -9.81};
-    const Vec3 weight = compile(robot).dead_load.colwise().sum().transpose();
+    robot.loads.gravity = {0, 0, -9.81};
+    const Vec3 weight = compile(robot).loads.dead.colwise().sum().transpose();
     EXPECT_LT((weight - Vec3(0, 0, -9.81 * 900e-9 * 0.1 * 360)).norm(), 1e-12);
   }
 }
@@ -132,9 +132,9 @@ TEST(CompileLayers, FollowTheirRobots) {
   const RobotSpec bare = sheeted_block(), dressed = with(sheeted_block(), spec);
   const Model model = compile(
       joined({{"a", bare, {}, line(3)}, {"b", dressed, {turn, {100, 0, 0}}, line(4)}}, {"two.yaml", {}, {}, {}}));
-  ASSERT_EQ(model.layers.size(), 1u);
-  EXPECT_EQ(model.layers[0]->name, "b.paper");
-  for (const LayerPlace& place : model.layers[0]->places) {
+  ASSERT_EQ(model.reinforcement.layers.size(), 1u);
+  EXPECT_EQ(model.reinforcement.layers[0]->name, "b.paper");
+  for (const LayerPlace& place : model.reinforcement.layers[0]->places) {
     Vec3 along = Vec3::Zero();
     for (std::size_t i = 0; i < place.vertices.size(); ++i)
       along += vertex_at(model.rest, place.vertices[i]) * place.slopes[i][0];
@@ -201,7 +201,7 @@ TEST(CompileLayers, AreLeftOutOfTargetShapes) {
   spec.formulation = Formulation::target_shape;
   spec.materials[0].shape_ratio = 1;
   const Model model = compile(spec);
-  EXPECT_TRUE(model.layers.empty());
+  EXPECT_TRUE(model.reinforcement.layers.empty());
   ASSERT_FALSE(model.notes.empty());
   EXPECT_NE(model.notes.back().find("layer is left out"), std::string::npos);
 }

@@ -63,10 +63,10 @@ TEST(CompileMagnetism, RemanenceByMaterialAndBySamples) {
   set_remanence(spec.materials[1], programmed());
   const Model model = compile(spec);
   ASSERT_TRUE(model.magnetism);
-  ASSERT_EQ(model.magnetism->remanence.size(), model.tetrahedra.size());
-  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
+  ASSERT_EQ(model.magnetism->remanence.size(), model.elements.tetrahedra.size());
+  for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e) {
     double x = 0;
-    for (const Index v : model.tetrahedra[e]) x += 0.25 * model.rest(v, 0);
+    for (const Index v : model.elements.tetrahedra[e]) x += 0.25 * model.rest(v, 0);
     const Vec3 expected = x < 20 ? Vec3(100, 0, 0) : Vec3(0, std::floor(x / 10) + 1, 0);
     EXPECT_EQ(model.magnetism->remanence[e], expected) << x;
     EXPECT_EQ(model.magnetism->magnetisation[e], x < 20 ? Magnetisation::turns : Magnetisation::stretches) << x;
@@ -198,7 +198,7 @@ TEST(CompileMagnetism, RobotsAmongSeveral) {
   common.actuators = {field_command("field", {"field", UniformField{}})};
   add_common(all, common);
   const Model model = compile(all);
-  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e)
+  for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e)
     EXPECT_LT(model.magnetism->remanence[e].x(), -0.9);  // along y at rest
   EXPECT_EQ(model.magnetism->magnetisation.back(), Magnetisation::stretches);
   one.actuators = {field_command("own", {"own", UniformField{}})};

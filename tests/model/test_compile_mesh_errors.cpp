@@ -31,7 +31,7 @@ TEST(MeshErrors, AreRefusedAsMeshCheckDoes) {
     const Mesh mesh = block_mesh({2, 1, 1}, {20, 10, 10});
     RobotSpec spec = physical ? physical_robot(mesh) : block_robot(mesh);
     spec.name = "robot.yaml";
-    spec.mesh_origin = line(2);
+    spec.mesh_options.origin = line(2);
     expect_refused(
         spec,
         {{"doubled", double_elements,
@@ -45,9 +45,9 @@ TEST(MeshErrors, AreRefusedAsMeshCheckDoes) {
 TEST(MeshErrors, AreTakenWhereTheSceneAcceptsThem) {
   RobotSpec spec = physical_robot(block_mesh({2, 1, 1}, {20, 10, 10}));
   double_elements(spec);
-  spec.accept_mesh_errors = true;
+  spec.mesh_options.accept_errors = true;
   const Model model = compile(spec);
-  EXPECT_EQ(model.tetrahedra.size(), 24u);
+  EXPECT_EQ(model.elements.tetrahedra.size(), 24u);
   EXPECT_TRUE(has_note(model, "The mesh is taken in spite of its errors (accept_errors): duplicate elements (12)"));
 }
 
@@ -61,7 +61,7 @@ TEST(MeshErrors, OfVoidElementsDoNotMatter) {
   for (std::size_t i = once; i < 2 * once; ++i) copies.tetrahedra.push_back(static_cast<Index>(i));
   spec.mesh.regions.push_back(copies);
   spec.voids = {named("end"), named("copies")};
-  EXPECT_EQ(compile(spec).tetrahedra.size(), 12u);
+  EXPECT_EQ(compile(spec).elements.tetrahedra.size(), 12u);
   // a number in the message is that of the file, not that among the elements that are used
   spec.voids = {named("end")};
   EXPECT_NE(refusal(spec).find("duplicate elements (12): same vertices as an earlier element, the first: tetrahedron " +

@@ -27,23 +27,23 @@ Mesh quadratic_hollow() {
 
 TEST(Order2, CompileElevates) {
   RobotSpec spec = physical_robot(block_mesh({3, 2, 2}, {30, 20, 10}));
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   const Model model = compile(spec);
   const Mesh raised = elevated(spec.mesh);
   EXPECT_EQ(model.rest, raised.vertices);
-  EXPECT_EQ(model.edge_nodes, raised.edge_nodes);
-  EXPECT_NEAR(sum(model.tetrahedron_volumes), 6000, 1e-9);
-  EXPECT_TRUE(std::all_of(model.used.begin(), model.used.end(), [](bool used) { return used; }));
+  EXPECT_EQ(model.elements.edge_nodes, raised.edge_nodes);
+  EXPECT_NEAR(sum(model.elements.tetrahedron_volumes), 6000, 1e-9);
+  EXPECT_TRUE(std::all_of(model.elements.used.begin(), model.elements.used.end(), [](bool used) { return used; }));
   EXPECT_TRUE(model.notes.empty());
-  spec.quadratic = false;
-  EXPECT_TRUE(compile(spec).edge_nodes.empty());
+  spec.mesh_options.quadratic = false;
+  EXPECT_TRUE(compile(spec).elements.edge_nodes.empty());
   spec.mesh = raised;  // of order 2 in its file
-  EXPECT_EQ(compile(spec).edge_nodes, raised.edge_nodes);
+  EXPECT_EQ(compile(spec).elements.edge_nodes, raised.edge_nodes);
 }
 
 TEST(Order2, EverythingThatIsFixedHoldsItsEdgeNodes) {
   RobotSpec spec = physical_robot(block_mesh({2, 2, 2}, {2, 2, 2}));
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   std::vector<Index> face;
   for (Index v = 0; v < spec.mesh.vertices.rows(); ++v)
     if (spec.mesh.vertices(v, 0) == 0) face.push_back(v);
@@ -59,13 +59,13 @@ TEST(Order2, EverythingThatIsFixedHoldsItsEdgeNodes) {
     spec.fixed = {{where, {true, true, true}}};
     const Model model = compile(spec);
     for (Index v = 0; v < model.rest.rows(); ++v)
-      EXPECT_EQ(model.fixed[v][0], model.rest(v, 0) <= depth) << label(where) << " " << model.rest.row(v);
+      EXPECT_EQ(model.held.fixed[v][0], model.rest(v, 0) <= depth) << label(where) << " " << model.rest.row(v);
   }
 }
 
 TEST(Order2, AnEdgeNodeHoldsItsPart) {
   RobotSpec spec = physical_robot(block_mesh({2, 1, 1}, {2, 1, 1}));
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   spec.fixed = {{shaped(Box{{0.4, 0, 0}, {0.6, 1, 1}}), {true, true, true}}};
   EXPECT_EQ(refusal(spec), "");
   spec.fixed[0].where = shaped(Box{{0.4, 0, 0}, {0.6, 0.1, 0.1}});  // one node
@@ -88,13 +88,13 @@ TEST(Order2, ReorderedElementsKeepTheirEdges) {
   }
   const Model model = compile(spec);
   EXPECT_TRUE(has_note(model, std::to_string(odd) + " elements were reordered"));
-  ASSERT_EQ(model.tetrahedra.size(), good.tetrahedra.size());
-  for (std::size_t t = 0; t < model.tetrahedra.size(); ++t) {
-    EXPECT_GT(signed_volume(model.rest, model.tetrahedra[t]), 0);
-    EXPECT_NEAR(model.tetrahedron_volumes[t], good.tetrahedron_volumes[t], 1e-15);
+  ASSERT_EQ(model.elements.tetrahedra.size(), good.elements.tetrahedra.size());
+  for (std::size_t t = 0; t < model.elements.tetrahedra.size(); ++t) {
+    EXPECT_GT(signed_volume(model.rest, model.elements.tetrahedra[t]), 0);
+    EXPECT_NEAR(model.elements.tetrahedron_volumes[t], good.elements.tetrahedron_volumes[t], 1e-15);
     for (int e = 0; e < 6; ++e)
-      EXPECT_EQ(model.edge_nodes[t][e],
-                table.find(model.tetrahedra[t][tetrahedron_edges[e][0]], model.tetrahedra[t][tetrahedron_edges[e][1]]));
+      EXPECT_EQ(model.elements.edge_nodes[t][e], table.find(model.elements.tetrahedra[t][tetrahedron_edges[e][0]],
+                                                            model.elements.tetrahedra[t][tetrahedron_edges[e][1]]));
   }
   EXPECT_NEAR(model.actuators[0].rest_measure, good.actuators[0].rest_measure, 1e-13);
 }
@@ -104,7 +104,7 @@ TEST(Order2, CurvedElementsAndCavitiesHaveTheirVolume) {
   spec.actuators = {chamber("chamber")};
   const Model model = compile(spec);
   const double hole = Bend{}.moments({1, 1, 1}, {2, 2, 2}).first;
-  EXPECT_NEAR(sum(model.tetrahedron_volumes), Bend{}.moments(Vec3::Zero(), cube).first - hole, 1e-12);
+  EXPECT_NEAR(sum(model.elements.tetrahedron_volumes), Bend{}.moments(Vec3::Zero(), cube).first - hole, 1e-12);
   EXPECT_NEAR(model.actuators[0].rest_measure, hole, 1e-14);
   const EdgeTable table(spec.mesh);
   ASSERT_EQ(model.actuators[0].as<ChamberDrive>()->cavity.size(), 12u);
@@ -112,31 +112,31 @@ TEST(Order2, CurvedElementsAndCavitiesHaveTheirVolume) {
     EXPECT_EQ(face.edges, table.of(face.corners));
   // the node inside the chamber belongs to no element, and nobody misses it
   EXPECT_TRUE(model.notes.empty());
-  EXPECT_EQ(std::count(model.used.begin(), model.used.end(), false), 1);
+  EXPECT_EQ(std::count(model.elements.used.begin(), model.elements.used.end(), false), 1);
 }
 
 TEST(Order2, WeighsABentBlock) {
   RobotSpec spec = physical_robot(bent(quadratic_block({3, 3, 3}, cube)));
   spec.materials[0].density = 1100;
-  spec.gravity = {0, 3, -9.81};
+  spec.loads.gravity = {0, 3, -9.81};
   const Model model = compile(spec);
   const auto [volume, first] = Bend{}.moments(Vec3::Zero(), cube);
-  const Vec3 unit = 1100e-9 * spec.gravity;
-  EXPECT_LT((model.dead_load.colwise().sum().transpose() - volume * unit).norm(), 1e-17);
-  EXPECT_LT((model.rest.transpose() * model.dead_load - first * unit.transpose()).norm(), 1e-17);
+  const Vec3 unit = 1100e-9 * spec.loads.gravity;
+  EXPECT_LT((model.loads.dead.colwise().sum().transpose() - volume * unit).norm(), 1e-17);
+  EXPECT_LT((model.rest.transpose() * model.loads.dead - first * unit.transpose()).norm(), 1e-17);
 
   RobotSpec straight = physical_robot(block_mesh({1, 1, 1}, {1, 1, 1}));
-  straight.quadratic = true;
+  straight.mesh_options.quadratic = true;
   straight.materials[0].density = 1;
-  straight.gravity = {0, 0, -1e9};
+  straight.loads.gravity = {0, 0, -1e9};
   const Model one = compile(straight);
   // the cube's first corner is one of six elements of 1/6 mm^3 each
-  EXPECT_NEAR(one.dead_load(0, 2), 6 * (1 / 6.0) / 20, 1e-15);
+  EXPECT_NEAR(one.loads.dead(0, 2), 6 * (1 / 6.0) / 20, 1e-15);
 }
 
 TEST(Order2, MarkersFollowQuadraticDeformations) {
   RobotSpec spec = physical_robot(block_mesh({3, 3, 3}, cube));
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   spec.markers = {{"a", at(1.3, 0.4, 2.2)}, {"b", at(2.95, 1.5, 0.1)}, {"face", mean("x_high")}, {"all", mean("body")}};
   const Model model = compile(spec);
   Points moved = model.rest;
@@ -200,11 +200,11 @@ TEST(Order2, ATriangleThatIsNoFaceHasNoMean) {
 TEST(Order2, TargetShapesLeaveTheEdgeNodesOut) {
   RobotSpec spec = block_robot(quadratic_block({2, 1, 1}, {2, 1, 1}));
   const Model model = compile(spec);
-  EXPECT_TRUE(model.edge_nodes.empty());
-  EXPECT_EQ(std::count(model.used.begin(), model.used.end(), true), 12);
+  EXPECT_TRUE(model.elements.edge_nodes.empty());
+  EXPECT_EQ(std::count(model.elements.used.begin(), model.elements.used.end(), true), 12);
   EXPECT_TRUE(has_note(model, "The mesh is of order 2: its edge nodes are left out"));
   RobotSpec linear = block_robot(block_mesh({2, 1, 1}, {2, 1, 1}));
-  linear.quadratic = true;
+  linear.mesh_options.quadratic = true;
   EXPECT_EQ(compile(linear).rest.rows(), 12);
   EXPECT_TRUE(has_note(compile(linear), "The elements stay linear"));
 }
@@ -251,7 +251,7 @@ TEST(Order2, Refusals) {
             std::string::npos);
 
   RobotSpec shell = physical_robot(block_mesh({2, 2, 1}, {2, 2, 1}, Split::prisms));
-  shell.quadratic = true;
+  shell.mesh_options.quadratic = true;
   EXPECT_NE(refusal(shell).find("a mesh with prisms cannot be of order 2"), std::string::npos);
 }
 

@@ -23,16 +23,16 @@ TEST(Physical, AChamberIsACavityWithoutElements) {
   spec.actuators.push_back(chamber("chamber"));
   const Model model = compile(spec);
   EXPECT_EQ(model.formulation, Formulation::physical);
-  EXPECT_EQ(model.tetrahedra.size(), 26u * 6);
+  EXPECT_EQ(model.elements.tetrahedra.size(), 26u * 6);
   const auto& air = *model.actuators[0].as<ChamberDrive>();
   EXPECT_TRUE(air.tetrahedra.empty());
   EXPECT_EQ(air.cavity.size(), 12u);
   EXPECT_NEAR(model.actuators[0].rest_measure, 1000, 1e-9);
   for (const Index v : vertices_of(air.cavity)) {
     EXPECT_DOUBLE_EQ((model.rest.row(v).transpose() - Vec3(15, 15, 15)).cwiseAbs().maxCoeff(), 5);
-    EXPECT_TRUE(model.used[v]);
+    EXPECT_TRUE(model.elements.used[v]);
   }
-  for (const ElementRole& role : model.tetrahedron_roles) {
+  for (const ElementRole& role : model.elements.tetrahedron_roles) {
     EXPECT_EQ(role.material, 0);
     EXPECT_EQ(role.actuator, -1);
   }
@@ -146,7 +146,7 @@ TEST(Physical, ADeaHasAMaterialAndAnActuator) {
   EXPECT_EQ(model.actuators[0].as<DeaDrive>()->prisms.size(), 8u);
   EXPECT_NEAR(model.actuators[0].rest_measure, 16, 1e-12);
   int actuated = 0;
-  for (const ElementRole& role : model.prism_roles) {
+  for (const ElementRole& role : model.elements.prism_roles) {
     EXPECT_EQ(role.material, 0);
     actuated += role.actuator == 0;
   }
@@ -169,12 +169,12 @@ TEST(Physical, AMembranesMaterialIsNotNeededInTargetShape) {
   spec.materials.push_back(silicone);
   ActuatorSpec skin = actuator("skin", DeaSpec{.region = "membrane"}, 0.7, 1.4);
   spec.actuators.push_back(skin);
-  EXPECT_EQ(compile(spec).materials.size(), 2u);
+  EXPECT_EQ(compile(spec).elements.materials.size(), 2u);
   spec.formulation = Formulation::target_shape;
   const Model model = compile(spec);
-  EXPECT_EQ(model.materials.size(), 1u);
-  EXPECT_EQ(model.prism_roles[0].actuator, 0);
-  EXPECT_EQ(model.prism_roles[0].material, -1);
+  EXPECT_EQ(model.elements.materials.size(), 1u);
+  EXPECT_EQ(model.elements.prism_roles[0].actuator, 0);
+  EXPECT_EQ(model.elements.prism_roles[0].material, -1);
 }
 
 TEST(Physical, LoadControlRestsAtZero) {
@@ -291,7 +291,7 @@ TEST(Physical, ALayerUnderVoltage) {
   RobotSpec spec = charged_shell();
   const Model model = compile(spec);
   EXPECT_EQ(model.actuators[0].control, Control::load);
-  EXPECT_EQ(model.materials[0].permittivity, 3);
+  EXPECT_EQ(model.elements.materials[0].permittivity, 3);
   EXPECT_EQ(model.actuators[0].as<DeaDrive>()->shares, std::vector<double>(8, 1));
   EXPECT_EQ(model.rest_actuation()[0], 0);
   spec.actuators[0].as<DeaSpec>()->shares = shares_of({3, 1, 0, 2, 7, 6, 5, 4});
@@ -337,10 +337,10 @@ TEST(Physical, RefusalsOfVoltages) {
 
 TEST(Physical, TargetShapesKnowNoForces) {
   RobotSpec spec = block_robot(hollow_mesh());
-  spec.gravity = {0, 0, -9.81};
-  spec.forces = {{"push", at(30, 15, 15), {1, 0, 0}}};
+  spec.loads.gravity = {0, 0, -9.81};
+  spec.loads.forces = {{"push", at(30, 15, 15), {1, 0, 0}}};
   const Model model = compile(spec);
-  EXPECT_EQ(model.dead_load.rows(), 0);
+  EXPECT_EQ(model.loads.dead.rows(), 0);
   EXPECT_EQ(model.notes.size(), 2u);
   EXPECT_TRUE(has_note(model, "Gravity is left out"));
   EXPECT_TRUE(has_note(model, "1 force is left out"));

@@ -48,10 +48,10 @@ TEST(Anchoring, FeetAndTwoHeldVerticesSuffice) {
   RobotSpec spec = free_block();
   spec.fixed = {{named("z_low"), along_z}, hold({0}, every), hold({2}, along_y)};
   const Model model = compile(spec);
-  EXPECT_EQ(model.fixed[0], every);
-  EXPECT_EQ(model.fixed[2], (std::array<bool, 3>{false, true, true}));
-  EXPECT_EQ(model.fixed[8], along_z);
-  EXPECT_EQ(model.fixed[9], (std::array<bool, 3>{false, false, false}));
+  EXPECT_EQ(model.held.fixed[0], every);
+  EXPECT_EQ(model.held.fixed[2], (std::array<bool, 3>{false, true, true}));
+  EXPECT_EQ(model.held.fixed[8], along_z);
+  EXPECT_EQ(model.held.fixed[9], (std::array<bool, 3>{false, false, false}));
 }
 
 /// Two blocks of one cell with a gap of 10 mm between x = 10 and x = 20; the first is fixed at x = 0.
@@ -157,12 +157,12 @@ TEST(Turns, AreCommandsInDegrees) {
   spec.fixed[0].rotation = about_z(90);
   spec.fixed[1].rotation = about_z(-5, Vec3(1, 2, 3));
   const Model model = compile(spec);
-  ASSERT_EQ(model.turns.size(), 2u);
-  EXPECT_EQ(model.turns[0].axis, Vec3(0, 0, 1));
-  EXPECT_LT((model.turns[0].about - Vec3(10, 10, 0)).norm(), 1e-12);
-  EXPECT_EQ(model.turns[0].displacement, Vec3(1, 0, 0));
-  EXPECT_EQ(model.turns[1].about, Vec3(1, 2, 3));
-  EXPECT_EQ(model.turns[1].vertices, (std::vector<Index>{18, 20, 24}));
+  ASSERT_EQ(model.held.turns.size(), 2u);
+  EXPECT_EQ(model.held.turns[0].axis, Vec3(0, 0, 1));
+  EXPECT_LT((model.held.turns[0].about - Vec3(10, 10, 0)).norm(), 1e-12);
+  EXPECT_EQ(model.held.turns[0].displacement, Vec3(1, 0, 0));
+  EXPECT_EQ(model.held.turns[1].about, Vec3(1, 2, 3));
+  EXPECT_EQ(model.held.turns[1].vertices, (std::vector<Index>{18, 20, 24}));
   ASSERT_EQ(model.actuators.size(), 2u);
   EXPECT_EQ(command_column(model.actuators[0]), "z_low_turn_deg");
   EXPECT_EQ(command_column(model.actuators[1]), "fixed_2_turn_deg");

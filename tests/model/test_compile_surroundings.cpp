@@ -18,8 +18,8 @@ using namespace testing;
 RobotSpec wet_robot(Mesh mesh) {
   RobotSpec spec = physical_robot(std::move(mesh));
   spec.materials[0].density = 1100;
-  spec.gravity = {0, 0, -9.81};
-  spec.liquid_around = LiquidAroundSpec{1000, {0, 0, 50}, line(4)};
+  spec.loads.gravity = {0, 0, -9.81};
+  spec.loads.liquid_around = LiquidAroundSpec{1000, {0, 0, 50}, line(4)};
   return spec;
 }
 
@@ -46,7 +46,7 @@ Vec3 area_of(const Model& model, const std::vector<LoadedFace>& faces) {
 /// Chambers of elements, empty spaces with and without an actuator: all their walls are dry.
 TEST(CompileLiquid, TheOutsideIsWet) {
   RobotSpec solid = wet_robot(hollow_mesh());
-  EXPECT_EQ(compile(solid).tractions.at(0).faces.size(), 6u * 18u);
+  EXPECT_EQ(compile(solid).loads.tractions.at(0).faces.size(), 6u * 18u);
   RobotSpec chamber = solid;
   ActuatorSpec air = actuator("air", PneumaticSpec{.region = "chamber"}, 0.5, 2);
   chamber.actuators = {air};
@@ -57,13 +57,13 @@ TEST(CompileLiquid, TheOutsideIsWet) {
   space.actuators = {air};
   for (const RobotSpec& spec : {chamber, empty, space}) {
     const Model model = compile(spec);
-    ASSERT_EQ(model.tractions.size(), 1u);
-    EXPECT_EQ(model.tractions[0].faces.size(), 6u * 18u);
-    EXPECT_LT(area_of(model, model.tractions[0].faces).norm(), 1e-9);
-    EXPECT_LT((model.tractions[0].deeper_MPa_mm - Vec3(0, 0, -9.81e-6)).norm(), 1e-18);
+    ASSERT_EQ(model.loads.tractions.size(), 1u);
+    EXPECT_EQ(model.loads.tractions[0].faces.size(), 6u * 18u);
+    EXPECT_LT(area_of(model, model.loads.tractions[0].faces).norm(), 1e-9);
+    EXPECT_LT((model.loads.tractions[0].deeper_MPa_mm - Vec3(0, 0, -9.81e-6)).norm(), 1e-18);
   }
   const Model prisms = compile(wet_robot(block_mesh({2, 2, 2}, {20, 8, 6}, Split::prisms)));
-  EXPECT_LT(area_of(prisms, prisms.tractions.at(0).faces).norm(), 1e-9);
+  EXPECT_LT(area_of(prisms, prisms.loads.tractions.at(0).faces).norm(), 1e-9);
 }
 
 /// A chamber that ends at the plate which holds the robot.
@@ -75,18 +75,20 @@ TEST(CompileLiquid, ChambersThatEndAtAPlateAreDry) {
   ActuatorSpec air = actuator("air", PneumaticSpec{.region = "chamber"}, 0.5, 2);
   spec.actuators = {air};
   const Model model = compile(spec);
-  EXPECT_EQ(model.tractions.at(0).faces.size(), 6u * 18u - 2u);
-  EXPECT_LT((area_of(model, model.tractions[0].faces) - Vec3(100, 0, 0)).norm(), 1e-9);
+  EXPECT_EQ(model.loads.tractions.at(0).faces.size(), 6u * 18u - 2u);
+  EXPECT_LT((area_of(model, model.loads.tractions[0].faces) - Vec3(100, 0, 0)).norm(), 1e-9);
 }
 
 TEST(CompileLiquid, Refusals) {
   expect_refused(
       wet_robot(hollow_mesh()),
-      {{"no gravity", [](RobotSpec& s) { s.gravity.setZero(); }, "needs gravity: without it there is no pressure"},
-       {"density", [](RobotSpec& s) { s.liquid_around->density = -1; }, "needs a density above 0 kg/m^3, not -1"},
-       {"surface", [](RobotSpec& s) { s.liquid_around->surface.x() = std::nan(""); }, "surface that is not finite"}});
+      {{"no gravity", [](RobotSpec& s) { s.loads.gravity.setZero(); },
+        "needs gravity: without it there is no pressure"},
+       {"density", [](RobotSpec& s) { s.loads.liquid_around->density = -1; }, "needs a density above 0 kg/m^3, not -1"},
+       {"surface", [](RobotSpec& s) { s.loads.liquid_around->surface.x() = std::nan(""); },
+        "surface that is not finite"}});
   RobotSpec target = block_robot(block_mesh({2, 2, 2}, {20, 8, 6}));
-  target.liquid_around = LiquidAroundSpec{};
+  target.loads.liquid_around = LiquidAroundSpec{};
   const std::vector<std::string> notes = compile(target).notes;
   EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [](const std::string& note) {
     return note.find("liquid around it is left out") != std::string::npos;
@@ -106,15 +108,15 @@ TEST(CompileFamilies, OfTheElementsOfTheirMaterial) {
   spec.materials[1].region = "left";
   spec.materials[1].families.reset();
   const Model model = compile(spec);
-  EXPECT_FALSE(model.materials[1].families);
-  const Families& families = *model.materials[0].families;
+  EXPECT_FALSE(model.elements.materials[1].families);
+  const Families& families = *model.elements.materials[0].families;
   ASSERT_EQ(families.families.size(), 2u);
-  EXPECT_EQ(2 * families.tetrahedra.size(), model.tetrahedra.size());
+  EXPECT_EQ(2 * families.tetrahedra.size(), model.elements.tetrahedra.size());
   EXPECT_EQ(families.families[0].directions.size(), families.tetrahedra.size());
   EXPECT_EQ(families.families[0].directions[0], Vec3(0, 0.6, 0.8));
   const Mat3 turn = Eigen::AngleAxisd(std::numbers::pi / 2, Vec3::UnitX()).toRotationMatrix();
   const Model placed = compile(joined({{"a", spec, {turn, {0, 0, 0}}, {}}}, {}));
-  EXPECT_LT((placed.materials[0].families->families[0].directions[0] - Vec3(0, -0.8, 0.6)).norm(), 1e-12);
+  EXPECT_LT((placed.elements.materials[0].families->families[0].directions[0] - Vec3(0, -0.8, 0.6)).norm(), 1e-12);
   RobotSpec other = spec;
   other.materials[0].families = fibrous({{0.2, 1, 0.1, {.uniform = {0, 3, 5}}}, {0.1, 0, 0, {}}}).materials[0].families;
   EXPECT_NE(fingerprint_of(compile(other)), fingerprint_of(model));

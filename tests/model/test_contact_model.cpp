@@ -171,18 +171,18 @@ TEST(ContactModel, ObstaclesVerticesFollowTheRobots) {
   const auto rows = static_cast<std::size_t>(model.rest.rows());
   EXPECT_EQ(model.robot_vertices(), 45 - 15);
   EXPECT_EQ(model.rest.topRows(30), bare.rest);
-  EXPECT_EQ(model.held.rows(), model.rest.rows());
-  EXPECT_EQ(model.dead_load.rows(), model.rest.rows());
-  EXPECT_EQ(model.fixed.size(), rows);
-  EXPECT_EQ(model.support_of.size(), rows);
-  EXPECT_EQ(model.used.size(), rows);
+  EXPECT_EQ(model.held.at.rows(), model.rest.rows());
+  EXPECT_EQ(model.loads.dead.rows(), model.rest.rows());
+  EXPECT_EQ(model.held.fixed.size(), rows);
+  EXPECT_EQ(model.held.support_of.size(), rows);
+  EXPECT_EQ(model.elements.used.size(), rows);
   EXPECT_EQ(model.contact.area.size(), rows);
   for (std::size_t v = 30; v < rows; ++v) {
-    ASSERT_FALSE(model.used[v]);
-    ASSERT_EQ(model.fixed[v], (std::array{true, true, true}));
-    ASSERT_EQ(model.support_of[v], (std::array<Index, 3>{-1, -1, -1}));
-    ASSERT_EQ(model.held.row(v), model.rest.row(v));
-    ASSERT_TRUE(model.dead_load.row(v).isZero(0));
+    ASSERT_FALSE(model.elements.used[v]);
+    ASSERT_EQ(model.held.fixed[v], (std::array{true, true, true}));
+    ASSERT_EQ(model.held.support_of[v], (std::array<Index, 3>{-1, -1, -1}));
+    ASSERT_EQ(model.held.at.row(v), model.rest.row(v));
+    ASSERT_TRUE(model.loads.dead.row(v).isZero(0));
   }
   EXPECT_EQ(model.diagonal_mm, bare.diagonal_mm);
   const Vec3 floor = model.rest.middleRows(30, 3).colwise().mean();

@@ -16,7 +16,7 @@ using namespace testing;
 RobotSpec whole_block() {
   RobotSpec spec = physical_robot(hollow_mesh());
   spec.name = "block.yaml";
-  spec.mesh_origin = {"block.yaml", 2};
+  spec.mesh_options.origin = {"block.yaml", 2};
   add_vertex_region(spec.mesh, "corner", {0});
   spec.regions = {{"ball", Sphere{{30, 30, 30}, 11}, line(4)},
                   {"list", VertexList{{5, 6}}, line(5)},
@@ -30,7 +30,7 @@ RobotSpec whole_block() {
   ActuatorSpec tendon = actuator("tendon", CableSpec{}, 0.5, 1);
   tendon.as<CableSpec>()->points = {at(0, 15, 29), mean("corner"), at(25, 15, 29)};
   spec.actuators = {air, tendon};
-  spec.forces.push_back({"push", at(30, 0, 0), Vec3(0, 0, 1)});
+  spec.loads.forces.push_back({"push", at(30, 0, 0), Vec3(0, 0, 1)});
   spec.markers = {{"tip", mean("x_high")}, {"spot", at(20, 10, 5)}, {"middle", mean("all")}};
   return spec;
 }
@@ -80,12 +80,12 @@ TEST(Joined, NamesBeginWithTheRobots) {
             (std::vector<std::string>{"left.air", "left.tendon", "right.air", "right.tendon"}));
   EXPECT_EQ(names_of(model.markers), (std::vector<std::string>{"left.tip", "left.spot", "left.middle", "right.tip",
                                                                "right.spot", "right.middle"}));
-  EXPECT_EQ(names_of(spec.forces), (std::vector<std::string>{"left.push", "right.push"}));
+  EXPECT_EQ(names_of(spec.loads.forces), (std::vector<std::string>{"left.push", "right.push"}));
   EXPECT_EQ(names_of(model.rigid), (std::vector<std::string>{"left.rigid_1", "right.rigid_1"}));
-  EXPECT_EQ(names_of(model.supports),
+  EXPECT_EQ(names_of(model.held.supports),
             (std::vector<std::string>{"left.x_low", "left.fixed_2", "right.x_low", "right.fixed_2"}));
   std::vector<std::string> materials;
-  for (const Material& material : model.materials) materials.push_back(material.region);
+  for (const Material& material : model.elements.materials) materials.push_back(material.region);
   EXPECT_EQ(materials, (std::vector<std::string>{"left", "left.ball", "right", "right.ball"}));
 }
 
@@ -93,7 +93,7 @@ TEST(Joined, NamesBeginWithTheRobots) {
 TEST(Joined, RegionsAreThoseOfTheRobotAlone) {
   for (const bool quadratic : {false, true}) {
     RobotSpec alone = whole_block();
-    alone.quadratic = quadratic;
+    alone.mesh_options.quadratic = quadratic;
     const RobotSpec spec = pair(alone, alone);
     const Mesh mesh = quadratic ? elevated(alone.mesh) : alone.mesh;
     const RegionTable one(alone, mesh), both(spec);
@@ -135,7 +135,7 @@ TEST(Joined, TurnedSupportsHaveTheirAxesInTheCommonFrame) {
   EXPECT_EQ(spec.fixed[1].rotation->degrees, 20);
   const Model model = compile(spec);
   EXPECT_EQ(model.actuators.back().name, "right.x_low_turn");
-  EXPECT_EQ(model.turns[1].axis, Vec3(0, 0, -1));
+  EXPECT_EQ(model.held.turns[1].axis, Vec3(0, 0, -1));
 }
 
 TEST(Joined, PointsVectorsAndSurfacesAreTurned) {
@@ -146,9 +146,9 @@ TEST(Joined, PointsVectorsAndSurfacesAreTurned) {
   const RobotSpec spec = pair(whole_block(), right);
   EXPECT_EQ(std::get<Vec3>(spec.markers[1].at.point), Vec3(20, 10, 5));
   EXPECT_EQ(std::get<Vec3>(spec.markers[4].at.point), Vec3(20, 90, -5));
-  EXPECT_EQ(spec.forces[0].force, Vec3(0, 0, 1));
-  EXPECT_EQ(spec.forces[1].force, Vec3(0, 0, -1));
-  EXPECT_EQ(std::get<Vec3>(spec.forces[1].at.point), Vec3(30, 100, 0));
+  EXPECT_EQ(spec.loads.forces[0].force, Vec3(0, 0, 1));
+  EXPECT_EQ(spec.loads.forces[1].force, Vec3(0, 0, -1));
+  EXPECT_EQ(std::get<Vec3>(spec.loads.forces[1].at.point), Vec3(30, 100, 0));
   EXPECT_EQ(spec.fixed[2].displacement, Vec3(0, 0, -1));
   EXPECT_EQ(std::get<Vec3>(spec.actuators[3].as<CableSpec>()->points[2].point), Vec3(25, 85, -29));
   EXPECT_EQ(std::get<std::string>(spec.actuators[3].as<CableSpec>()->points[1].point), "right.corner");
@@ -162,7 +162,7 @@ TEST(Joined, PointsVectorsAndSurfacesAreTurned) {
 TEST(Joined, PointsLieInTheirOwnBody) {
   RobotSpec block = physical_robot(block_mesh({3, 3, 3}, {30, 30, 30}));
   block.markers = {{"after", at(30.4, 14, 16)}, {"before", at(-0.4, 14, 16)}};
-  block.forces.push_back({"push", at(30.4, 14, 16), Vec3(0, 0, 1)});
+  block.loads.forces.push_back({"push", at(30.4, 14, 16), Vec3(0, 0, 1)});
   block.actuators = {actuator("tendon", CableSpec{}, 0.5, 1)};
   block.actuators[0].as<CableSpec>()->points = {at(-0.4, 14, 16), at(12, 14, 16), at(30.4, 14, 16)};
   Placement beside;
@@ -185,7 +185,7 @@ TEST(Joined, PointsLieInTheirOwnBody) {
     for (std::size_t m = 0; m < 2; ++m)
       expect_own(both.markers[static_cast<std::size_t>(2 * robot) + m].point, one.markers[m].point, robot);
     for (std::size_t p = 0; p < 3; ++p) expect_own(points(both, robot)[p], points(one, 0)[p], robot);
-    EXPECT_LT((both.dead_load.middleRows(robot * vertices, vertices) - one.dead_load).norm(), 1e-9);
+    EXPECT_LT((both.loads.dead.middleRows(robot * vertices, vertices) - one.loads.dead).norm(), 1e-9);
   }
 }
 
@@ -197,12 +197,12 @@ TEST(Joined, WhatIsSaidOfTheWholeComesLast) {
   common.markers = {{"between", mean("all")}};
   add_common(spec, common);
   const Model model = compile(spec);
-  EXPECT_EQ(names_of(model.supports), (std::vector<std::string>{"left.x_low", "left.fixed_2", "right.x_low",
-                                                                "right.fixed_2", "fixed_1", "fixed_2"}));
+  EXPECT_EQ(names_of(model.held.supports), (std::vector<std::string>{"left.x_low", "left.fixed_2", "right.x_low",
+                                                                     "right.fixed_2", "fixed_1", "fixed_2"}));
   EXPECT_EQ(model.markers.back().name, "between");
   EXPECT_LT((model.markers.back().point.at(model.rest) - Vec3(15, 50, 0)).norm(), 1e-9);
   EXPECT_EQ(RegionTable(spec).find("upper", {}).tetrahedra.size(), whole_block().mesh.tetrahedra.size());
-  spec.forces.push_back({"left.push", mean("right"), Vec3(1, 0, 0)});
+  spec.loads.forces.push_back({"left.push", mean("right"), Vec3(1, 0, 0)});
   EXPECT_EQ(refusal(spec), "robot.yaml:6: there are two forces 'left.push'");
 }
 
@@ -211,7 +211,8 @@ TEST(Joined, AxesOfSupportsAreTurned) {
     RobotSpec spec = whole_block();
     spec.fixed = {{named("x_low", 9), axes}};
     return pair(spec, spec).fixed.size() == 2
-               ? joined({placed("r", spec, {Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix(), {}}, 3)},
+               ? joined({placed("r", spec,
+                                {Eigen::AngleAxisd(angle, axis.normalized()).toRotationMatrix(), Vec3::Zero()}, 3)},
                         {"pair.yaml", {}, {}, {}})
                      .fixed[0]
                      .axes
@@ -237,16 +238,16 @@ TEST(Joined, AxesOfSupportsAreTurned) {
 TEST(Joined, Gravity) {
   const Vec3 down(0, 0, -9.81);
   RobotSpec plain = whole_block(), heavy = whole_block(), lifted = whole_block();
-  heavy.gravity = down;
-  heavy.gravity_origin = {"block.yaml", 5};
-  lifted.gravity = -down;
-  lifted.gravity_origin = {"other.yaml", 6};
+  heavy.loads.gravity = down;
+  heavy.loads.gravity_origin = {"block.yaml", 5};
+  lifted.loads.gravity = -down;
+  lifted.loads.gravity_origin = {"other.yaml", 6};
   const CommonSpec common{"pair.yaml", {}, down, {"pair.yaml", 9}};
-  EXPECT_EQ(pair(plain, plain).gravity, Vec3(0, 0, 0));
-  EXPECT_EQ(pair(heavy, lifted).gravity, down);  // the right one stands upside down
-  EXPECT_EQ(pair(plain, plain, common).gravity, down);
-  EXPECT_EQ(pair(heavy, plain, common).gravity, down);
-  EXPECT_EQ(pair(heavy, lifted, common).gravity, down);
+  EXPECT_EQ(pair(plain, plain).loads.gravity, Vec3(0, 0, 0));
+  EXPECT_EQ(pair(heavy, lifted).loads.gravity, down);  // the right one stands upside down
+  EXPECT_EQ(pair(plain, plain, common).loads.gravity, down);
+  EXPECT_EQ(pair(heavy, plain, common).loads.gravity, down);
+  EXPECT_EQ(pair(heavy, lifted, common).loads.gravity, down);
   const std::string cure = ": leave 'gravity' out of the robots' scenes and give it in this one";
   EXPECT_EQ(refusal_of_pair(heavy, heavy),
             "pair.yaml:4: robot 'right': as it stands, its gravity is (0, 0, 9.81) m/s^2 (block.yaml:5), but that of "
@@ -279,7 +280,7 @@ TEST(Joined, WhatDiffersIsRefused) {
             "'printed': give 'weights' in this scene");
   EXPECT_EQ(pair(other, other).weights, ElementWeights::mesh_independent);
   EXPECT_EQ(pair(good, other, {"pair.yaml", {}, {}, {}, ElementWeights::printed}).weights, ElementWeights::printed);
-  quadratic.quadratic = true;
+  quadratic.mesh_options.quadratic = true;
   EXPECT_EQ(refusal_of_pair(quadratic, good),
             "pair.yaml:4: robot 'right' (block.yaml) is of order 1, robot 'left' (block.yaml) of order 2: give both "
             "one order, such as 'order: 2' of 'mesh'");
@@ -323,7 +324,7 @@ TEST(Joined, CompilingNamesTheRobot) {
   EXPECT_EQ(of_right(doubled).substr(0, 50), "block.yaml:2: the mesh of robot 'right' has errors");
   RobotSpec accepted = good;
   doubled(accepted);
-  accepted.accept_mesh_errors = true;
+  accepted.mesh_options.accept_errors = true;
   EXPECT_EQ(refusal(pair(accepted, good)), "");
   RobotSpec other = good;
   doubled(other);
@@ -333,7 +334,7 @@ TEST(Joined, CompilingNamesTheRobot) {
 /// Nodes of edges that target shapes leave out are in no region of theirs.
 TEST(Joined, OfOrderTwoAsTargetShapes) {
   RobotSpec alone = whole_block();
-  alone.quadratic = true;
+  alone.mesh_options.quadratic = true;
   alone.materials[0].shape_ratio = alone.materials[1].shape_ratio = 1;
   alone.markers.push_back({"end", mean("end")});
   alone.regions.push_back({"end", Halfspace{{29, 0, 0}, {1, 0, 0}}, line(3)});
@@ -341,7 +342,7 @@ TEST(Joined, OfOrderTwoAsTargetShapes) {
   spec.formulation = alone.formulation = Formulation::target_shape;
   const Model model = compile(spec), one = compile(alone);
   EXPECT_EQ(model.markers[7].point.vertices.size(), one.markers[3].point.vertices.size());
-  EXPECT_EQ(model.tetrahedra.size(), 2 * one.tetrahedra.size());
+  EXPECT_EQ(model.elements.tetrahedra.size(), 2 * one.elements.tetrahedra.size());
 }
 
 }  // namespace softkin

@@ -14,7 +14,7 @@ namespace {
 ElasticLaw compiled(const ElasticSpec& elastic) {
   RobotSpec spec = physical_robot(block_mesh({1, 1, 1}, {1, 1, 1}));
   spec.materials[0].elastic = elastic;
-  return compile(spec).materials[0].elastic;
+  return compile(spec).elements.materials[0].elastic;
 }
 
 TEST(ElasticConstants, YoungsModulusAndPoissonRatio) {

@@ -15,9 +15,9 @@ using namespace testing;
 /// A bar of 60 x 10 x 10 mm of silicone.
 RobotSpec silicone_bar() {
   RobotSpec spec = physical_robot(block_mesh({18, 3, 3}, {60, 10, 10}));
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   spec.materials[0].density = 1080;
-  spec.gravity = {0, 0, -9.81};
+  spec.loads.gravity = {0, 0, -9.81};
   return spec;
 }
 
@@ -108,7 +108,7 @@ TEST(Plausibility, OfGravity) {
                   "m/s^2: is it that? The scene's 'gravity' is in m/s^2."},
                  {0.00981, "taken as mm/ms^2 it would be 9.81 m/s^2"}},
                 [](RobotSpec& spec, double g) {
-                  spec.gravity = {0, 0, -g};
+                  spec.loads.gravity = {0, 0, -g};
                 });
 }
 
@@ -128,9 +128,9 @@ TEST(Plausibility, OfDensities) {
 TEST(Plausibility, OfWhatCountsAlone) {
   RobotSpec spec = silicone_bar();
   spec.materials[0].density = 1.08;
-  spec.gravity = Vec3::Zero();
+  spec.loads.gravity = Vec3::Zero();
   EXPECT_EQ(warning_of(spec), "0 warnings");
-  spec.gravity = {0, 0, -9810};
+  spec.loads.gravity = {0, 0, -9810};
   spec.formulation = Formulation::target_shape;
   spec.materials[0].shape_ratio = 1;
   EXPECT_EQ(warning_of(spec), "0 warnings");

@@ -23,7 +23,7 @@ RobotSpec sensed_block(bool quadratic) {
   spec.materials[0].elastic = ElasticSpec{};
   spec.materials[0].elastic->youngs_modulus = 1;
   spec.materials[0].elastic->poisson_ratio = 0.4;
-  spec.quadratic = quadratic;
+  spec.mesh_options.quadratic = quadratic;
   const SensorSpec strain{.name = "strain", .kind = SensorKind::length, .points = {{2, 4, 1}, {28, 4, 1}}};
   const SensorSpec bend{
       .name = "bend", .kind = SensorKind::angle, .points = {}, .sections = {"x_low", "x_high"}, .axis = Vec3(0, 2, 0)};

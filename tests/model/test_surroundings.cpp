@@ -23,7 +23,7 @@ RobotSpec surrounded() {
 
 TEST(Surroundings, OfBodiesAndObstacles) {
   RobotSpec spec = surrounded();
-  spec.gravity = {0, 0, -10};
+  spec.loads.gravity = {0, 0, -10};
   spec.materials[0].density = 1;
   const Model model = compile(spec);
   ASSERT_EQ(model.bodies.size(), 1U);
@@ -33,10 +33,10 @@ TEST(Surroundings, OfBodiesAndObstacles) {
   // its weight has no moment about its center of mass
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
   for (const Index v : cube.vertices) {
-    const Vec3 load = model.dead_load.row(v).transpose();
+    const Vec3 load = model.loads.dead.row(v).transpose();
     force += load;
     moment += (vertex_at(model.rest, v) - Vec3(35, 5, 10)).cross(load);
-    EXPECT_FALSE(model.fixed[v][0]);
+    EXPECT_FALSE(model.held.fixed[v][0]);
   }
   EXPECT_LT((force - Vec3(0, 0, -10 * cube.mass_kg)).norm(), 1e-15);
   EXPECT_LT(moment.norm(), 1e-14);

@@ -19,11 +19,11 @@ std::string digits(double value) {
 }
 
 Points held_places(const Model& model, const State& state) {
-  Points places = model.rest + state.share * (model.held - model.rest);
+  Points places = model.rest + state.share * (model.held.at - model.rest);
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const auto* command = model.actuators[a].as<TurnCommand>();
     if (!command) continue;
-    const SupportTurn& turn = model.turns[command->turn];
+    const SupportTurn& turn = model.held.turns[command->turn];
     const double angle = state.share * state.actuation[a] * std::acos(-1.0) / 180;
     for (const Index v : turn.vertices) {  // Rodrigues
       const Vec3 arm = model.rest.row(v).transpose() - turn.about;
@@ -39,7 +39,7 @@ RigidMoves moves_of(const Model& model, const RigidRegion& region) {
   RigidMoves moves;
   for (const Index v : region.vertices)
     for (int axis = 0; axis < 3; ++axis)
-      if (model.fixed[v][axis]) {
+      if (model.held.fixed[v][axis]) {
         moves.slides[axis] = false;
         moves.turns[(axis + 1) % 3] = moves.turns[(axis + 2) % 3] = false;
       }
@@ -99,13 +99,13 @@ void count_inverted(const Model& model, const Points& positions, Confirmation& o
     reported += inverted;
     exact += orientation <= 0;
   };
-  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e)
-    if (model.edge_nodes.empty())
-      count(e, exact_orientation(positions, model.tetrahedra[e]), true);
+  for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e)
+    if (model.elements.edge_nodes.empty())
+      count(e, exact_orientation(positions, model.elements.tetrahedra[e]), true);
     else
-      count(e, quadratic_orientation(positions, model.tetrahedra[e], model.edge_nodes[e]), false);
-  for (std::size_t e = 0; e < model.prisms.size(); ++e)
-    count(model.tetrahedra.size() + e, exact_orientation(positions, model.prisms[e]), true);
+      count(e, quadratic_orientation(positions, model.elements.tetrahedra[e], model.elements.edge_nodes[e]), false);
+  for (std::size_t e = 0; e < model.elements.prisms.size(); ++e)
+    count(model.elements.tetrahedra.size() + e, exact_orientation(positions, model.elements.prisms[e]), true);
   out.inverted = exact;
   if (reported != exact)
     out.faults.push_back("inverted elements: " + std::to_string(reported) + " are reported, " + std::to_string(exact) +

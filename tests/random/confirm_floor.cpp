@@ -13,7 +13,10 @@ constexpr double to_node = 4.0 / 3, to_end = -1.0 / 6;
 }  // namespace
 
 ConfirmedFloor::ConfirmedFloor(const Model& model, const Points& positions)
-    : model_(model), of_surface_(model.used.size()), near_(model.used.size()), beside_(model.used.size()) {
+    : model_(model),
+      of_surface_(model.elements.used.size()),
+      near_(model.elements.used.size()),
+      beside_(model.elements.used.size()) {
   double floor = 0;
   for (std::size_t t = 0; t < model.contact.triangles.size(); ++t) {
     const bool halfspace = model.contact.parts[model.contact.part_of[t]].halfspace;
@@ -41,7 +44,7 @@ void ConfirmedFloor::push(const std::vector<bool>& of_rigid, RealPoints& sum) co
   const auto bears = [&](Index v, Real lacking) { return near_[v] && lacking > 0 ? lacking : 0; };
   for (const auto& [a, b, node] : model_.contact.edges) {
     between[node] = true;
-    const bool held = model_.fixed[node][2] || of_rigid[node];
+    const bool held = model_.held.fixed[node][2] || of_rigid[node];
     push[node] = held ? 0 : bears(node, sum(node, 2) / static_cast<Real>(to_node));
     for (const Index end : {a, b}) {
       handed[end] += static_cast<Real>(to_end) * push[node];
@@ -50,7 +53,7 @@ void ConfirmedFloor::push(const std::vector<bool>& of_rigid, RealPoints& sum) co
   }
   for (std::size_t v = 0; v < near_.size(); ++v) {
     const auto at = static_cast<Index>(v);
-    if (!of_surface_[v] || model_.fixed[v][2] || of_rigid[v]) continue;
+    if (!of_surface_[v] || model_.held.fixed[v][2] || of_rigid[v]) continue;
     if (between[v])
       sum(at, 2) -= static_cast<Real>(to_node) * push[v];
     else if (unknown[v])

@@ -200,7 +200,7 @@ void add_moments(const Layer& layer, const State& state, Forces& forces) {
 }  // namespace
 
 void add_layers(const Model& model, const State& state, Forces& forces) {
-  for (const auto& layer : model.layers) {
+  for (const auto& layer : model.reinforcement.layers) {
     add_membrane(*layer, state, forces);
     add_moments(*layer, state, forces);
   }

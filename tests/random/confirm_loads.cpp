@@ -11,8 +11,8 @@ namespace softkin::random_robots {
 void add_tractions(const Model& model, const State& state, Forces& forces) {
   using Real2 = Eigen::Matrix<Real, 3, 2>;
   using Real3 = Eigen::Matrix<Real, 3, 3>;
-  for (std::size_t t = 0; t < model.tractions.size(); ++t) {
-    const FollowingTraction& traction = model.tractions[t];
+  for (std::size_t t = 0; t < model.loads.tractions.size(); ++t) {
+    const FollowingTraction& traction = model.loads.tractions[t];
     if (!traction.deeper_MPa_mm.isZero(0)) continue;
     Real pressure = static_cast<Real>(state.share) * static_cast<Real>(traction.pressure_MPa);
     for (std::size_t a = 0; a < model.actuators.size(); ++a)
@@ -111,7 +111,7 @@ struct PressedFace {
 
 void add_liquid(const Model& model, const State& state, Forces& forces) {
   constexpr int halvings = 7;
-  for (const FollowingTraction& liquid : model.tractions) {
+  for (const FollowingTraction& liquid : model.loads.tractions) {
     if (liquid.deeper_MPa_mm.isZero(0)) continue;
     for (const LoadedFace& loaded : liquid.faces) {
       const std::vector<Index> nodes = nodes_of(loaded.face);
@@ -127,7 +127,7 @@ void add_liquid(const Model& model, const State& state, Forces& forces) {
 }
 
 void add_fibres(const Model& model, const State& state, Forces& forces) {
-  for (const Fibre& fibre : model.fibres)
+  for (const Fibre& fibre : model.reinforcement.fibres)
     for (const FibrePlace& place : fibre.places) {
       RealVec3 along = RealVec3::Zero();
       Real shares = 0;

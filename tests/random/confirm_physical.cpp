@@ -36,7 +36,7 @@ LayerDrive drive_of(const Model& model, const State& state, const ElementRole& r
   const Actuator& dea = model.actuators[role.actuator];
   if (dea.control == Control::ratio) return {command, 0};
   return {1 + static_cast<Real>(state.share) * (static_cast<Real>(dea.as<DeaDrive>()->prestretch) - 1),
-          vacuum * static_cast<Real>(model.materials[role.material].permittivity) * command * command};
+          vacuum * static_cast<Real>(model.elements.materials[role.material].permittivity) * command * command};
 }
 
 /// How a tetrahedron or prism has grown in a state, and by which of the growths.
@@ -85,16 +85,17 @@ Real take_bulk(ElasticLaw& law) {
 void add_pressures(const Model& model, const Equilibrium& found, Forces& forces, Confirmation& out) {
   Pressing pressing;
   const Eigen::VectorXd& all = found.state.pressures;
-  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
-    const Index material = model.tetrahedron_roles[e].material;
-    if (!model.materials[material].mixed) continue;
-    ElasticLaw law = model.materials[material].elastic;
+  for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e) {
+    const Index material = model.elements.tetrahedron_roles[e].material;
+    if (!model.elements.materials[material].mixed) continue;
+    ElasticLaw law = model.elements.materials[material].elastic;
     const Real bulk = take_bulk(law);
     const Real shear = law.law == Law::neo_hookean || law.law == Law::gent ? law.mu : 2 * (law.c10 + law.c01);
     std::array<Index, 10> nodes;
-    std::copy(model.tetrahedra[e].begin(), model.tetrahedra[e].end(), nodes.begin());
-    if (!model.edge_nodes.empty()) std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
-    const int count = model.edge_nodes.empty() ? 4 : 10;
+    std::copy(model.elements.tetrahedra[e].begin(), model.elements.tetrahedra[e].end(), nodes.begin());
+    if (!model.elements.edge_nodes.empty())
+      std::copy(model.elements.edge_nodes[e].begin(), model.elements.edge_nodes[e].end(), nodes.begin() + 4);
+    const int count = model.elements.edge_nodes.empty() ? 4 : 10;
     const Grown growth = grown(model, found.state, false, static_cast<Index>(e));
     std::array<Index, 4> numbers;
     std::array<Real, 4> pressures;
@@ -132,11 +133,11 @@ void add_elements(const Model& model, const Equilibrium& found, const State& beg
   const auto add = [&](const Index* nodes, int count, Index material, const LayerDrive& drive, Real begun_ratio,
                        bool prism, std::size_t element) {
     const auto e = static_cast<Index>(element);
-    const BranchDrive branches{&model.materials[material].viscosity, found.state.elapsed_s,
+    const BranchDrive branches{&model.elements.materials[material].viscosity, found.state.elapsed_s,
                                nodes_at(begun.positions, nodes, count), begun_ratio,
                                grown(model, begun, prism, e).drive};
-    ElasticLaw law = model.materials[material].elastic;
-    if (model.materials[material].mixed) (void)take_bulk(law);
+    ElasticLaw law = model.elements.materials[material].elastic;
+    if (model.elements.materials[material].mixed) (void)take_bulk(law);
     const ElementPulls pulls = pulls_of(law, nodes_at(model.rest, nodes, count), nodes_at(positions, nodes, count),
                                         drive, branches, grown(model, found.state, prism, e).drive);
     for (int i = 0; i < count; ++i) {
@@ -144,15 +145,17 @@ void add_elements(const Model& model, const Equilibrium& found, const State& beg
       forces.stiffness[nodes[i]] += pulls.stiffness[i];
     }
   };
-  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
+  for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e) {
     std::array<Index, 10> nodes;
-    std::copy(model.tetrahedra[e].begin(), model.tetrahedra[e].end(), nodes.begin());
-    if (!model.edge_nodes.empty()) std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
-    add(nodes.data(), model.edge_nodes.empty() ? 4 : 10, model.tetrahedron_roles[e].material, {}, 1, false, e);
+    std::copy(model.elements.tetrahedra[e].begin(), model.elements.tetrahedra[e].end(), nodes.begin());
+    if (!model.elements.edge_nodes.empty())
+      std::copy(model.elements.edge_nodes[e].begin(), model.elements.edge_nodes[e].end(), nodes.begin() + 4);
+    add(nodes.data(), model.elements.edge_nodes.empty() ? 4 : 10, model.elements.tetrahedron_roles[e].material, {}, 1,
+        false, e);
   }
-  for (std::size_t e = 0; e < model.prisms.size(); ++e) {
-    const ElementRole& role = model.prism_roles[e];
-    add(model.prisms[e].data(), 6, role.material, drive_of(model, found.state, role),
+  for (std::size_t e = 0; e < model.elements.prisms.size(); ++e) {
+    const ElementRole& role = model.elements.prism_roles[e];
+    add(model.elements.prisms[e].data(), 6, role.material, drive_of(model, found.state, role),
         drive_of(model, begun, role).ratio, true, e);
   }
 }
@@ -404,17 +407,19 @@ void add_magnets(const Model& model, const Equilibrium& found, Forces& forces) {
       forces.stiffness[nodes[i]] += pulls.stiffness[i];
     }
   };
-  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
+  for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e) {
     std::array<Index, 10> nodes;
-    std::copy(model.tetrahedra[e].begin(), model.tetrahedra[e].end(), nodes.begin());
-    if (!model.edge_nodes.empty()) std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
-    add(e, nodes.data(), model.edge_nodes.empty() ? 4 : 10);
+    std::copy(model.elements.tetrahedra[e].begin(), model.elements.tetrahedra[e].end(), nodes.begin());
+    if (!model.elements.edge_nodes.empty())
+      std::copy(model.elements.edge_nodes[e].begin(), model.elements.edge_nodes[e].end(), nodes.begin() + 4);
+    add(e, nodes.data(), model.elements.edge_nodes.empty() ? 4 : 10);
   }
-  for (std::size_t e = 0; e < model.prisms.size(); ++e) add(model.tetrahedra.size() + e, model.prisms[e].data(), 6);
+  for (std::size_t e = 0; e < model.elements.prisms.size(); ++e)
+    add(model.elements.tetrahedra.size() + e, model.elements.prisms[e].data(), 6);
 }
 
 void add_families(const Model& model, const Equilibrium& found, Forces& forces) {
-  for (const Material& material : model.materials) {
+  for (const Material& material : model.elements.materials) {
     if (!material.families) continue;
     const Families& all = *material.families;
     const auto add = [&](std::size_t place, const Index* nodes, int count) {
@@ -431,27 +436,27 @@ void add_families(const Model& model, const Equilibrium& found, Forces& forces) 
     for (std::size_t i = 0; i < all.tetrahedra.size(); ++i) {
       const auto e = static_cast<std::size_t>(all.tetrahedra[i]);
       std::array<Index, 10> nodes;
-      std::copy(model.tetrahedra[e].begin(), model.tetrahedra[e].end(), nodes.begin());
-      if (!model.edge_nodes.empty())
-        std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
-      add(i, nodes.data(), model.edge_nodes.empty() ? 4 : 10);
+      std::copy(model.elements.tetrahedra[e].begin(), model.elements.tetrahedra[e].end(), nodes.begin());
+      if (!model.elements.edge_nodes.empty())
+        std::copy(model.elements.edge_nodes[e].begin(), model.elements.edge_nodes[e].end(), nodes.begin() + 4);
+      add(i, nodes.data(), model.elements.edge_nodes.empty() ? 4 : 10);
     }
     for (std::size_t i = 0; i < all.prisms.size(); ++i)
-      add(all.tetrahedra.size() + i, model.prisms[all.prisms[i]].data(), 6);
+      add(all.tetrahedra.size() + i, model.elements.prisms[all.prisms[i]].data(), 6);
   }
 }
 
 void check_places(const Model& model, const State& state, Confirmation& out) {
   const double far = std::max(model.rest.cwiseAbs().maxCoeff(), state.positions.cwiseAbs().maxCoeff());
-  std::vector<bool> of_rigid(model.used.size());
+  std::vector<bool> of_rigid(model.elements.used.size());
   for (const RigidRegion& region : model.rigid)
     for (const Index v : region.vertices) of_rigid[v] = true;
   double worst = 0;
   const Points places = held_places(model, state);
-  const bool turned = !model.turns.empty();  // sines of its own
+  const bool turned = !model.held.turns.empty();  // sines of its own
   for (Index v = 0; v < model.rest.rows(); ++v)
     for (int axis = 0; axis < 3; ++axis) {
-      if (!model.fixed[v][axis]) continue;
+      if (!model.held.fixed[v][axis]) continue;
       const double place = places(v, axis);
       const double allowed =
           of_rigid[v] || turned ? 1e-9 * model.diagonal_mm + 64 * rounding_unit * far : 4 * rounding_unit * far;
@@ -504,9 +509,10 @@ struct Balance {
 /// What moments add up to on a rigid region.
 RealVec3 moment_on(const Model& model, const RigidRegion& region, const State& state) {
   RealVec3 sum = RealVec3::Zero();
-  for (std::size_t m = 0; m < model.moments.size(); ++m) {
-    if (!std::binary_search(region.vertices.begin(), region.vertices.end(), model.moments[m].vertices[0])) continue;
-    sum += static_cast<Real>(state.share) * model.moments[m].moment_Nmm.cast<Real>();
+  for (std::size_t m = 0; m < model.loads.moments.size(); ++m) {
+    if (!std::binary_search(region.vertices.begin(), region.vertices.end(), model.loads.moments[m].vertices[0]))
+      continue;
+    sum += static_cast<Real>(state.share) * model.loads.moments[m].moment_Nmm.cast<Real>();
     for (std::size_t a = 0; a < model.actuators.size(); ++a)
       if (const auto* command = model.actuators[a].as<MomentCommand>();
           command && command->moment == static_cast<Index>(m))
@@ -559,8 +565,8 @@ void confirm_physical(const Model& model, const Equilibrium& found, const State&
   add_families(model, found, forces);
   add_fibres(model, state, forces);
   add_layers(model, state, forces);
-  for (Index v = 0; v < model.dead_load.rows(); ++v)
-    forces.add(v, -static_cast<Real>(state.share) * model.dead_load.row(v).transpose().cast<Real>(), 0);
+  for (Index v = 0; v < model.loads.dead.rows(); ++v)
+    forces.add(v, -static_cast<Real>(state.share) * model.loads.dead.row(v).transpose().cast<Real>(), 0);
   if (!forces.sum.allFinite()) {
     out.faults.emplace_back("the law has no energy for this shape");
     return;
@@ -568,7 +574,7 @@ void confirm_physical(const Model& model, const Equilibrium& found, const State&
   Balance balance;
   balance.tolerance_mm = found.report.tolerance_mm;
   balance.largest = *std::max_element(forces.size.begin(), forces.size.end());
-  std::vector<bool> of_rigid(model.used.size());
+  std::vector<bool> of_rigid(model.elements.used.size());
   for (const RigidRegion& region : model.rigid)
     for (const Index v : region.vertices) of_rigid[v] = true;
   std::optional<ConfirmedFloor> floor;
@@ -584,7 +590,7 @@ void confirm_physical(const Model& model, const Equilibrium& found, const State&
   for (Index v = 0; v < model.rest.rows(); ++v) {
     Real square = 0;
     for (int axis = 0; axis < 3; ++axis)
-      if (!model.fixed[v][axis] && !of_rigid[v]) square += forces.sum(v, axis) * forces.sum(v, axis);
+      if (!model.held.fixed[v][axis] && !of_rigid[v]) square += forces.sum(v, axis) * forces.sum(v, axis);
     if (square > 0)
       balance.enter(std::sqrt(square), forces.size[v], forces.stiffness[v], forces.rounding[v],
                     "vertex " + std::to_string(v));

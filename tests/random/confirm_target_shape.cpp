@@ -168,8 +168,8 @@ double mean_body_volume(const Model& model) {
     for (std::size_t e = 0; e < roles.size(); ++e)
       if (roles[e].material >= 0) sum += volumes[e], ++count;
   };
-  add(model.tetrahedron_roles, model.tetrahedron_volumes);
-  add(model.prism_roles, model.prism_volumes);
+  add(model.elements.tetrahedron_roles, model.elements.tetrahedron_volumes);
+  add(model.elements.prism_roles, model.elements.prism_volumes);
   return count > 0 ? sum / count : 1;
 }
 
@@ -183,12 +183,12 @@ Kind part_of(const Actuator& actuator) {
 Elements elements_of(const Model& model, const Equilibrium& found) {
   const Points& positions = found.state.positions;
   Elements elements;
-  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e)
-    if (const Index m = model.tetrahedron_roles[e].material; m >= 0)
-      elements.add_body(model, positions, vertices(model.tetrahedra[e]), model.materials[m]);
-  for (std::size_t e = 0; e < model.prisms.size(); ++e)
-    if (const Index m = model.prism_roles[e].material; m >= 0)
-      elements.add_body(model, positions, vertices(model.prisms[e]), model.materials[m]);
+  for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e)
+    if (const Index m = model.elements.tetrahedron_roles[e].material; m >= 0)
+      elements.add_body(model, positions, vertices(model.elements.tetrahedra[e]), model.elements.materials[m]);
+  for (std::size_t e = 0; e < model.elements.prisms.size(); ++e)
+    if (const Index m = model.elements.prism_roles[e].material; m >= 0)
+      elements.add_body(model, positions, vertices(model.elements.prisms[e]), model.elements.materials[m]);
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const Actuator& actuator = model.actuators[a];
     std::vector<std::vector<EmbeddedPoint>> parts;
@@ -202,12 +202,12 @@ Elements elements_of(const Model& model, const Equilibrium& found) {
                                                                  : edge * edge * edge / (6 * std::sqrt(2.0)));
     }
     for (const Index e : part_of<ChamberDrive>(actuator).tetrahedra) {
-      parts.push_back(vertices(model.tetrahedra[e]));
-      weights.push_back(model.tetrahedron_volumes[e]);
+      parts.push_back(vertices(model.elements.tetrahedra[e]));
+      weights.push_back(model.elements.tetrahedron_volumes[e]);
     }
     for (const Index e : part_of<DeaDrive>(actuator).prisms) {
-      parts.push_back(vertices(model.prisms[e]));
-      weights.push_back(model.prism_volumes[e]);
+      parts.push_back(vertices(model.elements.prisms[e]));
+      weights.push_back(model.elements.prism_volumes[e]);
     }
     elements.add_actuator(model, positions, actuator, found.state.actuation[a], parts, weights);
   }
@@ -218,7 +218,7 @@ Elements elements_of(const Model& model, const Equilibrium& found) {
 Eigen::MatrixXd moves_by_unknowns(const Model& model, const Points& positions) {
   const Index rows = 3 * static_cast<Index>(model.rest.rows());
   std::vector<Eigen::VectorXd> columns;
-  std::vector<bool> of_rigid(model.used.size());
+  std::vector<bool> of_rigid(model.elements.used.size());
   for (const RigidRegion& region : model.rigid) {
     const RigidMoves moves = moves_of(model, region);
     Vec3 middle = Vec3::Zero();
@@ -238,7 +238,7 @@ Eigen::MatrixXd moves_by_unknowns(const Model& model, const Points& positions) {
   }
   for (Index v = 0; v < model.rest.rows(); ++v)
     for (int axis = 0; axis < 3; ++axis)
-      if (!model.fixed[v][axis] && !of_rigid[v]) {
+      if (!model.held.fixed[v][axis] && !of_rigid[v]) {
         columns.emplace_back(Eigen::VectorXd::Zero(rows));
         columns.back()[3 * v + axis] = 1;
       }
@@ -289,7 +289,7 @@ void check_held(const Model& model, const State& state, Confirmation& out) {
   double worst = 0;
   for (Index v = 0; v < model.rest.rows(); ++v)
     for (int axis = 0; axis < 3; ++axis)
-      if (model.fixed[v][axis]) worst = std::max(worst, std::abs(positions(v, axis) - places(v, axis)));
+      if (model.held.fixed[v][axis]) worst = std::max(worst, std::abs(positions(v, axis) - places(v, axis)));
   if (!(worst <= 1e-9 * model.diagonal_mm + 64 * epsilon * far))
     out.faults.push_back("a held vertex is " + digits(worst) + " mm from its place");
   for (std::size_t a = 0; a < model.actuators.size(); ++a)

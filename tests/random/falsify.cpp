@@ -16,12 +16,12 @@ struct Place {
 };
 
 Place find_place(const Model& model, bool held) {
-  std::vector<bool> of_rigid(model.used.size());
+  std::vector<bool> of_rigid(model.elements.used.size());
   for (const RigidRegion& region : model.rigid)
     for (const Index v : region.vertices) of_rigid[v] = true;
   for (Index v = 0; v < model.rest.rows(); ++v)
     for (int axis = 0; axis < 3; ++axis)
-      if (model.used[v] && !of_rigid[v] && model.fixed[v][axis] == held) return {v, axis};
+      if (model.elements.used[v] && !of_rigid[v] && model.held.fixed[v][axis] == held) return {v, axis};
   return {};
 }
 

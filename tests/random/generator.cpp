@@ -35,7 +35,7 @@ void spoil_number(Making& m) {
       spec.mesh.vertices(m.draw.below(static_cast<int>(spec.mesh.vertices.rows())), m.draw.below(3)) = bad;
       break;
     case 1:
-      spec.gravity[m.draw.below(3)] = bad;
+      spec.loads.gravity[m.draw.below(3)] = bad;
       break;
     case 2:
       spec.materials[0].density = bad;
@@ -45,7 +45,7 @@ void spoil_number(Making& m) {
       if (!spec.fixed.empty()) spec.fixed[0].displacement[m.draw.below(3)] = bad;
       break;
     case 4:
-      spec.forces.push_back({"none", {std::string("x_high"), {}}, {0, bad, 0}});
+      spec.loads.forces.push_back({"none", {std::string("x_high"), {}}, {0, bad, 0}});
       break;
     default:
       for (Actuation& command : m.made.commands)

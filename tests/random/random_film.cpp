@@ -57,7 +57,7 @@ void lay_on_floor(Draw& draw, double radius, RobotSpec& spec) {
   spec.contact->distance_mm = radius * draw.log_between(1e-3, 5e-3);
   spec.contact->obstacles.push_back(
       {"floor", Halfspace{{0, 0, -1.5 * *spec.contact->distance_mm}, {0, 0, 1}}, std::nullopt, {}});
-  spec.gravity = {0, 0, -9.81};
+  spec.loads.gravity = {0, 0, -9.81};
 }
 
 }  // namespace

@@ -82,7 +82,7 @@ void make_families(Making& m) {
 
 void make_submerged(Making& m) {
   Draw draw(m.made.seed ^ draws_of_liquid);
-  const double gravity = m.made.spec.gravity.norm();
+  const double gravity = m.made.spec.loads.gravity.norm();
   if (!(gravity > 0 && std::isfinite(gravity)) || !draw.chance(0.5) || m.mesh().vertices.rows() == 0) return;
   const Vec3 low = m.mesh().vertices.colwise().minCoeff().transpose(),
              size = m.mesh().vertices.colwise().maxCoeff().transpose() - low;
@@ -93,7 +93,7 @@ void make_submerged(Making& m) {
   liquid.density = pressure / (1e-9 * gravity * size.maxCoeff());
   liquid.surface =
       low + size.cwiseProduct(Vec3(draw.between(-0.5, 1.5), draw.between(-0.5, 1.5), draw.between(-0.5, 1.5)));
-  m.made.spec.liquid_around = liquid;
+  m.made.spec.loads.liquid_around = liquid;
 }
 
 }  // namespace softkin::random_robots

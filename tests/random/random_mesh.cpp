@@ -75,7 +75,8 @@ void make_mesh(Making& m) {
   add_regions(m, m.draw.chance(0.85));
   if (m.draw.chance(0.6)) jitter(m, m.draw.between(0, 0.12));
   const std::size_t tetrahedra = m.mesh().tetrahedra.size();
-  m.made.spec.quadratic = m.physical && m.mesh().prisms.empty() && tetrahedra <= 130 && m.draw.chance(0.35);
+  m.made.spec.mesh_options.quadratic =
+      m.physical && m.mesh().prisms.empty() && tetrahedra <= 130 && m.draw.chance(0.35);
 }
 
 namespace {
@@ -153,10 +154,10 @@ void spoil_cells(Making& m) {
 
 void bend_edges(Making& m) {
   Mesh& mesh = m.mesh();
-  if (!m.made.spec.quadratic || m.is(Oddity::bad_cells)) return;
+  if (!m.made.spec.mesh_options.quadratic || m.is(Oddity::bad_cells)) return;
   const auto corners = static_cast<Index>(mesh.vertices.rows());
   mesh = elevated(mesh);
-  m.made.spec.quadratic = m.draw.chance(0.5);
+  m.made.spec.mesh_options.quadratic = m.draw.chance(0.5);
   const double share = m.draw.pick({0.02, 0.05, 0.2});
   for (Index v = corners; v < mesh.vertices.rows(); ++v) mesh.vertices.row(v) += share * m.draw.offset().transpose();
 }

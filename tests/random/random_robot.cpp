@@ -178,15 +178,15 @@ void make_loads(Making& m) {
     // of a strain of about so much, were it a column
     const double strain = odd ? m.draw.log_between(1e-3, 1e9) : m.draw.log_between(1e-6, 1e-3);
     const double gravity = strain * m.modulus / (std::max(density, 1e-6) * m.longest());
-    spec.gravity = m.draw.chance(0.3) ? Vec3(0, 0, -9.81) : Vec3(gravity * m.draw.offset());
-    if (m.draw.chance(0.3) && !odd) spec.gravity = Vec3(0, 0, -gravity);
+    spec.loads.gravity = m.draw.chance(0.3) ? Vec3(0, 0, -9.81) : Vec3(gravity * m.draw.offset());
+    if (m.draw.chance(0.3) && !odd) spec.loads.gravity = Vec3(0, 0, -gravity);
   }
   for (int i = m.draw.chance(odd ? 0.9 : 0.4) ? m.draw.whole(1, 2) : 0; i > 0; --i) {
     const double strain = odd ? m.draw.log_between(1e-4, 1e12) : m.draw.log_between(1e-6, 0.02);
     // a slender robot bends by far more than this strain
     const double area = m.size[1] * m.size[2], slender = std::min(1.0, std::min(m.size[1], m.size[2]) / m.size[0]);
     const Vec3 force = strain * (odd ? 1 : slender) * m.modulus * area * m.draw.offset();
-    spec.forces.push_back(
+    spec.loads.forces.push_back(
         {"force" + std::to_string(i), {std::string(m.draw.pick({"x_high", "z_high", "y_high"})), {}}, force});
   }
 }

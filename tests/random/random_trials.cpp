@@ -75,7 +75,7 @@ void make_tractions(Making& m) {
       spec.pressure_kPa = draw.chance(0.5) ? kilopascals : -kilopascals;
     else
       spec.kilopascals = kilopascals * draw.offset();
-    m.made.spec.tractions.push_back(std::move(spec));
+    m.made.spec.loads.tractions.push_back(std::move(spec));
   }
 }
 
@@ -103,10 +103,10 @@ void make_wrenches(Making& m) {
       wrench.moment_range = std::array<Vec3, 2>{low, high};
       command(most);
     }
-    m.made.spec.forces.push_back(wrench);
+    m.made.spec.loads.forces.push_back(wrench);
     break;
   }
-  for (TractionSpec& traction : m.made.spec.tractions) {
+  for (TractionSpec& traction : m.made.spec.loads.tractions) {
     if (traction.pressure_kPa == 0 || !draw.chance(0.5)) continue;
     const double most = std::abs(traction.pressure_kPa);
     traction.range_kPa = {-most, most};
@@ -155,7 +155,7 @@ void make_layers(Making& m) {
     layer.g12 = layer.e1 == layer.e2 ? layer.e1 / (2 * (1 + layer.nu12)) : draw.between(0.1, 0.5) * layer.e2;
     if (layer.e1 != layer.e2) layer.direction = Vec3(1, 0.7, 0.4);
     layer.tension_only = draw.chance(0.3);
-    layer.bending = m.made.spec.quadratic && draw.chance(0.6);
+    layer.bending = m.made.spec.mesh_options.quadratic && draw.chance(0.6);
     if (layer.nu12 < -0.1 && !layer.bending) {  // drawn for another sheet: rubber in its place
       const double share = layer.thickness_mm / (0.05 * across);
       layer.rubber = SheetRubber{layer.e1 / 6 * (1 - share), layer.e1 / 6 * share, 0.05 * share * layer.e1, 0};
@@ -245,7 +245,7 @@ void make_floor(Making& m) {
   // a column of it would be strained by about so much; a robot that is held at one end bends by far more
   const double strain = draw.log_between(1e-6, 1e-3), density = std::max(900.0, spec.materials[0].density);
   for (MaterialSpec& material : spec.materials) material.density = density;
-  spec.gravity = {0, 0, -strain * m.modulus / (1e-9 * density * m.longest())};
+  spec.loads.gravity = {0, 0, -strain * m.modulus / (1e-9 * density * m.longest())};
 }
 
 }  // namespace softkin::random_robots

@@ -65,15 +65,15 @@ void repeat(const Model& model, const RandomCase& robot, const Actuation& comman
 void describe(const RandomCase& robot, const Model& model) {
   std::printf("%s, %s: %zu tetrahedra%s, %zu prisms, %td vertices, diagonal %g mm\n",
               model.formulation == Formulation::physical ? "physical" : "target-shape",
-              robot.sensible ? "sensible" : joined(robot.features, ", ").c_str(), model.tetrahedra.size(),
-              model.edge_nodes.empty() ? "" : " of order 2", model.prisms.size(),
+              robot.sensible ? "sensible" : joined(robot.features, ", ").c_str(), model.elements.tetrahedra.size(),
+              model.elements.edge_nodes.empty() ? "" : " of order 2", model.elements.prisms.size(),
               static_cast<std::ptrdiff_t>(model.rest.rows()), model.diagonal_mm);
-  for (const Material& m : model.materials)
+  for (const Material& m : model.elements.materials)
     std::printf(
         "  material %s: law %d, mu %g, lambda %g, c10 %g, c01 %g, c20 %g, c30 %g, bulk %g MPa, R_omega %g, weight %g\n",
         m.region.c_str(), static_cast<int>(m.elastic.law), m.elastic.mu, m.elastic.lambda, m.elastic.c10, m.elastic.c01,
         m.elastic.c20, m.elastic.c30, m.elastic.bulk, m.shape_ratio, m.weight);
-  for (const Material& m : model.materials)
+  for (const Material& m : model.elements.materials)
     if (m.families)
       std::printf("  material %s: %zu families of fibres\n", m.region.c_str(), m.families->families.size());
   for (const Actuator& a : model.actuators)
@@ -83,7 +83,7 @@ void describe(const RandomCase& robot, const Model& model) {
                                            : "ratio",
                 a.low, a.high, a.rest_measure);
   for (const RigidRegion& r : model.rigid) std::printf("  rigid: %zu vertices\n", r.vertices.size());
-  if (model.dead_load.rows() > 0) std::printf("  dead load: %g N\n", model.dead_load.rowwise().norm().sum());
+  if (model.loads.dead.rows() > 0) std::printf("  dead load: %g N\n", model.loads.dead.rowwise().norm().sum());
   for (const std::string& note : model.notes) std::printf("  note: %s\n", note.c_str());
 }
 

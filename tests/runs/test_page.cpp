@@ -213,9 +213,9 @@ TEST(Page, FieldsAreMeansOfTheElementsAround) {
     const Index v = document.vertices()[i];
     double sum = 0, ratios = 0;
     int count = 0;  // all elements have the same volume
-    for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
-      const auto& corners = model.tetrahedra[e];
-      const auto& nodes = model.edge_nodes[e];
+    for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e) {
+      const auto& corners = model.elements.tetrahedra[e];
+      const auto& nodes = model.elements.edge_nodes[e];
       if (std::count(corners.begin(), corners.end(), v) + std::count(nodes.begin(), nodes.end(), v) == 0) continue;
       sum += deformation.strain[e][0];
       ratios += deformation.volume_ratio[e];
@@ -363,7 +363,7 @@ TEST(Page, TakesStepsThatAreMadeAndTakenOver) {
   };
   const std::string head = report_head(model, "block.yaml", one_thread());
   {
-    PathJob job(model, answers.statics(), steps, "", one_thread());
+    PathJob job(answers.statics(), steps, "", one_thread());
     StepRun run(model, job, files, head, {});
     watch(run);
     advance(run, 2);
@@ -371,7 +371,7 @@ TEST(Page, TakesStepsThatAreMadeAndTakenOver) {
     run.finish();
   }
   const std::vector<Points> before = shapes;
-  PathJob job(model, answers.statics(), steps, "", one_thread());
+  PathJob job(answers.statics(), steps, "", one_thread());
   StepRun run(model, job, files, head, {});
   watch(run);
   std::string remark;

@@ -37,26 +37,26 @@ void expect_same(const StepRecord& a, const StepRecord& b) {
   EXPECT_EQ(a.time_s, b.time_s);
   EXPECT_EQ(a.shape, b.shape);
   EXPECT_EQ(a.shape_fingerprint, b.shape_fingerprint);
-  EXPECT_EQ(a.unstable_modes, b.unstable_modes);
-  EXPECT_EQ(a.buckled_mm, b.buckled_mm);
-  EXPECT_EQ(a.snapped_from, b.snapped_from);
-  EXPECT_EQ(a.residual_N, b.residual_N);
-  EXPECT_EQ(a.pull_N, b.pull_N);
-  ASSERT_EQ(a.stress.has_value(), b.stress.has_value());
-  if (a.stress) {
-    EXPECT_EQ(a.stress->von_mises.value, b.stress->von_mises.value);
-    EXPECT_EQ(a.stress->least.at, b.stress->least.at);
-    EXPECT_EQ(a.stress->greatest.region, b.stress->greatest.region);
+  EXPECT_EQ(a.physical.unstable_modes, b.physical.unstable_modes);
+  EXPECT_EQ(a.physical.buckled_mm, b.physical.buckled_mm);
+  EXPECT_EQ(a.physical.snapped_from, b.physical.snapped_from);
+  EXPECT_EQ(a.physical.residual_N, b.physical.residual_N);
+  EXPECT_EQ(a.physical.pull_N, b.physical.pull_N);
+  ASSERT_EQ(a.forces.stress.has_value(), b.forces.stress.has_value());
+  if (a.forces.stress) {
+    EXPECT_EQ(a.forces.stress->von_mises.value, b.forces.stress->von_mises.value);
+    EXPECT_EQ(a.forces.stress->least.at, b.forces.stress->least.at);
+    EXPECT_EQ(a.forces.stress->greatest.region, b.forces.stress->greatest.region);
   }
-  ASSERT_EQ(a.reactions.size(), b.reactions.size());
-  for (std::size_t i = 0; i < a.reactions.size(); ++i) {
-    EXPECT_EQ(a.reactions[i].force, b.reactions[i].force);
-    EXPECT_EQ(a.reactions[i].moment, b.reactions[i].moment);
-    EXPECT_EQ(a.reactions[i].center, b.reactions[i].center);
+  ASSERT_EQ(a.forces.reactions.size(), b.forces.reactions.size());
+  for (std::size_t i = 0; i < a.forces.reactions.size(); ++i) {
+    EXPECT_EQ(a.forces.reactions[i].force, b.forces.reactions[i].force);
+    EXPECT_EQ(a.forces.reactions[i].moment, b.forces.reactions[i].moment);
+    EXPECT_EQ(a.forces.reactions[i].center, b.forces.reactions[i].center);
   }
-  ASSERT_EQ(a.contacts.has_value(), b.contacts.has_value());
-  for (std::size_t i = 0; a.contacts && i < a.contacts->size(); ++i) {
-    const PairForces &one = a.contacts->at(i), &other = b.contacts->at(i);
+  ASSERT_EQ(a.forces.contacts.has_value(), b.forces.contacts.has_value());
+  for (std::size_t i = 0; a.forces.contacts && i < a.forces.contacts->size(); ++i) {
+    const PairForces &one = a.forces.contacts->at(i), &other = b.forces.contacts->at(i);
     EXPECT_EQ(one.a, other.a);
     EXPECT_EQ(one.b, other.b);
     EXPECT_EQ(one.force, other.force);
@@ -140,7 +140,7 @@ TEST_F(Steps, OfAPathAreReadBack) {
   for (const Model& model : {testing::bending_model(), testing::swelling_model()}) {
     const Statics statics(model);
     const auto steps = testing::steps_of(model, 3);
-    PathJob job(model, statics, steps, "path.csv", testing::one_thread());
+    PathJob job(statics, steps, "path.csv", testing::one_thread());
     auto records = made(job);
     for (const StepRecord& record : records) {
       EXPECT_EQ(record.status, Status::converged);
@@ -152,11 +152,11 @@ TEST_F(Steps, OfAPathAreReadBack) {
     EXPECT_GT(records[2].largest_displacement_mm, 0);
     records[2].self_overlap = {12, 0.1 + 0.2, {1.5, -2, 1e-3}};
     if (model.formulation == Formulation::physical) {
-      EXPECT_TRUE(records[2].stress.has_value());
-      EXPECT_EQ(records[2].reactions.size(), 1u);
-      records[2].unstable_modes = 2;
-      records[2].buckled_mm = 1.5;
-      records[2].snapped_from = 0.25;
+      EXPECT_TRUE(records[2].forces.stress.has_value());
+      EXPECT_EQ(records[2].forces.reactions.size(), 1u);
+      records[2].physical.unstable_modes = 2;
+      records[2].physical.buckled_mm = 1.5;
+      records[2].physical.snapped_from = 0.25;
       expect_damage_refused(job.codec(), records[2],
                             {"/unstable_modes", "/stress", "/stress/von_mises_MPa/at_mm", "/reactions",
                              "/reactions/0/force_N", "/residual_N"});
@@ -176,14 +176,14 @@ TEST_F(Steps, OfMagnetsAreReadBack) {
       "markers: [{name: tip, region: tip}]\n");
   const Statics statics(model);
   const auto steps = testing::steps_of(model, 3);
-  PathJob job(model, statics, steps, "path.csv", testing::one_thread());
+  PathJob job(statics, steps, "path.csv", testing::one_thread());
   const auto records = made(job);
   const StepRecord& last = records.back();
-  ASSERT_TRUE(last.magnetic.has_value());
+  ASSERT_TRUE(last.forces.magnetic.has_value());
   const StepRecord read = read_back(job.codec(), last);
-  EXPECT_EQ(read.magnetic->force, last.magnetic->force);
-  EXPECT_EQ(read.magnetic->moment, last.magnetic->moment);
-  EXPECT_EQ(read.magnetic->center, last.magnetic->center);
+  EXPECT_EQ(read.forces.magnetic->force, last.forces.magnetic->force);
+  EXPECT_EQ(read.forces.magnetic->moment, last.forces.magnetic->moment);
+  EXPECT_EQ(read.forces.magnetic->center, last.forces.magnetic->center);
   expect_damage_refused(job.codec(), last, {"/magnetic", "/magnetic/moment_N_mm", "/magnetic/center_mm"});
 }
 
@@ -197,7 +197,7 @@ TEST_F(Steps, OfWhatRubsKeepWhereItSticks) {
       "obstacles: [{name: floor, halfspace: {point: [0, 0, -0.05], normal: [0, 0, 1]}}]\n");
   const Statics statics(model);
   const auto steps = testing::steps_of(model, 3);
-  PathJob job(model, statics, steps, "path.csv", testing::one_thread());
+  PathJob job(statics, steps, "path.csv", testing::one_thread());
   const auto records = made(job);
   const StepRecord& last = records.back();
   ASSERT_EQ(last.status, Status::converged);
@@ -205,8 +205,8 @@ TEST_F(Steps, OfWhatRubsKeepWhereItSticks) {
   const State known = state_of(model, read_back(job.codec(), last), model.rest);
   ASSERT_EQ(known.anchors.size(), last.anchors.size());
   StepRecord agreed = last;
-  agreed.friction_change = 3e-5;
-  EXPECT_EQ(read_back(job.codec(), agreed).friction_change, 3e-5);
+  agreed.physical.friction_change = 3e-5;
+  EXPECT_EQ(read_back(job.codec(), agreed).physical.friction_change, 3e-5);
   for (std::size_t i = 0; i < known.anchors.size(); ++i) {
     EXPECT_EQ(known.anchors[i].vertex, last.anchors[i].vertex);
     EXPECT_EQ(known.anchors[i].part, last.anchors[i].part);
@@ -230,10 +230,10 @@ TEST_F(Steps, KeepWhatTouches) {
     const Model model = testing::leaning_model(height);
     const Statics statics(model);
     const std::vector<ActuationStep> steps{{model.rest_actuation()}};
-    PathJob job(model, statics, steps, "path.csv", testing::one_thread());
+    PathJob job(statics, steps, "path.csv", testing::one_thread());
     auto records = made(job);
-    ASSERT_TRUE(records[0].contacts.has_value());
-    ASSERT_EQ(records[0].contacts->size(), height > -1 ? 1u : 0u);
+    ASSERT_TRUE(records[0].forces.contacts.has_value());
+    ASSERT_EQ(records[0].forces.contacts->size(), height > -1 ? 1u : 0u);
     const Json json = Json::parse(job.codec().write(records[0]));
     (void)read_back(job.codec(), records[0]);
     int contacts = 0, untouched = 0;
@@ -250,12 +250,12 @@ TEST_F(Steps, KeepWhatTouches) {
     EXPECT_EQ(json.at("/contacts/0/on"_json_pointer), "robot");
     EXPECT_EQ(json.at("/contacts/0/by"_json_pointer), "floor");
     EXPECT_FALSE(json.at("/contacts/0"_json_pointer).contains("slipping"));
-    EXPECT_EQ(json.at("/contacts/0/pressure_kPa"_json_pointer), records[0].contacts->at(0).pressure_kPa);
+    EXPECT_EQ(json.at("/contacts/0/pressure_kPa"_json_pointer), records[0].forces.contacts->at(0).pressure_kPa);
     expect_damage_refused(job.codec(), records[0],
                           {"/contacts", "/contacts/0/on", "/contacts/0/by", "/contacts/0/force_N",
                            "/contacts/0/moment_N_mm", "/contacts/0/center_mm", "/contacts/0/normal_N",
                            "/contacts/0/pressure_kPa", "/contacts/0/area_mm2", "/contacts/0/gap_mm"});
-    records[0].contacts->at(0).slipping = 0.25;
+    records[0].forces.contacts->at(0).slipping = 0.25;
     (void)read_back(job.codec(), records[0]);
   }
 }
@@ -264,7 +264,7 @@ TEST_F(Steps, ThatDidNotConvergeKeepWhatIsNotKnown) {
   const Model model = testing::bending_model();
   const Statics statics(model);
   const auto steps = testing::steps_of(model, 1);
-  PathJob job(model, statics, steps, "path.csv", testing::one_thread());
+  PathJob job(statics, steps, "path.csv", testing::one_thread());
   StepRecord record = job.make(0, {}).record;
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   record.status = Status::not_converged;
@@ -281,7 +281,7 @@ TEST_F(Steps, LongHistoriesAreWrittenEverSparser) {
   const Model model = testing::bending_model();
   const Statics statics(model);
   const auto steps = testing::steps_of(model, 1);
-  PathJob job(model, statics, steps, "path.csv", testing::one_thread());
+  PathJob job(statics, steps, "path.csv", testing::one_thread());
   StepRecord record = job.make(0, {}).record;
   record.history.assign(10000, {1.23456789, 2, 3});
   const StepRecord read = read_back(job.codec(), record);
@@ -296,7 +296,7 @@ TEST_F(Steps, OfAFollowedPathAreReadBack) {
   const Statics statics(model);
   TrajectoryOptions options;
   options.inverse.statics = testing::one_thread();
-  FollowJob job(model, statics, path, "path.csv", options);
+  FollowJob job(statics, path, "path.csv", options);
   const auto records = made(job);
   for (const WaypointRecord& record : records) {
     EXPECT_TRUE(record.is_reached());

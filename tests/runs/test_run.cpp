@@ -77,7 +77,7 @@ TEST(Run, OfAPathGoesOnBitByBitAtEveryRecord) {
     for (const std::size_t pause : {std::size_t{1}, std::size_t{7}})
       expect_resumable<StepRecord>(model, report_head(model, "block.yaml", testing::one_thread()), pause, [&] {
         statics.forget();
-        return std::make_unique<PathJob>(model, statics, steps, "path.csv", testing::one_thread());
+        return std::make_unique<PathJob>(statics, steps, "path.csv", testing::one_thread());
       });
   }
 }
@@ -91,7 +91,7 @@ TEST(Run, OfAFollowedPathGoesOnBitByBitAtEveryRecord) {
   for (const std::size_t pause : {std::size_t{3}, std::size_t{34}})
     expect_resumable<WaypointRecord>(model, follow_head(model, "block.yaml", options), pause, [&] {
       statics.forget();
-      return std::make_unique<FollowJob>(model, statics, path, "path.csv", options);
+      return std::make_unique<FollowJob>(statics, path, "path.csv", options);
     });
 }
 
@@ -146,7 +146,7 @@ class PathRun : public ::testing::Test {
     while (!run.is_complete()) ASSERT_EQ(run.advance({}), Advance::made);
     run.finish();
   }
-  [[nodiscard]] PathJob path_job() const { return {model_, statics_, steps_, "path.csv", testing::one_thread()}; }
+  [[nodiscard]] PathJob path_job() const { return {statics_, steps_, "path.csv", testing::one_thread()}; }
   [[nodiscard]] runs::Run<StepRecord> path_run(PathJob& job, const std::string& head = "") const {
     return {model_,
             job,

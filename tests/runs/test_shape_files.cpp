@@ -40,8 +40,8 @@ TEST(ShapeFiles, ObstaclesAreTrianglesOfTheirName) {
     const std::string path = written(folder, "a.vtu", model);
     EXPECT_EQ(read_vtu_points(path), model.rest);  // a start
     const Mesh mesh = read_vtu(path);
-    EXPECT_EQ(mesh.tetrahedra.size(), model.tetrahedra.size());
-    EXPECT_EQ(mesh.edge_nodes.size(), model.edge_nodes.size());
+    EXPECT_EQ(mesh.tetrahedra.size(), model.elements.tetrahedra.size());
+    EXPECT_EQ(mesh.edge_nodes.size(), model.elements.edge_nodes.size());
     ASSERT_EQ(mesh.triangles.size(), 12u);
     const auto kerb = std::find_if(mesh.regions.begin(), mesh.regions.end(),
                                    [](const Region& region) { return region.name == "kerb"; });
@@ -79,7 +79,7 @@ TEST(ShapeFiles, AStateIsReadAsItWasWritten) {
     EXPECT_EQ(read.anchors[i].weights, state.anchors[i].weights);
     EXPECT_EQ(read.anchors[i].slipped_mm, state.anchors[i].slipped_mm);
   }
-  EXPECT_EQ(read_vtu(folder / "a.vtu").tetrahedra.size(), model.tetrahedra.size());
+  EXPECT_EQ(read_vtu(folder / "a.vtu").tetrahedra.size(), model.elements.tetrahedra.size());
   state.share = -1;  // of nothing known
   write_shape(folder / "b.vtu", model, state, deformation_of(model, state.positions), false);
   EXPECT_LT(read_state(folder / "b.vtu", model).share, 0);

@@ -125,7 +125,7 @@ inline double push_of_gap(double z) {
 /// A block over a floor, held at its top and moved down and sideways with the share of the way.
 inline RobotSpec block_on_rough_floor(double friction, const Vec3& move, int cells = 3, bool quadratic = false) {
   RobotSpec spec = physical_robot(block_mesh({cells, cells, cells}, {10, 10, 10}));
-  spec.quadratic = quadratic;
+  spec.mesh_options.quadratic = quadratic;
   spec.fixed = {{{Box{{-1, -1, 9.999}, {11, 11, 11}}, {}}, {true, true, true}, move}};
   spec.contact.emplace();
   spec.contact->distance_mm = 0.05;
@@ -142,7 +142,7 @@ inline RobotSpec body_on_floor(const Vec3& size, double friction, double slope =
   for (Index v = 0; v < spec.mesh.vertices.rows(); ++v) spec.mesh.vertices.row(v) += Vec3(60, 0, 1).transpose();
   spec.fixed = {{{Box{{59.9, -1, -1}, {60.1, 100, 100}}, {}}, {true, true, true}, {0, 0, 0}}};
   spec.materials[0].density = 1000;
-  spec.gravity = gravity_m_s2 * Vec3(std::sin(slope), 0, -std::cos(slope));
+  spec.loads.gravity = gravity_m_s2 * Vec3(std::sin(slope), 0, -std::cos(slope));
   spec.contact.emplace();
   spec.contact->distance_mm = 0.05;
   spec.contact->friction = friction;

@@ -7,7 +7,7 @@ namespace softkin::testing {
 
 /// Elements with pressures as unknowns, of a law and order.
 inline RobotSpec mixed(RobotSpec spec, double nu = 0.5, bool quadratic = true, Law law = Law::neo_hookean) {
-  spec.quadratic = quadratic;
+  spec.mesh_options.quadratic = quadratic;
   for (MaterialSpec& material : spec.materials) {
     material.elastic = elastic(law, material.elastic->youngs_modulus.value_or(1), nu);
     material.mixed = true;
@@ -32,15 +32,16 @@ inline RobotSpec blown_ball(int cuts, int layers, double kilopascals, double nu,
   mesh.regions.push_back(std::move(hollow));
   RobotSpec spec = mixed(physical_robot(std::move(mesh)), nu, quadratic);
   if (quadratic) {
-    spec.curve.emplace().smooth = false;
-    for (const double radius : {inner, outer}) spec.curve->surfaces.push_back({Sphere{{0, 0, 0}, radius}, {}});
+    spec.mesh_options.curve.emplace().smooth = false;
+    for (const double radius : {inner, outer})
+      spec.mesh_options.curve->surfaces.push_back({Sphere{{0, 0, 0}, radius}, {}});
   }
   spec.fixed.clear();
   for (int axis = 0; axis < 3; ++axis) {
     FixedSpec& plane = spec.fixed.emplace_back(FixedSpec{{Halfspace{1e-9 * Vec3::Unit(axis), -Vec3::Unit(axis)}, {}}});
     plane.axes = {axis == 0, axis == 1, axis == 2};
   }
-  spec.tractions = {{"air", {std::string("hollow"), {}}, true, {0, 0, 0}, kilopascals}};
+  spec.loads.tractions = {{"air", {std::string("hollow"), {}}, true, {0, 0, 0}, kilopascals}};
   spec.markers.push_back({"inside", {Vec3(inner, 0, 0), {}}});
   return spec;
 }
@@ -56,7 +57,7 @@ inline RobotSpec cook_membrane(int cells, double shear_MPa, double nu, bool quad
   RobotSpec spec = mixed(physical_robot(std::move(mesh)), nu, quadratic);
   spec.materials[0].elastic = elastic(Law::neo_hookean, 240.565, nu);
   for (const char* side : {"z_low", "z_high"}) spec.fixed.push_back({{std::string(side), {}}, {false, false, true}});
-  spec.tractions = {{"shear", {std::string("x_high"), {}}, false, {0, 1e3 * shear_MPa, 0}, 0}};
+  spec.loads.tractions = {{"shear", {std::string("x_high"), {}}, false, {0, 1e3 * shear_MPa, 0}, 0}};
   spec.markers = {{"tip", {Vec3(48, 60, 24.0 / cells), {}}}};
   return spec;
 }

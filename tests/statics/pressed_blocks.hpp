@@ -17,7 +17,7 @@ struct EvenPressure {
 
 /// Both are compressed alike, the gap is that at which the barrier balances them.
 [[nodiscard]] inline EvenPressure pressure_by_hand(const StackedBlocks& blocks, const Model& model) {
-  const ElasticLaw& law = model.materials[0].elastic;
+  const ElasticLaw& law = model.elements.materials[0].elastic;
   const auto pressure_at = [&](double stretch) {
     double low = 1, high = blocks.walls ? 1 : 1.5;  // sideways, where nothing pushes but walls
     for (int i = 0; i < 100; ++i) {
@@ -59,9 +59,9 @@ struct Unevenness {
   for (std::size_t i = 0; i < stresses.size(); ++i) {
     const double error = stresses[i] / even.von_mises - 1;
     out.largest = std::max(out.largest, std::abs(error));
-    out.root_mean += model.tetrahedron_volumes[i] * error * error;
+    out.root_mean += model.elements.tetrahedron_volumes[i] * error * error;
   }
-  const std::vector<double>& volumes = model.tetrahedron_volumes;
+  const std::vector<double>& volumes = model.elements.tetrahedron_volumes;
   out.root_mean = std::sqrt(out.root_mean / std::accumulate(volumes.begin(), volumes.end(), 0.0));
   return out;
 }

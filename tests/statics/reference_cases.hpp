@@ -94,7 +94,7 @@ inline RobotSpec reference_robot(const std::string& mesh, bool quadratic) {
   spec.formulation = Formulation::physical;
   const std::filesystem::path small = reference_file(mesh + ".vtu");
   spec.mesh = read_mesh(small.empty() ? reference_file(mesh + ".msh") : small);
-  spec.quadratic = quadratic;
+  spec.mesh_options.quadratic = quadratic;
   spec.markers.push_back({"tip", {std::string("tip_marker"), {}}});
   return spec;
 }

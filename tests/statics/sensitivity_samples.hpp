@@ -105,7 +105,7 @@ inline RobotSpec curling_finger() {
   sole.region = "sole";
   sole.elastic = elastic(Law::neo_hookean, 20, 0.4);
   spec.materials.push_back(sole);
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   spec.actuators = {air("chamber")};
   spec.markers.push_back({"tip", {std::string("x_high"), {}}});
   return spec;
@@ -130,8 +130,8 @@ inline RobotSpec crowded_robot() {
   spec.actuators.push_back(cable("tendon", {{0, 10, 19}, {24, 10, 19}, {48, 10, 19}}));
   spec.actuators.push_back(by_load(cable("rope", {{0, 1, 10}, {24, 1, 10}, {48, 1, 10}})));
   spec.materials[0].density = 1200;
-  spec.gravity = {0, 0, -9.81};
-  spec.forces.push_back({"payload", {std::string("x_high"), {}}, {0, 0.01, -0.02}});
+  spec.loads.gravity = {0, 0, -9.81};
+  spec.loads.forces.push_back({"payload", {std::string("x_high"), {}}, {0, 0.01, -0.02}});
   spec.rigid.push_back({{Box{{42, 0, 0}, {48, 20, 20}}, {}}, "end"});
   spec.rigid.push_back({{Box{{18, 0, 20}, {30, 20, 20}}, {}}, "patch"});
   spec.fixed[0].displacement = {0, 0, 2};

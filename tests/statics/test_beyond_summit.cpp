@@ -14,7 +14,7 @@ RobotSpec balloon(Law law, bool quadratic) {
   RobotSpec spec = hollow_ball(quadratic ? 4 : 6, 30, 10);
   spec.materials[0].elastic = elastic(law, 0.03, 0.45);
   if (law == Law::gent) spec.materials[0].elastic->jm = 15;
-  spec.quadratic = quadratic;
+  spec.mesh_options.quadratic = quadratic;
   spec.actuators = {air("hollow", 0.5, 60)};
   return spec;
 }
@@ -44,13 +44,13 @@ TEST(BeyondSummit, AlongTheVolumeAndBack) {
     const Equilibrium far = statics.solve(values({100}), statics.rest(), beyond(8));
     ASSERT_EQ(far.report.status, Status::limit) << far.report.remark;
     EXPECT_NEAR(achieved_ratio(model, model.actuators[0], far.state.positions), 8, 1e-6);
-    EXPECT_EQ(far.report.unstable_modes, 1);
+    EXPECT_EQ(far.report.physical.unstable_modes, 1);
     const Equilibrium same = settled(volumes, values({8.0}), tight(1e-8));
     EXPECT_LT(distance(same.state.positions, far.state.positions), 1e-4);
     EXPECT_NEAR(far.state.actuation[0], same.state.multipliers[0], 1e-6 * same.state.multipliers[0]);
-    const auto& points = far.report.branch.points;
+    const auto& points = far.report.physical.branch.points;
     ASSERT_GE(points.size(), 8u);
-    EXPECT_EQ(far.report.branch.actuator, 0);
+    EXPECT_EQ(far.report.physical.branch.actuator, 0);
     double most = 0;
     for (std::size_t i = 0; i < points.size(); i += 3) {
       EXPECT_TRUE(i == 0 || points[i].measure > points[i - 1].measure);
@@ -63,7 +63,7 @@ TEST(BeyondSummit, AlongTheVolumeAndBack) {
       const double asked = same.state.multipliers[0] + share * (most - same.state.multipliers[0]);
       const Equilibrium found = statics.solve(values({asked}), last, beyond(8));
       ASSERT_EQ(found.report.status, Status::converged) << found.report.remark;
-      EXPECT_EQ(found.report.unstable_modes, 1);
+      EXPECT_EQ(found.report.physical.unstable_modes, 1);
       const double ratio = achieved_ratio(model, model.actuators[0], found.state.positions);
       EXPECT_GT(ratio, 3);
       EXPECT_NEAR(pressure_at(ratio, same.state), asked, 1e-5 * asked);
@@ -86,9 +86,9 @@ TEST(BeyondSummit, TheNextStableShapeCarriesTheLoad) {
   for (const StaticsOptions& options : {stable, beyond(30)}) {
     const Equilibrium found = statics.solve(values({asked}), statics.rest(), options);
     ASSERT_EQ(found.report.status, Status::converged) << found.report.remark;
-    EXPECT_EQ(found.report.unstable_modes, 0);
-    EXPECT_GT(found.report.snapped_mm, 1);
-    EXPECT_NEAR(found.report.snapped_from, 1 / 1.03, 0.01);
+    EXPECT_EQ(found.report.physical.unstable_modes, 0);
+    EXPECT_GT(found.report.physical.snapped_mm, 1);
+    EXPECT_NEAR(found.report.physical.snapped_from, 1 / 1.03, 0.01);
     const double ratio = achieved_ratio(model, model.actuators[0], found.state.positions);
     EXPECT_GT(ratio, 1.5 * achieved_ratio(model, model.actuators[0], summit.state.positions));
     const Equilibrium same = settled(volumes, values({ratio}));
@@ -104,7 +104,7 @@ TEST(BeyondSummit, WhatIsNotBeyondTheMaximumIsToldSo) {
   EXPECT_EQ(before.report.status, Status::limit);
   EXPECT_NE(before.report.remark.find("; 1.2 times its volume is not beyond it"), std::string::npos)
       << before.report.remark;
-  EXPECT_EQ(before.report.unstable_modes, 0);
+  EXPECT_EQ(before.report.physical.unstable_modes, 0);
   for (const double wrong : {-1.0, std::nan(""), HUGE_VAL})
     EXPECT_THROW((void)statics.solve(values({1}), statics.rest(), beyond(wrong)), InvalidInput) << wrong;
 }

@@ -203,7 +203,7 @@ TEST(ContactAtRest, NeighboursAroundACornerAreNoGap) {
 
 TEST(ContactAtRest, OfOrderTwo) {
   RobotSpec spec = robot_of(fork(1.2));
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   EXPECT_EQ(refusal_at_rest(spec), "");
   spec.contact->distance_mm = 0.7;
   EXPECT_NE(refusal_at_rest(spec).find("only 1.2 mm apart"), std::string::npos);

@@ -67,7 +67,7 @@ const std::string& name_of_part(const Touched& shape, Index part) {
 TEST(ContactForces, ABlockOnAFloorPressesWithItsLoadOverItsArea) {
   for (const bool quadratic : {false, true}) {
     RobotSpec spec = pressed_block({3, 3, 2}, {12, 12, 8}, 0.5, Halfspace{{3, -4, -0.05}, {0, 0, 2}});
-    spec.quadratic = quadratic;
+    spec.mesh_options.quadratic = quadratic;
     const Touched shape = touched(spec);
     ASSERT_EQ(shape.contacts.pairs.size(), 1u);
     const PairForces& floor = shape.contacts.pairs[0];
@@ -101,7 +101,7 @@ TEST(ContactForces, AreInBalanceWithSupportsAndWeight) {
   RobotSpec spec = physical_robot(block_mesh({6, 2, 2}, {60, 10, 10}));
   spec.materials[0].elastic->youngs_modulus = 0.5;
   spec.materials[0].density = 1100;
-  spec.gravity = {1, 2, -30};
+  spec.loads.gravity = {1, 2, -30};
   spec.contact =
       touching(0.3, {obstacle("ball", Sphere{{45, 5, -11}, 9}), obstacle("wall", Halfspace{{0, 10.5, 0}, {0, -1, 0}})});
   const Touched shape = touched(spec);
@@ -109,7 +109,7 @@ TEST(ContactForces, AreInBalanceWithSupportsAndWeight) {
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
   double size = 0;
   for (Index v = 0; v < shape.model.rest.rows(); ++v) {
-    const Vec3 load = shape.model.dead_load.row(v), place = shape.found.state.positions.row(v);
+    const Vec3 load = shape.model.loads.dead.row(v), place = shape.found.state.positions.row(v);
     force += load;
     moment += place.cross(load);
     size += load.norm();

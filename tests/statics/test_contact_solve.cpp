@@ -73,7 +73,7 @@ TEST(ContactSolve, AFloorBearsWhatPressesOnIt) {
     const BlockOnFloor block{0.2, 0.1, 1, quadratic};
     RobotSpec spec = block.robot();
     const double load = 7;
-    spec.forces = {{"weight", {std::string("z_low"), {}}, {0, 0, -load}}};
+    spec.loads.forces = {{"weight", {std::string("z_low"), {}}, {0, 0, -load}}};
     const Model model = compile(spec);
     const Statics statics(model);
     const Equilibrium found = settled(statics, {});
@@ -116,7 +116,7 @@ RobotSpec turned_block(const Mat3& turn, const Vec3& shift) {
     mesh.vertices.row(v) = moved(mesh.vertices.row(v).transpose()).transpose();
   RobotSpec spec = physical_robot(std::move(mesh));
   spec.fixed = {{{top, {}}, {true, true, true}, turn * Vec3(1, 2, -1.5)}};
-  spec.forces = {{"push", {moved({24, 10, 8}), {}}, turn * Vec3(0.5, 0.3, -1)}};
+  spec.loads.forces = {{"push", {moved({24, 10, 8}), {}}, turn * Vec3(0.5, 0.3, -1)}};
   spec.contact = contact_below(0.2);
   spec.contact->obstacles.push_back({"floor", Halfspace{moved({3, 4, -0.1}), turn * Vec3(0, 0, 1)}, std::nullopt, {}});
   return spec;

@@ -25,9 +25,9 @@ struct PlateOnFloor {
     RobotSpec spec = physical_robot(mesh());
     spec.materials[0].elastic = elastic(Law::neo_hookean, 1, 0);
     spec.materials[0].density = density;
-    spec.gravity = {0, 0, -9.81};
+    spec.loads.gravity = {0, 0, -9.81};
     spec.fixed = fixed;
-    spec.quadratic = quadratic;
+    spec.mesh_options.quadratic = quadratic;
     spec.contact = contact_below(distance);
     spec.contact->friction = friction;
     spec.contact->obstacles.push_back({"floor", Halfspace{{0, 0, -gap}, {0, 0, 1}}, std::nullopt, {}});

@@ -47,7 +47,7 @@ RobotSpec mixed_laws() {
 
 RobotSpec quadratic_laws() {
   RobotSpec spec = physical_robot(block_mesh({3, 2, 2}, {30, 20, 20}));
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   spec.regions.push_back({"left", Box{{0, 0, 0}, {10, 20, 20}}, {}});
   spec.materials = {material("all", Law::neo_hookean), material("left", Law::yeoh)};
   return spec;
@@ -179,11 +179,11 @@ TEST(Body, LaplacianOfALinearField) {
     const Eigen::SparseMatrix<double> lower = physical::Body(model).laplacian();
     const Eigen::SparseMatrix<double> matrix = lower.selfadjointView<Eigen::Lower>();
     double volume = 0;
-    for (const double v : model.tetrahedron_volumes) volume += v;
-    for (const double v : model.prism_volumes) volume += v;
+    for (const double v : model.elements.tetrahedron_volumes) volume += v;
+    for (const double v : model.elements.prism_volumes) volume += v;
     Eigen::VectorXd field = model.rest * Vec3(0.3, -1, 2);
     for (Index v = 0; v < field.size(); ++v)
-      if (!model.used[v]) field[v] = 0;
+      if (!model.elements.used[v]) field[v] = 0;
     EXPECT_NEAR(field.dot(matrix * field), Vec3(0.3, -1, 2).squaredNorm() * volume, 1e-9 * volume);
   }
 }

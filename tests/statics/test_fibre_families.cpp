@@ -152,7 +152,7 @@ TEST(FibreFamilies, AffineShapesHaveTheEnergyOfTheLaw) {
   for (const auto& [split, quadratic] :
        {std::pair{Split::six, false}, std::pair{Split::six, true}, std::pair{Split::prisms, false}}) {
     RobotSpec spec = physical_robot(block_mesh({2, 2, 2}, {20, 8, 6}, split));
-    spec.quadratic = quadratic;
+    spec.mesh_options.quadratic = quadratic;
     spec.materials[0].families = std::make_shared<const FamiliesSpec>(oblique);
     PhysicalEquations sample(compile(spec));
     const auto energy_at = [&](const Mat3& map, Points& gradient) {
@@ -190,7 +190,7 @@ TEST(FibreFamilies, AffineShapesHaveTheEnergyOfTheLaw) {
 TEST(FibreFamilies, RingsHoldATube) {
   const auto radius = [](double degrees) {
     RobotSpec spec = physical_robot(rod_mesh(16, 2, 2, 8, 6, 0.7));
-    spec.quadratic = true;
+    spec.mesh_options.quadratic = true;
     spec.materials[0].elastic = elastic(Law::neo_hookean, 0.3, 0.45);
     DirectionSpec around{DirectionSpec::Kind::circumferential, {}, {0, 0, 0}, {1, 0, 0}, degrees};
     spec.materials[0].families = families({{2, 1, 0, around}});
@@ -210,7 +210,7 @@ TEST(FibreFamilies, RingsHoldATube) {
       if (const Vec3 p = vertex_at(spec.mesh.vertices, v); std::abs(p.y()) < 1e-9 && p.x() < 1e-9)
         other.vertices.push_back(v);
     spec.fixed.push_back({{Selector(other), {}}, {false, true, false}});
-    spec.tractions = {{"air", {Selector(inside), {}}, true, {0, 0, 0}, 30}};
+    spec.loads.tractions = {{"air", {Selector(inside), {}}, true, {0, 0, 0}, 30}};
     const Model model = compile(spec);
     const Points shape = settled(Statics(model), model.rest_actuation()).state.positions;
     return shape.rightCols(2).rowwise().norm().maxCoeff();
@@ -223,7 +223,7 @@ TEST(FibreFamilies, RingsHoldATube) {
 TEST(FibreFamilies, DerivativesOfShapes) {
   for (const bool quadratic : {false, true}) {
     RobotSpec spec = cable_beam();
-    spec.quadratic = quadratic;
+    spec.mesh_options.quadratic = quadratic;
     spec.materials[0].families = std::make_shared<const FamiliesSpec>(oblique);
     const Model model = compile(spec);
     const Statics statics(model);

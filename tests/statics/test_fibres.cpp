@@ -26,7 +26,7 @@ FibreSpec thread(const std::string& name, std::vector<Vec3> way, double stiffnes
 RobotSpec pulled_block(const Mesh& mesh, bool quadratic, double stretch) {
   RobotSpec spec = physical_robot(mesh);
   spec.materials[0].elastic = elastic(Law::corotational, 1, 0);
-  spec.quadratic = quadratic;
+  spec.mesh_options.quadratic = quadratic;
   spec.fixed = {{{std::string("x_low"), {}}, {true, false, false}},
                 {{std::string("y_low"), {}}, {false, true, false}},
                 {{std::string("z_low"), {}}, {false, false, true}},
@@ -67,9 +67,9 @@ struct TubeShape {
 RobotSpec wound(const WoundTube& tube) {
   constexpr int corners = 24;
   RobotSpec spec = physical_robot(rod_mesh(corners, 2, 2, tube.outer, tube.length, tube.inner / tube.outer));
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   const Vec3 end(tube.length, 0, 0);
-  spec.curve =
+  spec.mesh_options.curve =
       CurveSpec{{{Cylinder{Vec3::Zero(), end, tube.inner}, {}}, {Cylinder{Vec3::Zero(), end, tube.outer}, {}}}};
   spec.materials[0].elastic = elastic(Law::neo_hookean, tube.modulus, tube.nu);
   const auto chosen = [&](const auto& is) {
@@ -86,11 +86,11 @@ RobotSpec wound(const WoundTube& tube) {
                  {(tube.axial - 1) * tube.length, 0, 0}},
                 {chosen([&](const Vec3& p) { return bottom(p) && std::abs(p.y()) < 1e-9; }), {false, true, false}},
                 {chosen([&](const Vec3& p) { return bottom(p) && std::abs(p.z()) < 1e-9; }), {false, false, true}}};
-  spec.tractions = {{"air",
-                     chosen([&](const Vec3& p) { return std::hypot(p.y(), p.z()) < tube.inner + 1e-9; }),
-                     true,
-                     {0, 0, 0},
-                     tube.pressure_kPa}};
+  spec.loads.tractions = {{"air",
+                           chosen([&](const Vec3& p) { return std::hypot(p.y(), p.z()) < tube.inner + 1e-9; }),
+                           true,
+                           {0, 0, 0},
+                           tube.pressure_kPa}};
   for (int t = 0; t < 2 * tube.threads; ++t) {
     const double begin = 2 * std::numbers::pi * (t / 2) / tube.threads;
     FibreSpec fibre = thread("thread" + std::to_string(t), {}, tube.stiffness_N);
@@ -241,7 +241,7 @@ TEST(Fibres, AddTheirTensionAlongThePull) {
 TEST(Fibres, ThoseThatDoNotStretchHold) {
   RobotSpec spec = pulled_block(block_mesh({8, 2, 2}, {20, 10, 10}), true, 1);
   spec.fixed.pop_back();
-  spec.forces = {{"pull", {std::string("x_high"), {}}, {2, 0, 0}}};
+  spec.loads.forces = {{"pull", {std::string("x_high"), {}}, {2, 0, 0}}};
   spec.markers.push_back({"end", {std::string("x_high"), {}}});
   const Model free = compile(spec);
   EXPECT_GT(marker_at(free, settled(Statics(free), free.rest_actuation())).x(), 20.35);
@@ -263,12 +263,12 @@ TEST(Fibres, ThoseThatDoNotStretchHold) {
 /// Turned with all that it has a robot keeps its shape and its tensions.
 TEST(Fibres, TurnWithTheRobot) {
   RobotSpec spec = physical_robot(block_mesh({8, 2, 2}, {40, 8, 8}));
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   spec.fixed[0].rotation = RotationSpec{{0, 1, 0}, 0, Vec3(0, 0, 0)};
   FibreSpec fibre = thread("wound", {}, 20, true);
   fibre.way = Helix{{2, 4, 4}, {1, 0, 0}, {0, 1, 0}, 3, 9, 4};
   spec.fibres = {fibre};
-  spec.tractions = {{"wind", {std::string("x_high"), {}}, true, {1.5, 0.4, -1}, 0}};
+  spec.loads.tractions = {{"wind", {std::string("x_high"), {}}, true, {1.5, 0.4, -1}, 0}};
   const Model model = compile(spec);
   const Statics statics(model);
   const Equilibrium straight = settled(statics, values({0})), turned = settled(statics, values({130}));
@@ -314,7 +314,7 @@ TEST(Fibres, AMuscleOfMcKibben) {
 /// At rest threads carry nothing, whatever rounding makes of the pieces that corners of elements cut.
 TEST(Fibres, CarryNothingAtRest) {
   RobotSpec spec = wound({54.7});
-  spec.tractions.clear();
+  spec.loads.tractions.clear();
   spec.fixed[1].displacement = Vec3::Zero();
   for (FibreSpec& fibre : spec.fibres) fibre.stiffness_N = 1e4;
   const Model model = compile(spec);

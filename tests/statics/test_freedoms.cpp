@@ -39,7 +39,7 @@ RobotSpec held_robot() {
 /// A model, a pattern that couples neighbours and distant vertices, and freedoms over it.
 struct FreedomSample {
   explicit FreedomSample(const RobotSpec& spec) : model(compile(spec)) {
-    for (const Tetrahedron& t : model.tetrahedra) cliques.add(t);
+    for (const Tetrahedron& t : model.elements.tetrahedra) cliques.add(t);
     const Index n = static_cast<Index>(model.rest.rows());
     cliques.add(std::vector<Index>{0, n - 1, n / 2, 3, n / 3});
     pattern.emplace(n, cliques);
@@ -125,11 +125,11 @@ struct RandomMatrix {
 TEST(Freedoms, CountsWhatMayMove) {
   const FreedomSample sample(held_robot());
   Index expected = 6 + 3 + 1;  // regions: free, in a plane, along a line
-  std::vector<bool> in_region(sample.model.fixed.size());
+  std::vector<bool> in_region(sample.model.held.fixed.size());
   for (const RigidRegion& region : sample.model.rigid)
     for (const Index v : region.vertices) in_region[v] = true;
   for (std::size_t v = 0; v < in_region.size(); ++v)
-    for (int axis = 0; axis < 3; ++axis) expected += !in_region[v] && !sample.model.fixed[v][axis];
+    for (int axis = 0; axis < 3; ++axis) expected += !in_region[v] && !sample.model.held.fixed[v][axis];
   EXPECT_EQ(sample.freedoms->size(), expected);
 }
 
@@ -162,8 +162,8 @@ TEST(Freedoms, MovedFarRegionsKeepTheirShapeAndSupportsTheirPlace) {
                     1e-11);
   for (Index v = 0; v < moved.rows(); ++v)
     for (int axis = 0; axis < 3; ++axis)
-      if (sample.model.fixed[v][axis]) {
-        EXPECT_NEAR(moved(v, axis), sample.model.held(v, axis), 1e-11);
+      if (sample.model.held.fixed[v][axis]) {
+        EXPECT_NEAR(moved(v, axis), sample.model.held.at(v, axis), 1e-11);
       }
 }
 
@@ -267,8 +267,8 @@ TEST(Freedoms, HoldProjects) {
     sample.freedoms->hold(share, positions);
     for (Index v = 0; v < positions.rows(); ++v)
       for (int axis = 0; axis < 3; ++axis)
-        if (model.fixed[v][axis]) {
-          EXPECT_NEAR(positions(v, axis), model.rest(v, axis) + share * (model.held(v, axis) - model.rest(v, axis)),
+        if (model.held.fixed[v][axis]) {
+          EXPECT_NEAR(positions(v, axis), model.rest(v, axis) + share * (model.held.at(v, axis) - model.rest(v, axis)),
                       1e-11);
         }
     for (const RigidRegion& region : model.rigid)

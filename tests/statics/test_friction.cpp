@@ -46,7 +46,7 @@ TEST(Friction, OfWhatSlidesIsItsCoefficient) {
     EXPECT_NEAR(std::hypot(force.x(), force.y()), friction * std::abs(force.z()),
                 0.01 * friction * std::abs(force.z()));
     EXPECT_GT(force.x(), 0);
-    EXPECT_LE(found.report.friction_change, 1e-4);
+    EXPECT_LE(found.report.physical.friction_change, 1e-4);
   }
 }
 
@@ -194,7 +194,7 @@ RobotSpec strip_over_drum(double friction, double pull) {
     spec.mesh.vertices.row(v) << out * std::sin(angle) + beyond * std::cos(angle), spec.mesh.vertices(v, 1),
         out * std::cos(angle) - beyond * std::sin(angle);
   }
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   spec.materials[0].elastic->youngs_modulus = 10;
   spec.fixed = {{{std::string("x_low"), {}}, {true, true, true}, {0, 0, 0}},
                 {{std::string("x_high"), {}}, {true, true, true}, {0, 0, -pull}}};

@@ -70,7 +70,7 @@ RobotSpec bilayer(const Strip& strip) {
   add_volume_region(mesh, "lower", [&](const Vec3& p) { return p.z() < split; });
   add_volume_region(mesh, "upper", [&](const Vec3& p) { return p.z() > split; });
   RobotSpec spec = physical_robot(std::move(mesh));
-  spec.quadratic = strip.quadratic;
+  spec.mesh_options.quadratic = strip.quadratic;
   spec.materials[0].elastic = elastic(Law::neo_hookean, strip.upper_modulus, strip.nu);
   spec.materials.push_back(spec.materials[0]);
   spec.materials[1].region = "lower";
@@ -111,7 +111,7 @@ TEST(Growth, FreeBodiesSwellWithoutStress) {
     for (const Law law : {Law::neo_hookean, Law::corotational, Law::gent})
       for (const double stretch : {1.3, 0.8}) {
         RobotSpec spec = swelling_block(mesh, size);
-        spec.quadratic = quadratic;
+        spec.mesh_options.quadratic = quadratic;
         spec.materials[0].elastic = elastic(law, 1, 0.4);
         const std::string what = std::to_string(quadratic) + " " + std::to_string(stretch);
         spec.actuators = {growth("all", 0.5, 2)};

@@ -19,8 +19,8 @@ RobotSpec submerged(Mesh mesh, double level_mm, double density = 1000) {
   RobotSpec spec = physical_robot(std::move(mesh));
   spec.materials[0].elastic = elastic(Law::neo_hookean, 0.02, 0.4);
   spec.materials[0].density = 1300;
-  spec.gravity = {0, 0, -standard_gravity};
-  spec.liquid_around = LiquidAroundSpec{density, {0, 0, level_mm}, {}};
+  spec.loads.gravity = {0, 0, -standard_gravity};
+  spec.loads.liquid_around = LiquidAroundSpec{density, {0, 0, level_mm}, {}};
   return spec;
 }
 
@@ -73,11 +73,11 @@ double wet_volume(const Model& model, std::size_t element, const Points& positio
       const Eigen::Vector4d& l = corners[c];
       at[c].setZero();
       for (Eigen::Index i = 0; i < 4; ++i)
-        at[c] +=
-            l[i] * (model.edge_nodes.empty() ? 1 : 2 * l[i] - 1) * vertex_at(positions, model.tetrahedra[element][i]);
-      for (std::size_t i = 0; i < 6 && !model.edge_nodes.empty(); ++i)
+        at[c] += l[i] * (model.elements.edge_nodes.empty() ? 1 : 2 * l[i] - 1) *
+                 vertex_at(positions, model.elements.tetrahedra[element][i]);
+      for (std::size_t i = 0; i < 6 && !model.elements.edge_nodes.empty(); ++i)
         at[c] += 4 * l[tetrahedron_edges[i][0]] * l[tetrahedron_edges[i][1]] *
-                 vertex_at(positions, model.edge_nodes[element][i]);
+                 vertex_at(positions, model.elements.edge_nodes[element][i]);
     }
     return wet_volume(at, level, 12);
   }
@@ -100,15 +100,15 @@ double wet_volume(const Model& model, const Points& positions, double level) {
   std::array<Eigen::Vector4d, 4> whole;
   for (Eigen::Index i = 0; i < 4; ++i) whole[i] = Eigen::Vector4d::Unit(i);
   double sum = 0;
-  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e)
-    sum += wet_volume(model, e, positions, whole, level, model.edge_nodes.empty() ? 0 : 9);
+  for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e)
+    sum += wet_volume(model, e, positions, whole, level, model.elements.edge_nodes.empty() ? 0 : 9);
   return sum;
 }
 
 /// Of the whole of it, exact for curved faces.
 double whole_volume(const Model& model, const Points& positions) {
   std::vector<CavityFace> faces;
-  for (const LoadedFace& loaded : model.tractions.at(0).faces) faces.push_back(loaded.face);
+  for (const LoadedFace& loaded : model.loads.tractions.at(0).faces) faces.push_back(loaded.face);
   return enclosed_volume(positions, faces);
 }
 
@@ -127,7 +127,7 @@ Vec3 buoyancy(const RobotSpec& spec, Points* shape = nullptr) {
   const Equilibrium found = settled(statics, model.rest_actuation(), tight(1e-11));
   EXPECT_GT(distance(found.state.positions, model.rest), 1);  // it bends
   if (shape) *shape = found.state.positions;
-  const Vec3 weight = model.dead_load.colwise().sum().transpose();
+  const Vec3 weight = model.loads.dead.colwise().sum().transpose();
   return -(borne(model, statics, found) + weight);
 }
 
@@ -138,7 +138,7 @@ TEST(Hydrostatics, LiftsByTheWeightOfWhatIsDisplaced) {
   const Vec3 size(60, 10, 8);
   for (const bool quadratic : {false, true}) {
     RobotSpec spec = submerged(block_mesh({8, 2, 2}, size), 30);
-    spec.quadratic = quadratic;
+    spec.mesh_options.quadratic = quadratic;
     Points shape;
     const Vec3 lift = buoyancy(spec, &shape);
     const Model model = compile(spec);
@@ -158,10 +158,10 @@ TEST(Hydrostatics, LiftsPrisms) {
   const Model model = compile(spec);
   const Statics statics(model);
   const Equilibrium found = settled(statics, model.rest_actuation(), tight(1e-11));
-  const Vec3 lift = -(borne(model, statics, found) + Vec3(model.dead_load.colwise().sum().transpose()));
+  const Vec3 lift = -(borne(model, statics, found) + Vec3(model.loads.dead.colwise().sum().transpose()));
   // volume of what its faces bound, quads cut both ways
   std::vector<CavityFace> faces;
-  const Boundary boundary = boundary_of(model.tetrahedra, model.prisms);
+  const Boundary boundary = boundary_of(model.elements.tetrahedra, model.elements.prisms);
   for (const Triangle& t : boundary.triangles) faces.insert(faces.end(), 2, CavityFace{t});
   for (const Quad& q : boundary.quads)
     for (std::size_t i = 0; i < 4; ++i) faces.push_back({{q[i], q[(i + 1) % 4], q[(i + 2) % 4]}});
@@ -174,7 +174,7 @@ TEST(Hydrostatics, LiftsWhatIsInTheLiquidInPart) {
   for (const bool quadratic : {false, true})
     for (const double level : {-13.7, 1.3, 5.9}) {
       RobotSpec spec = submerged(block_mesh({8, 2, 2}, size), level);
-      spec.quadratic = quadratic;
+      spec.mesh_options.quadratic = quadratic;
       Points shape;
       const Vec3 lift = buoyancy(spec, &shape);
       const Model model = compile(spec);
@@ -191,13 +191,13 @@ TEST(Hydrostatics, LiftsWhatIsInTheLiquidInPart) {
 TEST(Hydrostatics, WhatIsAsHeavyAsTheLiquidDoesNotSag) {
   for (const bool quadratic : {false, true}) {
     RobotSpec spec = mixed(submerged(block_mesh({8, 2, 2}, {60, 10, 8}), 30, 1300), 0.5, quadratic);
-    spec.gravity = {0, 5, -8};
-    spec.liquid_around->surface = {0, -100, 60};
+    spec.loads.gravity = {0, 5, -8};
+    spec.loads.liquid_around->surface = {0, -100, 60};
     const Model model = compile(spec);
     const Equilibrium found = settled(Statics(model), model.rest_actuation());
     // pressures of order 1 are smoothed
     EXPECT_LT(distance(found.state.positions, model.rest), quadratic ? 1e-5 : 0.1);
-    spec.liquid_around.reset();
+    spec.loads.liquid_around.reset();
     const Model in_air = compile(spec);
     EXPECT_GT(distance(settled(Statics(in_air), in_air.rest_actuation()).state.positions, in_air.rest), 1);
   }
@@ -211,7 +211,7 @@ TEST(Hydrostatics, PressesChambersIn) {
   ActuatorSpec air = actuator("air", PneumaticSpec{.region = "chamber"}, 0.1, 3, true);
   spec.actuators = {air};
   const Model model = compile(spec);
-  EXPECT_EQ(model.tractions.at(0).faces.size(), 6u * 18u);  // of the outside alone
+  EXPECT_EQ(model.loads.tractions.at(0).faces.size(), 6u * 18u);  // of the outside alone
   const Statics statics(model);
   const Equilibrium found = settled(statics, values({1}));
   const double depth_mm = 2000 - 15;
@@ -221,7 +221,7 @@ TEST(Hydrostatics, PressesChambersIn) {
 TEST(Hydrostatics, DerivativesOfShapes) {
   for (const bool quadratic : {false, true}) {
     RobotSpec spec = submerged(block_mesh({10, 2, 2}, {60, 10, 8}), 4.1);
-    spec.quadratic = quadratic;
+    spec.mesh_options.quadratic = quadratic;
     const auto along = [](double z) { return std::vector<Vec3>{{0, 5, z}, {20, 5, z}, {40, 5, z}, {60, 5, z}}; };
     spec.actuators = {by_load(cable("top", along(7)))};
     const Model model = compile(spec);

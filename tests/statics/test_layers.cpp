@@ -31,7 +31,7 @@ void lay(RobotSpec& spec, const LayerSpec& layer) {
 
 /// A strip clamped at one end with a small force across the other: its deflection there [mm].
 double deflection(RobotSpec spec, double force_N) {
-  spec.forces = {{"push", {std::string("x_high"), {}}, {0, 0, force_N}}};
+  spec.loads.forces = {{"push", {std::string("x_high"), {}}, {0, 0, force_N}}};
   spec.markers = {{"tip", {std::string("x_high"), {}}}};
   const Model model = compile(spec);
   const Statics statics(model);
@@ -69,9 +69,9 @@ struct WeighedPlate {
     const double all = side + 2 * out;
     RobotSpec spec = physical_robot(
         block_mesh({cells + (clamped ? 2 : 0), cells + (clamped ? 2 : 0), 1}, {all, all, 2 * cell}, Split::five));
-    spec.quadratic = true;
+    spec.mesh_options.quadratic = true;
     spec.materials[0].elastic = elastic(Law::neo_hookean, 1e-9, 0);
-    spec.gravity = {0, 0, -9.81};
+    spec.loads.gravity = {0, 0, -9.81};
     LayerSpec layer = sheet("z_high", thickness, modulus, nu);
     layer.bending = true;
     layer.density = density;
@@ -98,7 +98,7 @@ TEST(Layers, StiffenAStripAsACompositeBeam) {
   constexpr double thickness = 0.05, stiff = 60, bends_itself = 40;
   for (const bool bending : {false, true}) {
     RobotSpec spec = physical_robot(block_mesh({20, 2, 1}, {length, width, height}));
-    spec.quadratic = true;
+    spec.mesh_options.quadratic = true;
     spec.materials[0].elastic = elastic(Law::neo_hookean, modulus, 0);
     spec.fixed = {{{Selector(Box{{-1, -1, -1}, {held, 9, 9}}), {}}, {true, true, true}}};
     const double plain = deflection(spec, force);
@@ -136,7 +136,7 @@ TEST(Layers, StoreWhatAQuadraticSurfaceHas) {
   for (Index v = 0; v < spec.mesh.vertices.rows(); ++v)  // irregular, but flat and with its border
     for (int axis = 0; axis < 2; ++axis)
       if (const double p = spec.mesh.vertices(v, axis); p > 0 && p < 10) spec.mesh.vertices(v, axis) += apart(v, axis);
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   LayerSpec layer = sheet("z_high", 0.3, 5, 0);
   layer.e2 = 2;
   layer.nu12 = 0.3;
@@ -151,7 +151,8 @@ TEST(Layers, StoreWhatAQuadraticSurfaceHas) {
     const double x = bent(v, 0), y = bent(v, 1);
     bent(v, 2) += curvature[0] * x * x / 2 + curvature[1] * y * y / 2 + curvature[2] * x * y / 2 + 1e-5 * x;
   }
-  const double per_area = std::pow(0.3, 3) / 24 * curvature.dot(at.model.layers[0]->law.stiffness * curvature);
+  const double per_area =
+      std::pow(0.3, 3) / 24 * curvature.dot(at.model.reinforcement.layers[0]->law.stiffness * curvature);
   EXPECT_NEAR(energy_of_layers(at, bent).energy, 100 * per_area, 1e-4 * 100 * per_area);
 }
 
@@ -211,7 +212,7 @@ TEST(Layers, WrinkleWhereTheyWouldBePressed) {
 
 TEST(Layers, OfASurfaceThatElementsCarryAreThoseOfTheirFaces) {
   RobotSpec spec = physical_robot(block_mesh({4, 2, 2}, {20, 10, 8}));
-  spec.forces = {{"push", {std::string("x_high"), {}}, {0, 0.05, 0.1}}};
+  spec.loads.forces = {{"push", {std::string("x_high"), {}}, {0, 0.05, 0.1}}};
   LayerSpec layer = sheet("z_high", 0.1, 20, 0.3);
   RobotSpec carried = spec;
   lay(spec, layer);
@@ -231,7 +232,7 @@ TEST(Layers, OfASurfaceThatElementsCarryAreThoseOfTheirFaces) {
 
 TEST(Layers, StoreNothingOfATurn) {
   RobotSpec spec = physical_robot(block_mesh({3, 2, 1}, {12, 8, 2}));
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   LayerSpec layer = sheet("z_high", 0.2, 5, 0.3);
   layer.bending = true;
   lay(spec, layer);

@@ -56,7 +56,7 @@ TEST(LocalGlobal, EnergyFallsAtEveryIterationWhereTargetsAreFixed) {
 
 TEST(LocalGlobal, SameShapeFromRestAndFromARandomStart) {
   const Model model = compile(finger_robot(false));
-  EXPECT_NEAR(static_cast<double>(model.tetrahedra.size()), 500, 50);
+  EXPECT_NEAR(static_cast<double>(model.elements.tetrahedra.size()), 500, 50);
   const Statics statics(model);
   const Points from_rest = statics.solve(one(1.8), statics.rest(), to_the_end(0)).state.positions;
   EXPECT_GT(largest_move(from_rest, model.rest), 1);
@@ -267,8 +267,8 @@ TEST(LocalGlobal, SoftAndNearlyRigidNeighboursStayWellPosed) {
   const Equilibrium found = statics.solve(one(1.6), statics.rest(), local_global());
   EXPECT_EQ(found.report.status, Status::converged);
   const ElementDeformation deformation = deformation_of(model, found.state.positions);
-  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e)
-    if (model.tetrahedron_roles[e].material == 1) {
+  for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e)
+    if (model.elements.tetrahedron_roles[e].material == 1) {
       EXPECT_LT(std::max(deformation.strain[e][0], -deformation.strain[e][2]), 0.01);
     }
 }
@@ -364,14 +364,14 @@ TEST(LocalGlobal, GradientNormIsThatOfTheEnergy) {
   State start = statics.rest();
   start.positions += noise(static_cast<Index>(model.rest.rows()), 0.3, 1);
   for (Index v = 0; v < model.rest.rows(); ++v)
-    if (model.fixed[v][0]) start.positions.row(v) = model.rest.row(v);
+    if (model.held.fixed[v][0]) start.positions.row(v) = model.rest.row(v);
   const auto energy = [&](const Points& positions) {
     return statics.solve(one(1.5), {positions}, options).report.energy;
   };
   double squares = 0;
   const double h = 1e-5;
   for (Index v = 0; v < model.rest.rows(); ++v) {
-    if (model.fixed[v][0]) continue;
+    if (model.held.fixed[v][0]) continue;
     for (int axis = 0; axis < 3; ++axis) {
       Points up = start.positions, down = start.positions;
       up(v, axis) += h;

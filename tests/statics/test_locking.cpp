@@ -36,13 +36,13 @@ RobotSpec arc(int across, double poisson_ratio, Split split) {
   RobotSpec spec = physical_robot(std::move(mesh));
   spec.materials[0].elastic = elastic(Law::neo_hookean, 1, poisson_ratio);
   spec.markers.push_back({"tip", {std::string("x_high"), {}}});
-  spec.forces.push_back({"f", {std::string("x_high"), {}}, {0, 0, -0.02}});
+  spec.loads.forces.push_back({"f", {std::string("x_high"), {}}, {0, 0, -0.02}});
   return spec;
 }
 
 /// How far the tip goes.
 double give(RobotSpec spec, bool quadratic) {
-  spec.quadratic = quadratic;
+  spec.mesh_options.quadratic = quadratic;
   const Model model = compile(spec);
   const Statics statics(model);
   const Equilibrium found = settled(statics, values({}), {});
@@ -80,10 +80,10 @@ TEST(Locking, IsToldWhereWallsAreThinInElements) {
             "The walls that bend most are about 1.0 elements thick, of tetrahedra of order 1: where they bend they are "
             "more than twice as stiff as they should be; take 'mesh: {file: F, order: 2}'.");
   RobotSpec quadratic = one;
-  quadratic.quadratic = true;
+  quadratic.mesh_options.quadratic = true;
   EXPECT_EQ(warning(quadratic), "");
   RobotSpec chosen = one;
-  chosen.linear_by_choice = true;
+  chosen.mesh_options.linear_by_choice = true;
   EXPECT_EQ(warning(chosen), "");
   const std::vector<std::string> notes = compile(chosen).notes;
   EXPECT_TRUE(std::any_of(notes.begin(), notes.end(), [&](const std::string& note) { return note == warning(one); }));

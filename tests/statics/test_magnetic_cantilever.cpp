@@ -18,7 +18,7 @@ constexpr double strip_remanence = 143;                                         
 RobotSpec cantilever(const std::array<int, 3>& cells, double wide, Magnetisation magnetisation) {
   constexpr double poisson_ratio = 0.49;
   RobotSpec spec = physical_robot(block_mesh(cells, {strip_length, wide, strip_thickness}));
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   spec.materials[0].elastic->youngs_modulus = 2 * (1 + poisson_ratio) * strip_modulus;
   spec.materials[0].elastic->poisson_ratio = poisson_ratio;
   magnetise(spec, {strip_remanence, 0, 0}, magnetisation);

@@ -12,18 +12,18 @@ namespace {
 
 using namespace testing;
 
-enum class Elements { linear, quadratic, prisms };
+enum class ElementKind { linear, quadratic, prisms };
 
-RobotSpec magnetic_robot(Elements elements, Magnetisation magnetisation) {
-  const Split split = elements == Elements::prisms ? Split::prisms : Split::six;
+RobotSpec magnetic_robot(ElementKind elements, Magnetisation magnetisation) {
+  const Split split = elements == ElementKind::prisms ? Split::prisms : Split::six;
   RobotSpec spec = physical_robot(block_mesh({2, 1, 1}, {20, 8, 6}, split));
-  spec.quadratic = elements == Elements::quadratic;
+  spec.mesh_options.quadratic = elements == ElementKind::quadratic;
   magnetise(spec, {120, -40, 70}, magnetisation);
   return spec;
 }
 
 /// Every kind of source.
-RobotSpec in_all_fields(Elements elements, Magnetisation magnetisation) {
+RobotSpec in_all_fields(ElementKind elements, Magnetisation magnetisation) {
   RobotSpec spec = magnetic_robot(elements, magnetisation);
   add_uniform(spec);
   add_field(spec, {"coil", two_loops({5, 0, 20})}, {FieldCommand::current});
@@ -111,7 +111,7 @@ RobotSpec turned(RobotSpec spec, const Mat3& turn) {
 
 TEST(Magnets, ForcesAreMinusTheGradientOfTheEnergy) {
   for (const Magnetisation magnetisation : both_magnetisations)
-    for (const Elements elements : {Elements::linear, Elements::quadratic, Elements::prisms})
+    for (const ElementKind elements : {ElementKind::linear, ElementKind::quadratic, ElementKind::prisms})
       for (const char* of : {"uniform", "coil", "grid", "magnet"}) {
         MagneticSample sample(in_all_fields(elements, magnetisation));
         sample.demand.actuation = commands(sample.model, of, 2);
@@ -125,7 +125,7 @@ TEST(Magnets, ForcesAreMinusTheGradientOfTheEnergy) {
 
 TEST(Magnets, StiffnessIsTheSlopeOfTheForces) {
   for (const Magnetisation magnetisation : both_magnetisations)
-    for (const Elements elements : {Elements::linear, Elements::quadratic, Elements::prisms})
+    for (const ElementKind elements : {ElementKind::linear, ElementKind::quadratic, ElementKind::prisms})
       for (const char* of : {"uniform", "coil", "grid", "magnet"}) {
         MagneticSample sample(in_all_fields(elements, magnetisation));
         sample.demand.actuation = commands(sample.model, of, 2);
@@ -145,7 +145,7 @@ TEST(Magnets, ProjectedStiffnessIsPositive) {
   for (const Magnetisation magnetisation : both_magnetisations)
     for (const char* of : {"magnet", "uniform"})
       for (const double value : {2.0, -2.0}) {
-        MagneticSample sample(in_all_fields(Elements::quadratic, magnetisation));
+        MagneticSample sample(in_all_fields(ElementKind::quadratic, magnetisation));
         sample.demand.actuation = commands(sample.model, of, value);
         for (unsigned seed = 1; seed < 10; ++seed) {
           const Points along = noise(static_cast<Index>(sample.model.rest.rows()), 1, seed);
@@ -157,7 +157,7 @@ TEST(Magnets, ProjectedStiffnessIsPositive) {
 }
 
 TEST(Magnets, AUniformFieldPullsAtWhatStretchesWithDeadForces) {
-  MagneticSample sample(in_all_fields(Elements::quadratic, Magnetisation::stretches));
+  MagneticSample sample(in_all_fields(ElementKind::quadratic, Magnetisation::stretches));
   sample.demand = {commands(sample.model, "uniform", 30), 0};
   EXPECT_TRUE(sample.stiffness_times(sample.positions, false).isZero(0));
   EXPECT_EQ(sample.gradient(sample.positions), sample.gradient(sample.model.rest));
@@ -170,7 +170,7 @@ TEST(Magnets, MomentsTurnAndStretchWithTheBody) {
   stretch << 1.3, 0.2, -0.1, 0.2, 0.8, 0.15, -0.1, 0.15, 0.9;
   const Mat3 deformation = turn * stretch;
   for (const Magnetisation magnetisation : both_magnetisations)
-    for (const Elements elements : {Elements::linear, Elements::quadratic, Elements::prisms}) {
+    for (const ElementKind elements : {ElementKind::linear, ElementKind::quadratic, ElementKind::prisms}) {
       MagneticSample sample(in_all_fields(elements, magnetisation));
       sample.demand = {commands(sample.model, "uniform", 30), 0};
       const Points shape = sample.model.rest * deformation.transpose();
@@ -187,7 +187,7 @@ TEST(Magnets, MomentsTurnAndStretchWithTheBody) {
 
 /// Where two stretches of one size are mirrored the rotation is not unique; nothing is infinite or no number.
 TEST(Magnets, TurnedInsideOutTheyAreFinite) {
-  MagneticSample sample(in_all_fields(Elements::linear, Magnetisation::turns));
+  MagneticSample sample(in_all_fields(ElementKind::linear, Magnetisation::turns));
   sample.demand.actuation = commands(sample.model, "uniform", 2);
   for (const Vec3& scale : {Vec3(1, 1, -1), Vec3(1, 0, 0), Vec3(0, 0, 0), Vec3(-1, -2, -3)}) {
     sample.positions = sample.model.rest * scale.asDiagonal();
@@ -200,7 +200,7 @@ TEST(Magnets, TurnedInsideOutTheyAreFinite) {
 /// By every command there is, a field's share included.
 TEST(Magnets, CommandForcesAreTheSlopesByTheCommands) {
   for (const Magnetisation magnetisation : both_magnetisations) {
-    MagneticSample sample(in_all_fields(Elements::quadratic, magnetisation));
+    MagneticSample sample(in_all_fields(ElementKind::quadratic, magnetisation));
     sample.demand = {commands(sample.model, "magnet", 0.2), 0.7};
     sample.demand.actuation += commands(sample.model, "coil", 1.5) - sample.model.rest_actuation();
     for (Index a = 0; a < static_cast<Index>(sample.model.actuators.size()); ++a) {
@@ -218,7 +218,7 @@ TEST(Magnets, CommandForcesAreTheSlopesByTheCommands) {
 
 TEST(Magnets, TheirEnergyTurnsAndMovesWithTheField) {
   for (const Magnetisation magnetisation : both_magnetisations) {
-    RobotSpec spec = magnetic_robot(Elements::quadratic, magnetisation);
+    RobotSpec spec = magnetic_robot(ElementKind::quadratic, magnetisation);
     add_field(spec, {"uniform", UniformField{{1, 2, 3}}}, {FieldCommand::flux_density});
     add_field(spec, {"coil", two_loops({5, 0, 20})}, {FieldCommand::current});
     const Mat3 turn = Eigen::AngleAxisd(1.1, Vec3(1, -2, 0.5).normalized()).toRotationMatrix();
@@ -259,7 +259,7 @@ TEST(MagneticRobots, AMagnetThatIsFreeToTurnSettlesAlongTheField) {
   for (const Magnetisation magnetisation : both_magnetisations) {
     RobotSpec spec = physical_robot(block_mesh({12, 1, 1}, {24, 4, 1}));
     add_volume_region(spec.mesh, "magnet", [](const Vec3& p) { return p.x() > 16; });
-    spec.quadratic = true;
+    spec.mesh_options.quadratic = true;
     spec.materials[0].elastic->youngs_modulus = 0.02;
     MaterialSpec magnet = spec.materials[0];
     magnet.region = "magnet";
@@ -288,7 +288,7 @@ TEST(MagneticRobots, AMagnetThatIsFreeToTurnSettlesAlongTheField) {
 
 TEST(MagneticRobots, SensitivitiesAreTheSlopesOfSolves) {
   for (const Magnetisation magnetisation : both_magnetisations) {
-    RobotSpec spec = magnetic_robot(Elements::linear, magnetisation);
+    RobotSpec spec = magnetic_robot(ElementKind::linear, magnetisation);
     spec.materials[0].elastic->youngs_modulus = 0.05;
     add_uniform(spec);
     add_field(spec, {"coil", two_loops({5, 0, 20})}, {FieldCommand::current});
@@ -335,7 +335,7 @@ TEST(MagneticRobots, AWayEndsWhereTheGridDoes) {
 /// pulls at nothing.
 TEST(MagneticRobots, AFieldPressesARobotOntoAFloor) {
   RobotSpec spec = physical_robot(block_mesh({12, 2, 1}, {24, 4, 1}));
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   spec.materials[0].elastic->youngs_modulus = 0.3;
   magnetise(spec, {100, 0, 0});
   add_field(spec, {"field", UniformField{{0, 0, -1}}}, {FieldCommand::flux_density});

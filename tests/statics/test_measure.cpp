@@ -24,11 +24,12 @@ Model quadratic_element(double bulge) {
     model.rest.row(4 + e) = 0.5 * (model.rest.row(i) + model.rest.row(j));
     model.rest.row(4 + e) += bulge * Eigen::RowVector3d(std::sin(e + 1), std::cos(3 * e), std::sin(5 * e + 2));
   }
-  model.tetrahedra = {{0, 1, 2, 3}};
-  model.edge_nodes = {{4, 5, 6, 7, 8, 9}};
-  model.tetrahedron_roles = {{0, -1, -1}};
-  model.tetrahedron_volumes = {shape_integrals(nodes_of(model.rest, {0, 1, 2, 3}, model.edge_nodes[0])).sum()};
-  model.materials.resize(1);
+  model.elements.tetrahedra = {{0, 1, 2, 3}};
+  model.elements.edge_nodes = {{4, 5, 6, 7, 8, 9}};
+  model.elements.tetrahedron_roles = {{0, -1, -1}};
+  model.elements.tetrahedron_volumes = {
+      shape_integrals(nodes_of(model.rest, {0, 1, 2, 3}, model.elements.edge_nodes[0])).sum()};
+  model.elements.materials.resize(1);
   return model;
 }
 
@@ -105,19 +106,19 @@ TEST(Measure, AChamberOfOrderTwoIsMeasuredByItsBoundary) {
   Model model = quadratic_element(0.05);
   Actuator air;
   auto& chamber = air.drive.emplace<ChamberDrive>();
-  const Tetrahedron& t = model.tetrahedra[0];
+  const Tetrahedron& t = model.elements.tetrahedra[0];
   for (const auto& corners : tetrahedron_faces) {
     CavityFace face;
     for (std::size_t i = 0; i < 3; ++i) {
       face.corners[i] = t[corners[i]];
-      face.edges[i] = edge_node(t, model.edge_nodes[0], t[corners[i]], t[corners[(i + 1) % 3]]);
+      face.edges[i] = edge_node(t, model.elements.edge_nodes[0], t[corners[i]], t[corners[(i + 1) % 3]]);
     }
     chamber.cavity.push_back(face);
   }
-  air.rest_measure = model.tetrahedron_volumes[0];
+  air.rest_measure = model.elements.tetrahedron_volumes[0];
   EXPECT_NEAR(achieved_ratio(model, air, model.rest), 1, 1e-12);
   const Points positions = bent_all(model.rest);
-  const double volume = shape_integrals(nodes_of(positions, t, model.edge_nodes[0])).sum();
+  const double volume = shape_integrals(nodes_of(positions, t, model.elements.edge_nodes[0])).sum();
   EXPECT_NEAR(achieved_ratio(model, air, positions), volume / air.rest_measure, 1e-12);
   EXPECT_GT(std::abs(volume / air.rest_measure - 1), 0.01);
   EXPECT_NEAR(achieved_ratio(model, air, moved(model.rest, some_gradient())), some_gradient().determinant(), 1e-12);
@@ -139,12 +140,12 @@ Model half_a_membrane() {
   Model model;
   model.rest = Points(8, 3);
   model.rest << 0, 0, 0, 1, 0, 0, 0, 1, 0, 1, 1, 0, 0, 0, 1, 1, 0, 1, 0, 1, 1, 1, 1, 1;
-  model.prisms = {{0, 1, 2, 4, 5, 6}, {1, 3, 2, 5, 7, 6}};
-  model.prism_roles = {{0, 0, -1}, {0, -1, -1}};
-  model.prism_volumes = {0.5, 0.5};
-  model.materials.resize(1);
-  model.materials[0].region = "skin";
-  model.materials[0].linear_range = 0.1;
+  model.elements.prisms = {{0, 1, 2, 4, 5, 6}, {1, 3, 2, 5, 7, 6}};
+  model.elements.prism_roles = {{0, 0, -1}, {0, -1, -1}};
+  model.elements.prism_volumes = {0.5, 0.5};
+  model.elements.materials.resize(1);
+  model.elements.materials[0].region = "skin";
+  model.elements.materials[0].linear_range = 0.1;
   return model;
 }
 
@@ -152,7 +153,7 @@ Model half_a_membrane() {
 TEST(Measure, LeastAndGreatestStrainAreOfAllDirections) {
   for (const bool order_2 : {false, true}) {
     RobotSpec spec = testing::physical_robot(testing::block_mesh({2, 2, 1}, {8, 8, 1}));
-    spec.quadratic = order_2;
+    spec.mesh_options.quadratic = order_2;
     const Model model = compile(spec);
     Points positions = model.rest * Vec3(1.5, 1.5, 0.443).asDiagonal();
     StrainHistogram found = strain_histogram(model, deformation_of(model, positions));
@@ -165,7 +166,7 @@ TEST(Measure, LeastAndGreatestStrainAreOfAllDirections) {
     found = strain_histogram(model, deformation_of(model, positions));
     const double far = (5 + 3 * std::sqrt(5.0)) / 20, near = (5 - std::sqrt(5.0)) / 20;  // Hammer and Stroud 1956
     double last = 0;  // place along x of the point that is farthest along
-    for (const Tetrahedron& t : model.tetrahedra)
+    for (const Tetrahedron& t : model.elements.tetrahedra)
       for (int i = 0; i < 4; ++i) {
         double x = 0;
         for (int k = 0; k < 4; ++k) x += (k == i ? far : near) * model.rest(t[k], 0);
@@ -191,7 +192,7 @@ TEST(Measure, TheStrainOfADeaIsNotThatOfTheBody) {
   EXPECT_EQ(found.beyond[0].share, 1);
 
   Model all_dea = model;
-  all_dea.prism_roles[1].actuator = 0;
+  all_dea.elements.prism_roles[1].actuator = 0;
   const StrainHistogram none = strain_histogram(all_dea, deformation_of(all_dea, positions));
   EXPECT_TRUE(none.shares.empty());
   EXPECT_TRUE(none.beyond.empty());

@@ -21,7 +21,7 @@ RobotSpec measuring_robot(bool quadratic) {
   RobotSpec spec = physical_robot(block_mesh({3, 3, 3}, {30, 30, 30}));
   add_volume_region(spec.mesh, "chamber",
                     [](const Vec3& p) { return (p - Vec3(15, 15, 15)).cwiseAbs().maxCoeff() < 5; });
-  spec.quadratic = quadratic;
+  spec.mesh_options.quadratic = quadratic;
   spec.actuators.push_back(chamber("chamber"));
   ActuatorSpec bag = chamber("");
   bag.name = "bag";

@@ -78,8 +78,9 @@ TEST(MixedElements, StiffnessIsTheDerivativeOfTheGradient) {
       sample.system.assemble(sample.at, sample.demand, sample.balance, physical::System::Stiffness::exact, sample.work,
                              sample.team);
       Points exact;
-      sample.work.layout->pattern.gather(sample.work.slots, sample.work.blocks, sample.team);
-      sample.work.layout->pattern.multiply(sample.work.blocks, along, exact, sample.team);
+      sample.work.stiffness.layout->pattern.gather(sample.work.stiffness.slots, sample.work.stiffness.blocks,
+                                                   sample.team);
+      sample.work.stiffness.layout->pattern.multiply(sample.work.stiffness.blocks, along, exact, sample.team);
       const Points slope =
           change_along([&](const Points& shape) { return sample.gradient(shape); }, sample.at.positions, along, 1e-5);
       EXPECT_LT((slope - exact).norm(), 1e-7 * exact.norm());
@@ -158,12 +159,12 @@ double inf_sup(int cells, bool quadratic, bool smoothed) {
   system.freedoms().reduce(places, at.positions, reduced);
   for (Index i = 0; i < count; ++i) place[reduced[own[i]]] = i;
   Eigen::MatrixXd mass = Eigen::MatrixXd::Zero(count, count);
-  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e)
+  for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e)
     for (std::size_t i = 0; i < 4; ++i)
       for (std::size_t j = 0; j < 4; ++j)
         mass(place[system.pressures()->of[e][i] - system.pressures()->first],
              place[system.pressures()->of[e][j] - system.pressures()->first]) +=
-            model.tetrahedron_volumes[e] * (i == j ? 0.1 : 0.05);
+            model.elements.tetrahedron_volumes[e] * (i == j ? 0.1 : 0.05);
   const Eigen::VectorXd values = Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(schur, mass).eigenvalues();
   EXPECT_NEAR(values[0], 0, 1e-6) << "of the constant pressure, which nothing answers";
   return std::sqrt(std::max(0.0, values[1]));
@@ -189,7 +190,7 @@ TEST(MixedElements, AgreeWithPlainOnesInAStretchedBar) {
       spec.fixed = {{{std::string("x_low"), {}}, {true, false, false}},
                     {{std::string("y_low"), {}}, {false, true, false}},
                     {{std::string("z_low"), {}}, {false, false, true}}};
-      spec.tractions = {{"pull", {std::string("x_high"), {}}, false, {400, 0, 0}, 0}};
+      spec.loads.tractions = {{"pull", {std::string("x_high"), {}}, false, {400, 0, 0}, 0}};
       const Model model = compile(spec);
       spec.materials[0].mixed = false;
       const Model plain = compile(spec);
@@ -264,7 +265,7 @@ TEST(MixedElements, PressuresAreFoundFromPositions) {
   for (const double nu : {0.45, 0.5}) {
     RobotSpec spec = mixed(bending_finger(), nu);
     spec.materials[0].density = 1100;
-    spec.gravity = {0, 0, -9.81};
+    spec.loads.gravity = {0, 0, -9.81};
     const Model model = compile(spec);
     const Statics statics(model);
     const Equilibrium found = settled(statics, values({1.4}), tight(1e-10));
@@ -341,14 +342,14 @@ TEST(MixedElements, WhatDoesNotFitIsRefused) {
        {"prisms",
         [](RobotSpec& s) {
           s.mesh = block_mesh({2, 1, 1}, {2, 1, 1}, Split::prisms);
-          s.quadratic = false;
+          s.mesh_options.quadratic = false;
         },
         "which prisms are not"}});
   RobotSpec kept = physical_robot(block_mesh({2, 1, 1}, {2, 1, 1}));
   kept.materials[0].elastic->poisson_ratio = 0.5;
-  EXPECT_TRUE(compile(kept).materials[0].mixed) << "as nothing else keeps its volume";
+  EXPECT_TRUE(compile(kept).elements.materials[0].mixed) << "as nothing else keeps its volume";
   kept.materials[0].elastic->poisson_ratio = 0.4999;
-  EXPECT_FALSE(compile(kept).materials[0].mixed);
+  EXPECT_FALSE(compile(kept).elements.materials[0].mixed);
 }
 
 }  // namespace softkin

@@ -16,15 +16,15 @@ using namespace testing;
 /// A strip of 60 x 4 x 4 mm whose last 5 mm are rigid, held at x = 0, with a commanded wrench there and water beside.
 RobotSpec tool_strip(bool quadratic = true) {
   RobotSpec spec = physical_robot(block_mesh({12, 1, 2}, {60, 4, 4}));
-  spec.quadratic = quadratic;
+  spec.mesh_options.quadratic = quadratic;
   spec.materials[0].elastic = elastic(Law::neo_hookean, 1, 0);
   spec.rigid = {{{Box{{54.9, -1, -1}, {61, 5, 5}}, {}}, "plate"}};
   spec.markers.push_back({"tip", {std::string("x_high"), {}}});
   const std::array<Vec3, 2> any{Vec3::Constant(-10), Vec3::Constant(10)};
-  spec.forces = {{"tool", {std::string("x_high"), {}}, {0, 0, 0}, any, {0, 0, 0}, any}};
+  spec.loads.forces = {{"tool", {std::string("x_high"), {}}, {0, 0, 0}, any, {0, 0, 0}, any}};
   TractionSpec water{"water", {std::string("z_low"), {}}, true, {0, 0, 0}, 0};
   water.range_kPa = {-5, 5};
-  spec.tractions = {water};
+  spec.loads.tractions = {water};
   return spec;
 }
 
@@ -82,9 +82,9 @@ TEST(Moments, AreBorneByTheSupport) {
 /// The same as two dead forces far apart on the rigid part, which make that moment in the shape that it has.
 TEST(Moments, AreThoseOfACouple) {
   RobotSpec spec = tool_strip();
-  spec.tractions.clear();
+  spec.loads.tractions.clear();
   const Vec3 moment(0.1, 0.35, 0);
-  spec.forces = {{"tool", {std::string("x_high"), {}}, {0, 0, 0}, std::nullopt, moment, std::nullopt}};
+  spec.loads.forces = {{"tool", {std::string("x_high"), {}}, {0, 0, 0}, std::nullopt, moment, std::nullopt}};
   const Model by_moment = compile(spec);
   const Equilibrium expected = settled(Statics(by_moment), values({}));
   const auto corner = [&](double y, double z) {
@@ -103,9 +103,9 @@ TEST(Moments, AreThoseOfACouple) {
   }
   const Eigen::Matrix<double, 6, 1> pulls = arms.completeOrthogonalDecomposition().solve(moment);
   const Vec3 first = pulls.head<3>(), second = pulls.tail<3>();
-  spec.forces = {{"a", {Vec3(60, 4, 0), {}}, first},
-                 {"b", {Vec3(60, 0, 4), {}}, second},
-                 {"o", {Vec3(60, 0, 0), {}}, -first - second}};
+  spec.loads.forces = {{"a", {Vec3(60, 4, 0), {}}, first},
+                       {"b", {Vec3(60, 0, 4), {}}, second},
+                       {"o", {Vec3(60, 0, 0), {}}, -first - second}};
   const Model by_forces = compile(spec);
   const Equilibrium found = Statics(by_forces).solve(values({}), expected.state, tight());
   EXPECT_EQ(found.report.status, Status::converged);
@@ -125,7 +125,7 @@ TEST(Moments, AndPressuresHaveDerivatives) {
 TEST(Moments, ACommandedPressureIsTheSameAsAGivenOne) {
   RobotSpec spec = tool_strip();
   const Model commanded = compile(spec);
-  spec.tractions[0] = {"water", {std::string("z_low"), {}}, true, {0, 0, 0}, 0.05};
+  spec.loads.tractions[0] = {"water", {std::string("z_low"), {}}, true, {0, 0, 0}, 0.05};
   const Model given = compile(spec);
   const Equilibrium one = settled(Statics(commanded), loads({0, 0, 0, 0, 0, 0, 0.05})),
                     other = settled(Statics(given), loads({0, 0, 0, 0, 0, 0}));
@@ -137,8 +137,8 @@ TEST(Moments, ACommandedPressureIsTheSameAsAGivenOne) {
 TEST(Moments, AddUp) {
   RobotSpec spec = tool_strip();
   const Model both = compile(spec);
-  spec.forces[0].moment = {0.1, 0.2, 0};
-  spec.forces[0].moment_range = std::array<Vec3, 2>{Vec3(0.1, 0.2, -1), Vec3(0.1, 0.2, 1)};
+  spec.loads.forces[0].moment = {0.1, 0.2, 0};
+  spec.loads.forces[0].moment_range = std::array<Vec3, 2>{Vec3(0.1, 0.2, -1), Vec3(0.1, 0.2, 1)};
   const Model one = compile(spec);
   ASSERT_EQ(one.actuators.size(), 5u);
   const Equilibrium found = settled(Statics(one), loads({0, 0, 0, 0.15, 0})),

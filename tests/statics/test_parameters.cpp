@@ -113,9 +113,9 @@ RobotSpec loaded_finger() {
   RobotSpec spec = bending_finger();
   spec.actuators.push_back(cable("tendon", {{2, 6, 14}, {31.4, 6.3, 13.2}, {58, 6, 14}}));
   spec.materials[0].density = 1100;
-  spec.gravity = {0, 0, -9.81};
-  spec.forces.push_back({"payload", {std::string("x_high"), {}}, {0.002, 0, -0.01}});
-  spec.tractions = {{"water", {std::string("y_high"), {}}, true, {0, 0, 0}, 0.5}};
+  spec.loads.gravity = {0, 0, -9.81};
+  spec.loads.forces.push_back({"payload", {std::string("x_high"), {}}, {0.002, 0, -0.01}});
+  spec.loads.tractions = {{"water", {std::string("y_high"), {}}, true, {0, 0, 0}, 0.5}};
   add_volume_region(spec.mesh, "root", [](const Vec3& p) { return p.x() < 20; });
   MaterialSpec root = spec.materials[0];
   root.region = "root";
@@ -132,9 +132,9 @@ const std::vector<Number> numbers_of_finger{
     {"c10", [](RobotSpec& s, double by) { *s.materials[1].elastic->c10 += by; }, 0.2},
     {"c20", [](RobotSpec& s, double by) { *s.materials[1].elastic->c20 += by; }, 0.02},
     {"density", [](RobotSpec& s, double by) { s.materials[0].density += by; }, 1000},
-    {"gravity", [](RobotSpec& s, double by) { s.gravity.y() += by; }, 5},
-    {"payload", [](RobotSpec& s, double by) { s.forces[0].force.z() += by; }, 0.01},
-    {"pressure", [](RobotSpec& s, double by) { s.tractions[0].pressure_kPa += by; }, 0.5},
+    {"gravity", [](RobotSpec& s, double by) { s.loads.gravity.y() += by; }, 5},
+    {"payload", [](RobotSpec& s, double by) { s.loads.forces[0].force.z() += by; }, 0.01},
+    {"pressure", [](RobotSpec& s, double by) { s.loads.tractions[0].pressure_kPa += by; }, 0.5},
     {"displacement", [](RobotSpec& s, double by) { s.fixed[0].displacement.z() += by; }, 1},
     {"cable",
      [](RobotSpec& s, double by) { std::get<Vec3>(s.actuators[1].as<CableSpec>()->points[1].point).z() += by; }, 1}};
@@ -165,7 +165,7 @@ TEST(Parameters, ByTheAdjoint) {
 
 TEST(Parameters, OfATendonThatRubs) {
   RobotSpec spec = physical_robot(block_mesh({8, 1, 2}, {80, 6, 8}));
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   spec.materials[0].elastic = elastic(Law::neo_hookean, 3, 0.4);
   const ActuatorSpec by_length = cable("tendon", {{0, 3, 7}, {80, 3, 7}});
   spec.actuators = {by_load(by_length)};

@@ -21,7 +21,7 @@ constexpr double beam_area = beam_width * beam_width, beam_inertia = beam_area *
 
 RobotSpec beam(Law law = Law::st_venant_kirchhoff) {
   RobotSpec spec = physical_robot(block_mesh({25, 1, 1}, {beam_length, beam_width, beam_width}));
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   spec.materials[0].elastic = elastic(law, beam_modulus, 0);
   spec.markers.push_back({"tip", {std::string("x_high"), {}}});
   return spec;
@@ -70,9 +70,9 @@ TEST(PhysicalBeams, PayloadBendsACantileverAsTheElasticaSays) {
   for (const Law law : {Law::st_venant_kirchhoff, Law::neo_hookean})
     for (const double load : {0.5, 2.0, 6.0}) {
       RobotSpec spec = beam(law);
-      spec.forces.push_back({"payload",
-                             {std::string("x_high"), {}},
-                             {0, 0, -load * beam_modulus * beam_inertia / (beam_length * beam_length)}});
+      spec.loads.forces.push_back({"payload",
+                                   {std::string("x_high"), {}},
+                                   {0, 0, -load * beam_modulus * beam_inertia / (beam_length * beam_length)}});
       const Model model = compile(spec);
       const Statics statics(model);
       const Vec3 tip = marker_at(model, settled(statics, {}));
@@ -87,7 +87,7 @@ TEST(PhysicalBeams, PayloadBendsACantileverAsTheElasticaSays) {
 TEST(PhysicalBeams, WeightStretchesAHangingRod) {
   RobotSpec spec = beam();
   spec.materials[0].density = 1100;
-  spec.gravity = {9.81e-2, 0, 0};
+  spec.loads.gravity = {9.81e-2, 0, 0};
   const Model model = compile(spec);
   const Statics statics(model);
   const double stretch = 1100e-9 * 9.81e-2 * beam_length * beam_length / (2 * beam_modulus);
@@ -98,7 +98,7 @@ TEST(PhysicalBeams, WeightStretchesAHangingRod) {
 TEST(PhysicalBeams, WeightBendsALyingRod) {
   RobotSpec spec = beam();
   spec.materials[0].density = 1100;
-  spec.gravity = {0, 0, -9.81e-2};
+  spec.loads.gravity = {0, 0, -9.81e-2};
   const Model model = compile(spec);
   const Statics statics(model);
   const double weight = 1100e-9 * 9.81e-2 * beam_area;
@@ -112,8 +112,8 @@ TEST(PhysicalBeams, WeightBendsALyingRod) {
 TEST(PhysicalBeams, AClampThatRisesLiftsTheWeight) {
   RobotSpec spec = beam();
   spec.materials[0].density = 1100;
-  spec.gravity = {0, 0, -1};
-  spec.forces.push_back({"payload", {Vec3(beam_length, beam_width / 2, beam_width / 2), {}}, {0, 0, -1e-3}});
+  spec.loads.gravity = {0, 0, -1};
+  spec.loads.forces.push_back({"payload", {Vec3(beam_length, beam_width / 2, beam_width / 2), {}}, {0, 0, -1e-3}});
   const Model low = compile(spec);
   spec.fixed[0].displacement = {0, 0, 3};
   const Model high = compile(spec);
@@ -154,7 +154,7 @@ TEST(PhysicalBeams, ElevatedIsTheSameAsRead) {
   RobotSpec made = bending_finger();
   const Index corners = static_cast<Index>(made.mesh.vertices.rows());
   RobotSpec read = made;
-  made.quadratic = true;
+  made.mesh_options.quadratic = true;
   const std::filesystem::path file = ::testing::TempDir() + "softkin_order_2_" + std::to_string(::getpid()) + ".msh";
   write_mesh(file, with_middles(read.mesh));
   read.mesh = read_mesh(file);

@@ -203,7 +203,7 @@ TEST(PhysicalCables, TensionControlPullsAsAsked) {
 TEST(PhysicalCables, InAChannelBendsABeamIntoAnArc) {
   const double length = 100, side = 6, offset = 2, tension = 0.7;
   RobotSpec spec = physical_robot(block_mesh({20, 1, 1}, {length, side, side}));
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   spec.materials[0].elastic = elastic(Law::st_venant_kirchhoff, 1, 0);
   spec.actuators = {
       by_load(cable("tendon", {{0, side / 2, side / 2 - offset}, {length, side / 2, side / 2 - offset}}))};

@@ -83,7 +83,7 @@ TEST(PhysicalCavities, ASurfaceTakesThePressureThatItsRegionTakes) {
   const TriangleSurface box = box_surface({5, 4, 8}, {50, 4, 4});
   for (const bool quadratic : {false, true}) {
     RobotSpec spec = bending_finger();
-    spec.quadratic = quadratic;
+    spec.mesh_options.quadratic = quadratic;
     const double pressure = pressure_at(spec, 1.3), ratio = ratio_at(spec, 100);
     for (const TriangleSurface& surface : {box, cut(box, 5)}) {
       EXPECT_NEAR(pressure_at(with_surface(spec, surface), 1.3), pressure, 1e-6 * pressure);
@@ -95,7 +95,7 @@ TEST(PhysicalCavities, ASurfaceTakesThePressureThatItsRegionTakes) {
 TEST(PhysicalCavities, ARoundSurfaceOfAnyFineness) {
   for (const bool quadratic : {false, true}) {
     RobotSpec spec = round_finger();
-    spec.quadratic = quadratic;
+    spec.mesh_options.quadratic = quadratic;
     const double pressure = pressure_at(spec, 1.2);
     for (const int corners : {8, 12, 60})
       EXPECT_NEAR(pressure_at(with_surface(spec, cylinder(5, 35, 6, corners)), 1.2), pressure, 1e-6 * pressure);
@@ -116,7 +116,7 @@ TEST(PhysicalCavities, HalfARobotTakesThePressureOfTheWhole) {
   };
   for (const bool quadratic : {false, true}) {
     RobotSpec whole = robot(8, {true, true, true}), half = robot(4, {true, false, false});
-    whole.quadratic = half.quadratic = quadratic;
+    whole.mesh_options.quadratic = half.mesh_options.quadratic = quadratic;
     const double pressure = pressure_at(whole, 1.3);
     EXPECT_NEAR(pressure_at(half, 1.3), pressure, 1e-6 * pressure);
   }
@@ -127,7 +127,7 @@ TEST(PhysicalCavities, HalfARobotTakesThePressureOfTheWhole) {
 TEST(PhysicalCavities, AnEmbeddedSurfaceIsFineEnough) {
   for (const bool quadratic : {false, true}) {
     RobotSpec spec = physical_robot(block_mesh({6, 3, 4}, {30, 12, 16}));
-    spec.quadratic = quadratic;
+    spec.mesh_options.quadratic = quadratic;
     spec.voids = {{Box{{5, 4, 8}, {25, 8, 12}}, {}}};
     spec.actuators = {air("air")};
     spec.actuators[0].as<PneumaticSpec>()->region.reset();

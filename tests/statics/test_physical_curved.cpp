@@ -19,9 +19,9 @@ constexpr double round_modulus = 1;
 RobotSpec round_robot(Mesh mesh, double poisson_ratio, bool curved) {
   RobotSpec spec = physical_robot(std::move(mesh));
   spec.fixed.clear();
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   spec.materials[0].elastic = elastic(Law::st_venant_kirchhoff, round_modulus, poisson_ratio);
-  if (curved) spec.curve.emplace().smooth = true;
+  if (curved) spec.mesh_options.curve.emplace().smooth = true;
   return spec;
 }
 
@@ -30,7 +30,7 @@ Model compiled_round(const RobotSpec& spec) {
   const bool warns = std::any_of(model.warnings.begin(), model.warnings.end(), [](const std::string& warning) {
     return warning.find("The edges are straight") != std::string::npos;
   });
-  EXPECT_EQ(warns, !spec.curve) << "of straight edges alone there is a warning";
+  EXPECT_EQ(warns, !spec.mesh_options.curve) << "of straight edges alone there is a warning";
   return model;
 }
 
@@ -49,7 +49,7 @@ double bent_rod(int corners, int layers, bool curved) {
       spec.mesh.triangles.push_back(t);
     }
   spec.mesh.regions.push_back(end);
-  spec.forces.push_back({"load", {std::string("end"), {}}, {0, 0, -force}});
+  spec.loads.forces.push_back({"load", {std::string("end"), {}}, {0, 0, -force}});
   spec.markers.push_back({"tip", {std::string("end"), {}}});
   const Model model = compiled_round(spec);
   const Statics statics(model);
@@ -130,11 +130,12 @@ double sinking_dome(int sides, int cuts, int layers, bool curved) {
   });
   RobotSpec spec = round_robot(std::move(mesh), round_nu, curved);
   if (curved) {
-    spec.curve->smooth = false;
-    for (const double radius : {inner_mm, outer_mm}) spec.curve->surfaces.push_back({Sphere{{0, 0, 0}, radius}, {}});
+    spec.mesh_options.curve->smooth = false;
+    for (const double radius : {inner_mm, outer_mm})
+      spec.mesh_options.curve->surfaces.push_back({Sphere{{0, 0, 0}, radius}, {}});
   }
   spec.materials[0].density = 1;
-  spec.gravity = {0, 0, -1};
+  spec.loads.gravity = {0, 0, -1};
   spec.fixed.push_back({{Halfspace{{0, 0, 1e-9}, {0, 0, -1}}, {}}, {false, false, true}});
   hold_vertex(spec, 0, {true, true, false});
   hold_vertex(spec, 1, {true, false, false});

@@ -26,7 +26,7 @@ Vec3 moment_about_origin(const Reaction& reaction) {
 std::pair<Vec3, Vec3> loads_of(const Model& model, const Points& positions) {
   Vec3 force = Vec3::Zero(), moment = Vec3::Zero();
   for (Index v = 0; v < positions.rows(); ++v) {
-    const Vec3 load = model.dead_load.row(v).transpose(), place = positions.row(v).transpose();
+    const Vec3 load = model.loads.dead.row(v).transpose(), place = positions.row(v).transpose();
     force += load;
     moment += place.cross(load);
   }
@@ -86,17 +86,18 @@ ElasticSpec constants(Law law) {
 TEST(Reactions, BearWeightAndMoment) {
   RobotSpec spec = bending_finger();
   spec.materials[0].density = 1100;
-  spec.gravity = {0.3, -0.5, -9.81};
-  spec.forces.push_back({"payload", {std::string("x_high"), {}}, {0.002, 0, -0.01}});
+  spec.loads.gravity = {0.3, -0.5, -9.81};
+  spec.loads.forces.push_back({"payload", {std::string("x_high"), {}}, {0.002, 0, -0.01}});
   spec.rigid.push_back({{std::string("x_high"), {}}, "plate"});
   const Model model = compile(spec);
   const Statics statics(model);
   const Equilibrium found = settled(statics, values({1.3}));
   const auto held = reactions_of(model, statics, found);
   ASSERT_EQ(held.size(), 1u);
-  EXPECT_EQ(model.supports[0].name, "x_low");
-  double volume = std::accumulate(model.tetrahedron_volumes.begin(), model.tetrahedron_volumes.end(), 0.0);
-  const Vec3 weight = 1100e-9 * volume * spec.gravity + Vec3(0.002, 0, -0.01);
+  EXPECT_EQ(model.held.supports[0].name, "x_low");
+  double volume =
+      std::accumulate(model.elements.tetrahedron_volumes.begin(), model.elements.tetrahedron_volumes.end(), 0.0);
+  const Vec3 weight = 1100e-9 * volume * spec.loads.gravity + Vec3(0.002, 0, -0.01);
   EXPECT_LT((held[0].force + weight).norm(), 1e-8 * weight.norm());
   const auto [force, moment] = loads_of(model, found.state.positions);
   EXPECT_LT((moment_about_origin(held[0]) + moment).norm(), 1e-7 * moment.norm());
@@ -122,7 +123,7 @@ TEST(Reactions, InnerForcesAddUpToNothing) {
 /// Holding a bar's end away takes E A dL / L, and the other end the opposite.
 TEST(Reactions, OfADisplacedEndIsThatOfABar) {
   RobotSpec spec = physical_robot(block_mesh({8, 2, 2}, {80, 10, 6}));
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   spec.materials[0].elastic = elastic(Law::neo_hookean, 2.5, 0.3);
   const double pull = 0.004;
   spec.fixed = {{{std::string("x_low"), {}}, {true, false, false}},
@@ -145,8 +146,8 @@ TEST(Reactions, OfADisplacedEndIsThatOfABar) {
 TEST(Reactions, OfSeveralSupportsBearAllLoads) {
   RobotSpec spec = physical_robot(block_mesh({10, 3, 3}, {60, 12, 12}));
   spec.materials[0].density = 1100;
-  spec.gravity = {0, 0, -9.81};
-  spec.forces.push_back({"push", {Vec3(30, 6, 12), {}}, {0.01, 0.02, -0.05}});
+  spec.loads.gravity = {0, 0, -9.81};
+  spec.loads.forces.push_back({"push", {Vec3(30, 6, 12), {}}, {0.01, 0.02, -0.05}});
   spec.rigid.push_back({{Box{{54, -1, -1}, {61, 13, 13}}, {}}, "plate"});
   spec.fixed.push_back({{std::string("x_high"), {}}, {false, true, true}});
   spec.fixed.push_back({{Box{{-1, -1, -1}, {6.1, 13, 13}}, {}}, {true, false, true}});
@@ -155,8 +156,8 @@ TEST(Reactions, OfSeveralSupportsBearAllLoads) {
   const Equilibrium found = settled(statics, {});
   const auto held = reactions_of(model, statics, found);
   ASSERT_EQ(held.size(), 3u);
-  EXPECT_EQ(model.supports[1].name, "x_high");
-  EXPECT_EQ(model.supports[2].name, "fixed_3");
+  EXPECT_EQ(model.held.supports[1].name, "x_high");
+  EXPECT_EQ(model.held.supports[2].name, "fixed_3");
   const auto [force, moment] = loads_of(model, found.state.positions);
   Vec3 forces = Vec3::Zero(), moments = Vec3::Zero();
   for (const Reaction& each : held) {
@@ -192,14 +193,14 @@ TEST(Stress, IsThatOfTheLaw) {
        {Law::st_venant_kirchhoff, Law::corotational, Law::neo_hookean, Law::mooney_rivlin, Law::yeoh, Law::gent})
     for (const int kind : {1, 2, 3}) {  // tetrahedra of order 1 and 2, prisms
       RobotSpec spec = physical_robot(block_mesh({2, 1, 1}, {6, 4, 3}, kind == 3 ? Split::prisms : Split::six));
-      spec.quadratic = kind == 2;
+      spec.mesh_options.quadratic = kind == 2;
       spec.materials[0].elastic = constants(law);
       const Model model = compile(spec);
       const Statics statics(model);
-      const Vec3 expected = principal_of(stress_by_hand(model.materials[0].elastic, f));
+      const Vec3 expected = principal_of(stress_by_hand(model.elements.materials[0].elastic, f));
       for (const Mat3& gradient : {f, Mat3(turn * f)}) {
         const ElementStress stress = statics.measured(State{model.rest * gradient.transpose(), {}, {}}).stress;
-        ASSERT_EQ(stress.von_mises.size(), model.tetrahedra.size() + model.prisms.size());
+        ASSERT_EQ(stress.von_mises.size(), model.elements.tetrahedra.size() + model.elements.prisms.size());
         for (std::size_t e = 0; e < stress.von_mises.size(); ++e) {
           EXPECT_NEAR(stress.von_mises[e], von_mises_of(expected), 1e-9);
           for (int i = 0; i < 3; ++i) EXPECT_NEAR(stress.principal[e][i], expected[i], 1e-9);
@@ -211,7 +212,7 @@ TEST(Stress, IsThatOfTheLaw) {
 /// Of order 2 an element shows the point where von Mises' stress is largest, and elements keep the model's order.
 TEST(Stress, OfABentElementIsThatOfItsWorstPoint) {
   RobotSpec spec = physical_robot(block_mesh({3, 2, 2}, {9, 4, 4}));
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   const Model model = compile(spec);
   const Statics statics(model);
   Points bent = model.rest;
@@ -219,10 +220,10 @@ TEST(Stress, OfABentElementIsThatOfItsWorstPoint) {
   bent.col(1) += 0.02 * bent.col(0).cwiseProduct(bent.col(2));
   const ElementStress stress = statics.measured(State{bent, {}, {}}).stress;
   const double far = (5 + 3 * std::sqrt(5.0)) / 20, near = (5 - std::sqrt(5.0)) / 20;  // Hammer and Stroud 1956
-  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
+  for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e) {
     const auto frame = [&](const Points& points, const Barycentric& l) {
       const Eigen::Matrix<double, 3, 4> along =
-          nodes_of(points, model.tetrahedra[e], model.edge_nodes[e]).transpose() * quadratic_slope(l);
+          nodes_of(points, model.elements.tetrahedra[e], model.elements.edge_nodes[e]).transpose() * quadratic_slope(l);
       return Mat3(along.rightCols<3>().colwise() - along.col(0));
     };
     double most = 0;
@@ -230,7 +231,7 @@ TEST(Stress, OfABentElementIsThatOfItsWorstPoint) {
       Barycentric l = Barycentric::Constant(near);
       l[i] = far;
       const Mat3 f = frame(bent, l) * frame(model.rest, l).inverse();
-      most = std::max(most, von_mises_of(principal_of(stress_by_hand(model.materials[0].elastic, f))));
+      most = std::max(most, von_mises_of(principal_of(stress_by_hand(model.elements.materials[0].elastic, f))));
     }
     EXPECT_NEAR(stress.von_mises[e], most, 1e-9) << e;
   }
@@ -247,11 +248,11 @@ TEST(Stress, OfAThickSphereIsThatOfLame) {
   const Equilibrium found = settled(statics, values({pressure}));
   const ElementStress stress = statics.measured(found.state).stress;
   double sum = 0, volume = 0;
-  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
+  for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e) {
     Vec3 middle = Vec3::Zero();
-    for (const Index v : model.tetrahedra[e]) middle += model.rest.row(v).transpose() / 4;
-    sum += model.tetrahedron_volumes[e] * stress.von_mises[e] * std::pow(middle.norm(), 3);
-    volume += model.tetrahedron_volumes[e];
+    for (const Index v : model.elements.tetrahedra[e]) middle += model.rest.row(v).transpose() / 4;
+    sum += model.elements.tetrahedron_volumes[e] * stress.von_mises[e] * std::pow(middle.norm(), 3);
+    volume += model.elements.tetrahedron_volumes[e];
   }
   const double a = 1000, b = 8000;  // cubes of the radii [mm^3]
   const double expected = 1.5 * 1e-3 * pressure * a * b / (b - a);

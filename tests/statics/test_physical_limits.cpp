@@ -14,7 +14,7 @@ using namespace testing;
 RobotSpec balloon(double modulus, bool quadratic) {
   RobotSpec spec = hollow_ball(6, 30, 10);
   spec.materials[0].elastic = elastic(Law::mooney_rivlin, modulus, 0.45);
-  spec.quadratic = quadratic;
+  spec.mesh_options.quadratic = quadratic;
   spec.actuators = {air("hollow", 0.5, 12)};
   return spec;
 }
@@ -126,12 +126,12 @@ TEST(PhysicalLimits, AnArchSnaps) {
   RobotSpec spec = physical_robot(block_mesh({20, 1, 1}, {100, 10, 2}));
   for (Index v = 0; v < spec.mesh.vertices.rows(); ++v)
     spec.mesh.vertices(v, 2) += 6 * std::sin(EIGEN_PI * spec.mesh.vertices(v, 0) / 100);
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   spec.fixed.push_back({{std::string("x_high"), {}}});
   spec.markers = {{"top", {Vec3(50, 5, 7), {}}}};
   double last_top = 7;
   for (const double weight : {0.005, 0.0095}) {
-    spec.forces = {{"weight", {Vec3(50, 5, 7), {}}, {0, 0, -weight}}};
+    spec.loads.forces = {{"weight", {Vec3(50, 5, 7), {}}, {0, 0, -weight}}};
     const Model model = compile(spec);
     const Statics statics(model);
     const double top = marker_at(model, settled(statics, {}))[2];
@@ -139,7 +139,7 @@ TEST(PhysicalLimits, AnArchSnaps) {
     EXPECT_GT(top, 4);
     last_top = top;
   }
-  spec.forces = {{"weight", {Vec3(50, 5, 7), {}}, {0, 0, -0.01}}};
+  spec.loads.forces = {{"weight", {Vec3(50, 5, 7), {}}, {0, 0, -0.01}}};
   const Model model = compile(spec);
   const Statics statics(model);
   const Equilibrium found = statics.solve({}, statics.rest());
@@ -154,7 +154,7 @@ TEST(PhysicalLimits, AnArchSnaps) {
 TEST(PhysicalLimits, NoShapeIsInvertedWhereTheLawForbidsIt) {
   RobotSpec spec = physical_robot(block_mesh({6, 2, 2}, {30, 10, 10}));
   spec.materials[0].elastic = elastic(Law::yeoh, 1, 0.45);
-  spec.forces.push_back({"push", {std::string("x_high"), {}}, {-5000, 0, 0}});
+  spec.loads.forces.push_back({"push", {std::string("x_high"), {}}, {-5000, 0, 0}});
   const Model model = compile(spec);
   const Statics statics(model);
   const Equilibrium found = statics.solve({}, statics.rest());

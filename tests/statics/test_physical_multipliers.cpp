@@ -55,7 +55,7 @@ TEST(PhysicalMultipliers, TensionOfACable) {
 
 TEST(PhysicalMultipliers, OfOrder2) {
   RobotSpec spec = bending_finger();
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   expect_slopes(spec, values({1.3}));
 }
 
@@ -64,8 +64,8 @@ TEST(PhysicalMultipliers, OfManyTogether) {
   RobotSpec spec = chambers_beam(3);
   spec.actuators.push_back(cable("tendon", {{0, 10, 19}, {24, 10, 19}, {48, 10, 19}}));
   spec.materials[0].density = 1200;
-  spec.gravity = {0, 0, -9810e-3};
-  spec.forces.push_back({"payload", {std::string("x_high"), {}}, {0, 0.01, -0.02}});
+  spec.loads.gravity = {0, 0, -9810e-3};
+  spec.loads.forces.push_back({"payload", {std::string("x_high"), {}}, {0, 0.01, -0.02}});
   spec.rigid.push_back({{Box{{42, 0, 0}, {48, 20, 20}}, {}}, "end"});
   spec.fixed[0].displacement = {0, 0, 2};
   expect_slopes(spec, values({1.4, 1.2, 1.05, 0.93}));

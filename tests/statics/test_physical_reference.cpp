@@ -151,7 +151,7 @@ TEST_P(CantileverReference, TipUnderLoad) {
     spec.materials = {reference_material("body", ReferenceLaw::lin, 12, beam.nu)};
     spec.fixed.push_back({{std::string("fixed"), {}}, {true, true, true}});
     spec.markers.push_back({"face", {std::string("tip"), {}}});
-    spec.forces.push_back({"payload", {std::string("tip"), {}}, Vec3(0, 0, -table.at(row, "P_N"))});
+    spec.loads.forces.push_back({"payload", {std::string("tip"), {}}, Vec3(0, 0, -table.at(row, "P_N"))});
     const Model model = compile(spec);
     const Statics statics(model);
     const Equilibrium found = statics.solve(Actuation(0), statics.rest());

@@ -54,12 +54,12 @@ TEST(PhysicalSolve, InvariantUnderRigidMotion) {
   RobotSpec spec = bending_finger();
   spec.actuators.push_back(cable("tendon", {{0, 6, 14}, {30, 6, 14}, {58, 6, 14}}));
   spec.materials[0].density = 1100;
-  spec.gravity = {0, 0, -5};
+  spec.loads.gravity = {0, 0, -5};
   RobotSpec turned = spec;
   const Mat3 r = Eigen::AngleAxisd(2.2, Vec3(1, 2, -1).normalized()).toRotationMatrix();
   const Vec3 shift(100, -50, 20);
   turned.mesh.vertices = (spec.mesh.vertices * r.transpose()).rowwise() + shift.transpose();
-  turned.gravity = r * spec.gravity;
+  turned.loads.gravity = r * spec.loads.gravity;
   for (PointRef& point : turned.actuators[1].as<CableSpec>()->points)
     point.point = Vec3(r * std::get<Vec3>(point.point) + shift);
   const Model model = compile(spec), turned_model = compile(turned);
@@ -76,7 +76,7 @@ TEST(PhysicalSolve, RigidRegionsOfAnySize) {
     RobotSpec spec = physical_robot(block_mesh({6, 2, 2}, {60, 10, 10}));
     spec.mesh.vertices *= scale;
     spec.rigid.push_back({{std::string("x_high"), {}}, "end"});
-    spec.forces.push_back({"weight", {std::string("x_high"), {}}, scale * scale * Vec3(0, 0.01, -0.03)});
+    spec.loads.forces.push_back({"weight", {std::string("x_high"), {}}, scale * scale * Vec3(0, 0.01, -0.03)});
     const Model model = compile(spec);
     const Statics statics(model);
     const Equilibrium found = statics.solve(Actuation(0), statics.rest());
@@ -161,7 +161,7 @@ TEST(PhysicalSolve, FromRestToTheEndsOfARange) {
     for (const bool quadratic : {false, true}) {
       RobotSpec spec = bending_finger();
       spec.materials[0].elastic = elastic(law, 1, 0.4);
-      spec.quadratic = quadratic;
+      spec.mesh_options.quadratic = quadratic;
       const Model model = compile(spec);
       const Statics statics(model);
       for (const double ratio : {0.7, 2.5}) {

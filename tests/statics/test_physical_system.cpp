@@ -17,7 +17,7 @@ RobotSpec full_robot() {
   RobotSpec spec = chambers_beam(2);
   spec.actuators.push_back(cable("tendon", {{0, 10, 19}, {24, 10, 19}, {48, 10, 19}}));
   spec.materials[0].density = 1200;
-  spec.gravity = {0, 0, -1};
+  spec.loads.gravity = {0, 0, -1};
   spec.rigid.push_back({{Box{{42, 0, 0}, {48, 20, 20}}, {}}, "end"});
   return spec;
 }
@@ -121,7 +121,7 @@ TEST(System, UpsetIsTheSlopeInTheDemand) {
   for (const char* side : {"y_low", "y_high"}) spec.fixed.push_back({{std::string(side), {}}, {false, true, false}});
   spec.actuators[1] = by_load(spec.actuators[1]);
   spec.materials[0].density = 1000;
-  spec.gravity = {0, 0, -2};
+  spec.loads.gravity = {0, 0, -2};
   SystemSample sample(spec);
   sample.at.multipliers[1] = sample.system.measures().unit(1) * 30;
   const physical::Demand from{values({1.1, 30, 0.95}), 0.5}, to{values({1.4, 80, 0.9}), 0.8};
@@ -173,7 +173,7 @@ TEST(System, UpsetFollowsDisplacedSupports) {
 TEST(System, AdvanceIsTheStepToFirstOrder) {
   for (const bool quadratic : {false, true}) {
     RobotSpec spec = full_robot();
-    spec.quadratic = quadratic;
+    spec.mesh_options.quadratic = quadratic;
     SystemSample sample(spec);
     std::mt19937 engine(2);
     std::normal_distribution<double> normal(0, 0.1);
@@ -212,7 +212,7 @@ TEST(System, AdvanceBendsABarWithoutStretchingIt) {
     sample.system.advance(step, 1, sample.work, bent, sample.team);
     sample.system.freedoms().move(step, 1, straight);
     double bent_error = 0, straight_error = 0;
-    for (const Tetrahedron& t : sample.model.tetrahedra)
+    for (const Tetrahedron& t : sample.model.elements.tetrahedra)
       for (const int i : {1, 2, 3}) {
         const double rest = (sample.model.rest.row(t[i]) - sample.model.rest.row(t[0])).norm();
         const auto stretch = [&](const Points& p) { return std::abs((p.row(t[i]) - p.row(t[0])).norm() / rest - 1); };

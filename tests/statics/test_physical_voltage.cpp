@@ -106,7 +106,7 @@ TEST(PhysicalVoltage, AFreeSheetFollowsItsClosedCurve) {
   for (const ElasticSpec& material : {neo_hookean(0.4), neo_hookean(0.499), gent(40, 0.4), gent(40, 0.499)}) {
     const Model model = compile(free_sheet(material));
     const Statics statics(model);
-    const ElasticLaw& law = model.materials[0].elastic;
+    const ElasticLaw& law = model.elements.materials[0].elastic;
     const SheetState end = pull_in_of(law);
     for (const double share : {0.2, 0.5, 0.8, 0.9, 0.99}) {
       const double voltage = share * end.voltage_kV;
@@ -125,7 +125,7 @@ TEST(PhysicalVoltage, PullInIsALimit) {
   for (const ElasticSpec& material : {neo_hookean(0.4), neo_hookean(0.499), gent(40, 0.4), gent(8, 0.499)}) {
     const Model model = compile(free_sheet(material));
     const Statics statics(model);
-    const SheetState end = pull_in_of(model.materials[0].elastic);
+    const SheetState end = pull_in_of(model.elements.materials[0].elastic);
     const Equilibrium found = statics.solve(values({20}), statics.rest());
     EXPECT_EQ(found.report.status, Status::limit);
     EXPECT_NEAR(found.state.actuation[0], end.voltage_kV, 5e-3 * end.voltage_kV);
@@ -165,7 +165,7 @@ TEST(PhysicalVoltage, ChargeIsTheDerivativeOfTheEnergy) {
   EXPECT_NEAR(layer.charge_nC, -1e3 * change / (2 * step), 1e-5 * layer.charge_nC);  // mJ per kV are uC
   EXPECT_NEAR(layer.charge_nC, layer.capacitance_pF * voltage, 1e-9 * layer.charge_nC);
   // a flat capacitor
-  const SheetState state = sheet_under(model.materials[0].elastic, voltage, 1.2);
+  const SheetState state = sheet_under(model.elements.materials[0].elastic, voltage, 1.2);
   const double area = 48 * state.stretch * state.stretch, thickness = thickness_mm * state.across;
   EXPECT_NEAR(layer.capacitance_pF, 8.8541878128e-3 * permittivity * area / thickness, 1e-6 * layer.capacitance_pF);
   EXPECT_NEAR(layer.field_kV_mm, voltage / thickness, 1e-6 * layer.field_kV_mm);

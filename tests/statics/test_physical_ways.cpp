@@ -18,7 +18,7 @@ RobotSpec paper_finger(double poisson_ratio) {
   for (Index v = 0; v < mesh.vertices.rows(); ++v)
     if (mesh.vertices(v, 2) < 5 && mesh.vertices(v, 2) > 1) mesh.vertices(v, 2) = 0.3;
   add_volume_region(mesh, "paper", [](const Vec3& p) { return p.z() < 0.3; });
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   spec.materials[0].elastic = elastic(Law::neo_hookean, 0.1, poisson_ratio);
   MaterialSpec paper = spec.materials[0];
   paper.region = "paper";
@@ -61,7 +61,7 @@ TEST(PhysicalWays, StiffLayerAndNearlyIncompressibleRubber) {
 TEST(PhysicalWays, PathBeyondAMaximum) {
   RobotSpec spec = paper_finger(0.49);
   spec.materials[0].density = 1000;
-  spec.gravity = {0, 0, -9.81};
+  spec.loads.gravity = {0, 0, -9.81};
   const Model by_volume = compile(spec);
   const Statics volumes(by_volume);
   double most = 0;
@@ -104,10 +104,10 @@ TEST(PhysicalWays, MaximumOfAPressure) {
     for (const bool paper : {false, true}) {
       if (quadratic && paper) continue;
       RobotSpec spec = paper_finger(0.49);
-      spec.quadratic = quadratic;
+      spec.mesh_options.quadratic = quadratic;
       if (!paper) spec.materials.pop_back();
       spec.materials[0].density = 1000;
-      spec.gravity = {0, 0, -9.81};
+      spec.loads.gravity = {0, 0, -9.81};
       const Model by_volume = compile(spec);
       const Statics volumes(by_volume);
       double most = 0;
@@ -136,10 +136,10 @@ TEST(PhysicalWays, MaximumOfAPressure) {
 TEST(PhysicalWays, HeavyStripLiftedFromAFloor) {
   constexpr double gap = 0.01, distance = 0.005, lift = 2, width = 10, height = 2, modulus = 1;
   RobotSpec spec = physical_robot(block_mesh({60, 1, 1}, {120, width, height}));
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   spec.materials[0].elastic = elastic(Law::neo_hookean, modulus, 0);
   spec.materials[0].density = 1000;
-  spec.gravity = {0, 0, -9.81};
+  spec.loads.gravity = {0, 0, -9.81};
   const Points& at = spec.mesh.vertices;
   VertexList edge;
   for (Index v = 0; v < at.rows(); ++v)

@@ -53,7 +53,7 @@ TEST(Reference, ThreeChamberFixedPoint) {
                 {{VertexList{{far_along_y}}, {}}, {true, false, true}},
                 {{VertexList{{across}}, {}}, {false, false, true}}};
   const Model model = compile(spec);
-  EXPECT_EQ(model.tetrahedra.size(), 24412u);
+  EXPECT_EQ(model.elements.tetrahedra.size(), 24412u);
   const Statics statics(model);
   StaticsOptions options;
   options.step_tolerance_mm = 1e-8;

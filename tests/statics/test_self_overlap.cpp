@@ -46,7 +46,8 @@ Model bar(Split split = Split::six, bool quadratic = false) {
 /// with the faces, of all elements.
 std::vector<Vec3> inside_by_hand(const Model& model, const Points& positions) {
   std::set<Index> surface;
-  for (const Triangle& face : boundary_of(model.tetrahedra, {}).triangles) surface.insert(face.begin(), face.end());
+  for (const Triangle& face : boundary_of(model.elements.tetrahedra, {}).triangles)
+    surface.insert(face.begin(), face.end());
   std::vector<Vec3> inside;
   for (const Index vertex : surface) {
     const auto covers = [&](const Tetrahedron& t) {
@@ -57,7 +58,7 @@ std::vector<Vec3> inside_by_hand(const Model& model, const Points& positions) {
       }
       return true;
     };
-    if (std::any_of(model.tetrahedra.begin(), model.tetrahedra.end(), covers))
+    if (std::any_of(model.elements.tetrahedra.begin(), model.elements.tetrahedra.end(), covers))
       inside.push_back(vertex_at(positions, vertex));
   }
   return inside;
@@ -104,7 +105,7 @@ TEST(SelfOverlap, CountsNothingAroundInvertedElements) {
   const Index corner = grid_vertex({40, 3, 3}, 20, 3, 3);
   shape.row(corner) += Eigen::RowVector3d(0.3, -9, -7);  // through the bar
   std::size_t inverted = 0;
-  for (const Tetrahedron& t : model.tetrahedra) inverted += signed_volume(shape, t) <= 0 ? 1 : 0;
+  for (const Tetrahedron& t : model.elements.tetrahedra) inverted += signed_volume(shape, t) <= 0 ? 1 : 0;
   ASSERT_GT(inverted, 0u);
   ASSERT_GT(inside_by_hand(model, shape).size(), 0u);
   EXPECT_EQ(search.in(shape).points, 0u);

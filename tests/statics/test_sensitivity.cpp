@@ -77,7 +77,7 @@ TEST(Sensitivity, QuadraticElements) {
   add_volume_region(finger.mesh, "chamber", [](const Vec3& p) {
     return p.x() > 9 && p.x() < 51 && p.y() > 4 && p.y() < 8 && p.z() > 4 && p.z() < 8;
   });
-  finger.quadratic = true;
+  finger.mesh_options.quadratic = true;
   finger.actuators.push_back(cable("tendon", {{0, 6, 11}, {30, 6, 11}, {60, 6, 11}}));
   expect_differences_at(finger, values({1.4, 0.93}));
   finger.actuators[0] = by_load(finger.actuators[0]);
@@ -91,8 +91,8 @@ namespace {
 RobotSpec pushed_finger() {
   RobotSpec spec = bending_finger();
   const std::array<Vec3, 2> all{Vec3(-2, -2, -2), Vec3(2, 2, 2)}, some{Vec3(-1, 0.5, -1), Vec3(1, 0.5, 1)};
-  spec.forces = {{"poke", {Vec3(40, 3, 15), {}}, {0, 0, -0.1}, all},
-                 {"tip", {std::string("x_high"), {}}, {0, 0.5, 0}, some}};
+  spec.loads.forces = {{"poke", {Vec3(40, 3, 15), {}}, {0, 0, -0.1}, all},
+                       {"tip", {std::string("x_high"), {}}, {0, 0.5, 0}, some}};
   return spec;
 }
 
@@ -106,7 +106,7 @@ TEST(Sensitivity, ForcesAtPlacesOfTheRobot) {
       add_volume_region(spec.mesh, "chamber", [](const Vec3& p) {
         return p.x() > 9 && p.x() < 51 && p.y() > 4 && p.y() < 8 && p.z() > 5 && p.z() < 11;
       });
-      spec.quadratic = true;
+      spec.mesh_options.quadratic = true;
     }
     const Model model = compile(spec);
     ASSERT_EQ(model.actuators.size(), 6u);
@@ -125,9 +125,9 @@ TEST(Sensitivity, CommandedForcesDoAsOthers) {
   RobotSpec spec = pushed_finger();
   const Model commanded = compile(spec);
   const Equilibrium found = settled(Statics(commanded), values({1.2, 0.3, -0.2, 0.5, 0.1, -0.3}));
-  spec.forces[0].force = {0.3, -0.2, 0.5};
-  spec.forces[1].force = {0.1, 0.5, -0.3};
-  for (ForceSpec& force : spec.forces) force.range.reset();
+  spec.loads.forces[0].force = {0.3, -0.2, 0.5};
+  spec.loads.forces[1].force = {0.1, 0.5, -0.3};
+  for (ForceSpec& force : spec.loads.forces) force.range.reset();
   const Model held = compile(spec);
   const Equilibrium expected = settled(Statics(held), values({1.2}));
   EXPECT_LT((found.state.positions - expected.state.positions).cwiseAbs().maxCoeff(), 1e-6);
@@ -258,7 +258,7 @@ TEST(Sensitivity, LeavesSolvesAlone) {
 TEST(Sensitivity, WithoutActuators) {
   RobotSpec spec = cable_beam();
   spec.actuators.clear();
-  spec.forces.push_back({"payload", {std::string("x_high"), {}}, {0, 0, -0.01}});
+  spec.loads.forces.push_back({"payload", {std::string("x_high"), {}}, {0, 0, -0.01}});
   const Model model = compile(spec);
   const Statics statics(model);
   Equilibrium at = settled(statics, {});

@@ -66,16 +66,16 @@ TEST(SeveralRobots, PhysicalFingersAnswerAsEachAlone) {
   spec.fixed = {{{Selector(Box{{-1, -1, -1}, {0, 20, 20}}), {}}}};
   spec.rigid.push_back({{Selector(Halfspace{{59, 0, 0}, {1, 0, 0}}), {}}, "rigid_1"});
   spec.actuators.push_back(cable("tendon", {{0, 6, 14}, {30, 6, 14}, {58, 6, 14}}));
-  spec.forces.push_back({"push", {Vec3(55, 6, 8), {}}, Vec3(0, 0.002, -0.004)});
+  spec.loads.forces.push_back({"push", {Vec3(55, 6, 8), {}}, Vec3(0, 0.002, -0.004)});
   expect_alike(spec, three_places(), {values({1.6, 0.97}), values({1.3, 0.99}), values({1.5, 0.98})});
 }
 
 TEST(SeveralRobots, OfOrderTwo) {
   RobotSpec spec = physical_robot(block_mesh({4, 1, 1}, {40, 8, 8}));
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   // shapes choose nodes of edges whose ends they do not hold
   spec.fixed = {{{Selector(Halfspace{{6, 0, 0}, {-1, 0, 0}}), {}}}};
-  spec.forces.push_back({"push", {std::string("x_high"), {}}, Vec3(0, 0.02, -0.04)});
+  spec.loads.forces.push_back({"push", {std::string("x_high"), {}}, Vec3(0, 0.02, -0.04)});
   expect_alike(spec, three_places(), {Actuation(0), Actuation(0), Actuation(0)});
 }
 
@@ -133,9 +133,9 @@ RobotSpec two_robots(const StackedBlocks& blocks) {
 }
 
 const Reaction& reaction_named(const Model& model, const std::vector<Reaction>& all, const std::string& name) {
-  const auto found = std::find_if(model.supports.begin(), model.supports.end(),
+  const auto found = std::find_if(model.held.supports.begin(), model.held.supports.end(),
                                   [&](const Support& support) { return support.name == name; });
-  return all[found - model.supports.begin()];
+  return all[found - model.held.supports.begin()];
 }
 
 }  // namespace
@@ -164,7 +164,8 @@ TEST(SeveralRobots, ThatPressEachOtherAreInBalance) {
     EXPECT_NEAR(pair.normal_N, load, 0.01 * load);
     Vec3 moment = pair.moment + pair.center.cross(pair.force);
     for (std::size_t s = 0; s < all.size(); ++s)
-      if (model.supports[s].name.starts_with("lower.")) moment += all[s].moment + all[s].center.cross(all[s].force);
+      if (model.held.supports[s].name.starts_with("lower."))
+        moment += all[s].moment + all[s].center.cross(all[s].force);
     EXPECT_LT(moment.norm(), 1e-8 * load * StackedBlocks::size);
     // two blocks of one mesh, which may touch itself
     const Statics single(one);

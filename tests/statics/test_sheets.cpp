@@ -47,7 +47,7 @@ TEST(Sheets, DiscsBecomeMylarBalloons) {
   ASSERT_TRUE(flat_at_rest(model.actuators[0]));
   const Statics statics(model);
   const Equilibrium found = settled(statics, Actuation::Constant(1, 1.0));
-  EXPECT_EQ(found.report.unstable_modes, 0);
+  EXPECT_EQ(found.report.physical.unstable_modes, 0);
   EXPECT_NEAR(across(made, found.state.positions), known.height * radius, 0.02 * known.height * radius);
   const double volume = enclosed_volume(found.state.positions, model.actuators[0].as<ChamberDrive>()->cavity);
   EXPECT_NEAR(volume, known.volume * std::pow(radius, 3), 0.02 * volume);
@@ -129,7 +129,7 @@ RobotSpec bending_sheet(const Vec3& from, const Vec3& to, int along, int across,
   RobotSpec spec;
   spec.name = "sheet.yaml";
   spec.formulation = Formulation::physical;
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   spec.mesh.vertices.resize((along + 1) * (across + 1), 3);
   const auto place = [&](int i, int j) { return static_cast<Index>(i * (across + 1) + j); };
   for (int i = 0; i <= along; ++i)
@@ -163,7 +163,7 @@ TEST(Sheets, ThatBendSinkAsKirchhoffSays) {
   auto heavy = std::make_shared<LayerSpec>(*spec.layers[0]);
   heavy->density = density;
   spec.layers = {heavy};
-  spec.gravity = {0, 0, -9.81};
+  spec.loads.gravity = {0, 0, -9.81};
   const Vec3 low(-1, -1, -1), high(side + 1, side + 1, 1);
   for (int axis = 0; axis < 2; ++axis) {
     Vec3 end = high, begin = low;
@@ -200,7 +200,7 @@ TEST(Sheets, ThatBendFollowTheElastica) {
     end.name = "end";
     end.at = {std::string("end"), {}};
     end.force = {0, 0, -times * rigidity / (length * length)};
-    spec.forces = {end};
+    spec.loads.forces = {end};
     const Model model = compile(spec);
     const Equilibrium found = settled(Statics(model), model.rest_actuation());
     const Vec3 tip = marker_at(model, found);
@@ -243,7 +243,7 @@ TEST(Sheets, HangOnABodyAndPullIt) {
   for (Index i = 0; i < 3; ++i) {  // as a pull that is even over the width
     const std::string name = "end" + std::to_string(i);
     spec.regions.push_back({name, VertexList{{before + i}}, {}});
-    spec.forces.push_back({name, {name, {}}, {force * (i == 1 ? 0.5 : 0.25), 0, 0}});
+    spec.loads.forces.push_back({name, {name, {}}, {force * (i == 1 ? 0.5 : 0.25), 0, 0}});
   }
   spec.markers = {{"end", {Vec3(30, 5, 10), {}}}};
   const Model model = compile(spec);

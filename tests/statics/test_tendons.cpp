@@ -79,7 +79,7 @@ class Eytelwein {
 /// An arm that a tendon through its whole length bends.
 RobotSpec arm(double friction, bool quadratic = true) {
   RobotSpec spec = physical_robot(quadratic ? block_mesh({10, 1, 2}, {80, 6, 8}) : block_mesh({20, 2, 4}, {80, 6, 8}));
-  spec.quadratic = quadratic;
+  spec.mesh_options.quadratic = quadratic;
   spec.materials[0].elastic = elastic(Law::neo_hookean, 3, 0.4);
   spec.markers = {{"tip", {std::string("x_high"), {}}}};
   ActuatorSpec tendon = by_load(cable("upper", {{0, 3, 7}, {80, 3, 7}}), 0, 10);

@@ -27,7 +27,7 @@ RobotSpec layered_robot() {
   spec.actuators = mixed_robot(true).actuators;
   for (const char* side : {"y_low", "y_high"}) spec.fixed.push_back({{std::string(side), {}}, {false, true, false}});
   spec.materials[0].density = 1100;
-  spec.gravity = {0, 2, -9.81};
+  spec.loads.gravity = {0, 2, -9.81};
   return spec;
 }
 
@@ -45,9 +45,9 @@ RobotSpec charged_sheet() {
 
 RobotSpec magnetic_robot(Magnetisation magnetisation, bool quadratic) {
   RobotSpec spec = physical_robot(block_mesh({2, 1, 1}, {20, 8, 6}));
-  spec.quadratic = quadratic;
+  spec.mesh_options.quadratic = quadratic;
   spec.materials[0].density = 1100;
-  spec.gravity = {0, 0, -9.81};
+  spec.loads.gravity = {0, 0, -9.81};
   magnetise(spec, {120, -40, 70}, magnetisation);
   add_uniform(spec);
   add_field(spec, {"coil", two_loops({5, 0, 20})}, {FieldCommand::current});
@@ -59,32 +59,32 @@ RobotSpec magnetic_robot(Magnetisation magnetisation, bool quadratic) {
 /// Pressures and tractions that follow the surface, on triangles, curved faces and quads.
 RobotSpec loaded_robot(bool quadratic) {
   RobotSpec spec = quadratic ? physical_robot(block_mesh({2, 1, 1}, {20, 8, 6})) : layered_robot();
-  spec.quadratic = quadratic;
-  spec.tractions = {{"wind", {std::string("x_high"), {}}, true, {30, -20, 10}, 0},
-                    {"water", {std::string("z_low"), {}}, true, {0, 0, 0}, 25},
-                    {"air", {std::string("z_high"), {}}, true, {0, 0, 0}, -15},
-                    {"more", {std::string("z_low"), {}}, true, {0, 0, 0}, 5, std::array<double, 2>{-20, 20}}};
+  spec.mesh_options.quadratic = quadratic;
+  spec.loads.tractions = {{"wind", {std::string("x_high"), {}}, true, {30, -20, 10}, 0},
+                          {"water", {std::string("z_low"), {}}, true, {0, 0, 0}, 25},
+                          {"air", {std::string("z_high"), {}}, true, {0, 0, 0}, -15},
+                          {"more", {std::string("z_low"), {}}, true, {0, 0, 0}, 5, std::array<double, 2>{-20, 20}}};
   return spec;
 }
 
 /// A moment on a rigid end, one component of it commanded.
 RobotSpec turned_robot(bool quadratic) {
   RobotSpec spec = physical_robot(block_mesh({2, 1, 1}, {20, 8, 6}));
-  spec.quadratic = quadratic;
+  spec.mesh_options.quadratic = quadratic;
   spec.rigid = {{{std::string("x_high"), {}}, "end"}};
-  spec.forces = {{"tool",
-                  {std::string("x_high"), {}},
-                  {0, 0, 0},
-                  std::nullopt,
-                  {300, -200, 50},
-                  std::array<Vec3, 2>{Vec3(300, -900, 50), Vec3(300, 900, 50)}}};
+  spec.loads.forces = {{"tool",
+                        {std::string("x_high"), {}},
+                        {0, 0, 0},
+                        std::nullopt,
+                        {300, -200, 50},
+                        std::array<Vec3, 2>{Vec3(300, -900, 50), Vec3(300, 900, 50)}}};
   return spec;
 }
 
 /// Threads across tetrahedra of either order and prisms.
 RobotSpec threaded_robot(bool quadratic) {
   RobotSpec spec = quadratic ? physical_robot(block_mesh({2, 1, 1}, {20, 8, 6})) : layered_robot();
-  spec.quadratic = quadratic;
+  spec.mesh_options.quadratic = quadratic;
   const Vec3 size = spec.mesh.vertices.colwise().maxCoeff().transpose();
   FibreSpec thread;
   thread.name = "thread";
@@ -101,7 +101,7 @@ RobotSpec threaded_robot(bool quadratic) {
 /// A sheet that bends, and one that wrinkles, on tetrahedra of either order.
 RobotSpec sheeted_robot(bool quadratic) {
   RobotSpec spec = physical_robot(block_mesh({2, 2, 1}, {20, 12, 6}));
-  spec.quadratic = quadratic;
+  spec.mesh_options.quadratic = quadratic;
   for (const bool bending : {false, true}) {
     LayerSpec layer;
     layer.name = bending ? "plate" : "cloth";
@@ -122,7 +122,7 @@ RobotSpec sheeted_robot(bool quadratic) {
 /// Elements of either kind that grow, in all directions by a temperature and along one by a stretch.
 RobotSpec growing_robot(Split split, bool quadratic) {
   RobotSpec spec = physical_robot(block_mesh({3, 2, 1}, {20, 8, 6}, split));
-  spec.quadratic = quadratic;
+  spec.mesh_options.quadratic = quadratic;
   spec.regions = {{"left", Selector(Box{{-1, -1, -1}, {7, 9, 7}}), {}},
                   {"right", Selector(Box{{13, -1, -1}, {21, 9, 7}}), {}}};
   GrowthPart warm{"left"}, along{"right"};
@@ -140,10 +140,10 @@ RobotSpec growing_robot(Split split, bool quadratic) {
 /// In a liquid, whole or in part.
 RobotSpec submerged_robot(Split split, bool quadratic, double level) {
   RobotSpec spec = physical_robot(block_mesh({3, 2, 1}, {20, 8, 6}, split));
-  spec.quadratic = quadratic;
+  spec.mesh_options.quadratic = quadratic;
   spec.materials[0].density = 1100;
-  spec.gravity = {2000, -3000, -9000};
-  spec.liquid_around = LiquidAroundSpec{1300, {0, 0, level}, {}};
+  spec.loads.gravity = {2000, -3000, -9000};
+  spec.loads.liquid_around = LiquidAroundSpec{1300, {0, 0, level}, {}};
   return spec;
 }
 
@@ -164,7 +164,7 @@ RobotSpec submerged_open(Split split, bool quadratic, double level) {
 /// Two families of fibres, one of them dispersed.
 RobotSpec fibrous_robot(Split split, bool quadratic) {
   RobotSpec spec = physical_robot(block_mesh({3, 2, 1}, {20, 8, 6}, split));
-  spec.quadratic = quadratic;
+  spec.mesh_options.quadratic = quadratic;
   FamilySpec first{0.7, 2.5, 0.1, {.uniform = {1, 1, 0.2}}}, second{0.3, 0, 0, {.uniform = {0, 1, -1}}};
   spec.materials[0].families = std::make_shared<const FamiliesSpec>(FamiliesSpec{{first, second}});
   return spec;
@@ -213,12 +213,12 @@ struct TermsSample : PhysicalEquations {
   Points stiffness_times_way(std::size_t term) {
     system.evaluate(at, demand, active, work, balance, team);
     system.assemble(at, demand, balance, physical::System::Stiffness::exact, work, team);
-    LargeVector<double> slots(work.slots.size()), blocks;
+    LargeVector<double> slots(work.stiffness.slots.size()), blocks;
     std::fill(slots.begin(), slots.end(), 0.0);
     system.terms()[term]->stiffness(at, demand, false, *work.terms[term], slots, team);
-    work.layout->pattern.gather(slots, blocks, team);
+    work.stiffness.layout->pattern.gather(slots, blocks, team);
     Points product;
-    work.layout->pattern.multiply(blocks, along, product, team);
+    work.stiffness.layout->pattern.multiply(blocks, along, product, team);
     if (!system.terms()[term]->conservative())
       system.terms()[term]->add_response(at, along, *work.terms[term], product);
     return product;
@@ -278,7 +278,7 @@ void expect_derivatives(const RobotSpec& spec, double shake, const Vec3& move, d
     EXPECT_LE((change - changed).norm(), 2e-4 * change.norm() + 1e-12 * exact.norm()) << what;
     const std::array<double, 4> sizes{exact.norm(), stiff.norm(), by_commands, change.norm()};
     const bool contact = count > 4 && t == count - 1 && sample.system.contact();
-    const bool fibres = t == 4 && !sample.model.fibres.empty();
+    const bool fibres = t == 4 && !sample.model.reinforcement.fibres.empty();
     const bool liquid = dynamic_cast<const physical::Hydrostatics*>(&term) != nullptr,
                families = dynamic_cast<const physical::FibreFamilies*>(&term) != nullptr,
                layers = dynamic_cast<const physical::Layers*>(&term) != nullptr,

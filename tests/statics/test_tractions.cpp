@@ -27,7 +27,7 @@ TractionSpec pressure(const std::string& region, double kilopascals, const std::
 RobotSpec free_block(const Mesh& mesh, bool quadratic) {
   RobotSpec spec = physical_robot(mesh);
   spec.materials[0].elastic = elastic(Law::corotational, 1, 0);
-  spec.quadratic = quadratic;
+  spec.mesh_options.quadratic = quadratic;
   spec.fixed = {{{std::string("x_low"), {}}, {true, false, false}},
                 {{std::string("y_low"), {}}, {false, true, false}},
                 {{std::string("z_low"), {}}, {false, false, true}}};
@@ -49,7 +49,7 @@ Vec3 support_force(const Model& model, const Statics& statics, const Equilibrium
 
 RobotSpec strip(bool quadratic = true) {
   RobotSpec spec = physical_robot(block_mesh({quadratic ? 12 : 24, 1, 2}, {60, 4, 4}));
-  spec.quadratic = quadratic;
+  spec.mesh_options.quadratic = quadratic;
   spec.materials[0].elastic = elastic(Law::neo_hookean, 1, 0);
   spec.markers.push_back({"tip", {std::string("x_high"), {}}});
   return spec;
@@ -61,7 +61,7 @@ RobotSpec strip(bool quadratic = true) {
 TEST(Tractions, DeadOnesAreNominalStresses) {
   for (RobotSpec spec : blocks())
     for (const double kilopascals : {300.0, -200.0}) {
-      spec.tractions = {traction("x_high", {kilopascals, 0, 0}, false)};
+      spec.loads.tractions = {traction("x_high", {kilopascals, 0, 0}, false)};
       const Model model = compile(spec);
       const Equilibrium found = settled(Statics(model), model.rest_actuation());
       EXPECT_NEAR(found.state.positions.col(0).maxCoeff(), 20 * (1 + 1e-3 * kilopascals), 1e-7);
@@ -73,8 +73,8 @@ TEST(Tractions, DeadOnesAreNominalStresses) {
 TEST(Tractions, PressuresAreTrueStresses) {
   for (RobotSpec spec : blocks())
     for (const double kilopascals : {400.0, -90.0}) {
-      spec.tractions = {pressure("x_high", kilopascals, "x"), pressure("y_high", kilopascals, "y"),
-                        pressure("z_high", kilopascals, "z")};
+      spec.loads.tractions = {pressure("x_high", kilopascals, "x"), pressure("y_high", kilopascals, "y"),
+                              pressure("z_high", kilopascals, "z")};
       const Model model = compile(spec);
       const Equilibrium found = settled(Statics(model), model.rest_actuation());
       const double p = 1e-3 * kilopascals, s = (std::sqrt(1 + 4 * p) - 1) / (2 * p);
@@ -91,14 +91,14 @@ TEST(Tractions, APressureOnTheWallsOfAChamberIsThatOfTheChamber) {
       add_volume_region(spec.mesh, "chamber", [](const Vec3& p) {
         return p.x() > 9 && p.x() < 51 && p.y() > 4 && p.y() < 8 && p.z() > 4 && p.z() < 8;
       });
-    spec.quadratic = quadratic;
+    spec.mesh_options.quadratic = quadratic;
     spec.actuators = {by_load(spec.actuators[0])};
     const Model by_chamber = compile(spec);
     const Equilibrium expected = settled(Statics(by_chamber), values({80}));
     const Box around = quadratic ? Box{{9, 3.9, 3.9}, {51, 8.1, 8.1}} : Box{{4.9, 3.9, 7.9}, {55.1, 8.1, 12.1}};
     spec.actuators.clear();
     spec.voids.push_back({std::string("chamber"), {}});
-    spec.tractions = {{"water", {around, {}}, true, {0, 0, 0}, 80}};
+    spec.loads.tractions = {{"water", {around, {}}, true, {0, 0, 0}, 80}};
     const Model by_walls = compile(spec);
     const Equilibrium found = settled(Statics(by_walls), by_walls.rest_actuation());
     EXPECT_GT(distance(expected.state.positions, by_chamber.rest), 0.3);
@@ -111,7 +111,7 @@ TEST(Tractions, ThoseThatFollowTurnWithTheRobot) {
   for (const bool follows : {true, false}) {
     RobotSpec spec = strip();
     spec.fixed[0].rotation = RotationSpec{{0, 1, 0}, 0, Vec3(0, 0, 0)};
-    spec.tractions = {traction("x_high", {0.3, 0.2, -0.4}, follows)};
+    spec.loads.tractions = {traction("x_high", {0.3, 0.2, -0.4}, follows)};
     const Model model = compile(spec);
     const Statics statics(model);
     const Equilibrium straight = settled(statics, values({0})), turned = settled(statics, values({130}));
@@ -128,12 +128,12 @@ TEST(Tractions, ThoseThatFollowTurnWithTheRobot) {
 /// The support bears what acts on the surface, whose size is that of the traction on the present area.
 TEST(Tractions, TheSupportBearsThem) {
   RobotSpec spec = strip();
-  spec.tractions = {traction("z_high", {0.06, 0, -0.04}, false), pressure("y_high", 0.05)};
+  spec.loads.tractions = {traction("z_high", {0.06, 0, -0.04}, false), pressure("y_high", 0.05)};
   const Model model = compile(spec);
   const Statics statics(model);
   const Equilibrium found = settled(statics, model.rest_actuation());
   Vec3 expected = 1e-3 * 60 * 4 * Vec3(0.06, 0, -0.04);
-  for (const LoadedFace& loaded : model.tractions[0].faces) {
+  for (const LoadedFace& loaded : model.loads.tractions[0].faces) {
     TriangleNodes nodes;
     const std::vector<Index> of = nodes_of(loaded.face);
     for (int i = 0; i < 6; ++i) nodes.row(i) = found.state.positions.row(of[i]);
@@ -164,13 +164,13 @@ TEST(Tractions, AFollowingLoadBendsACantileverAsTheElasticaSays) {
   };
   RobotSpec spec = strip();
   const double load = 2 * bending / (length * length);
-  spec.tractions = {traction("x_high", {0, 0, 1e3 * load / 16}, true)};
+  spec.loads.tractions = {traction("x_high", {0, 0, 1e3 * load / 16}, true)};
   const Model model = compile(spec);
   const Equilibrium found = settled(Statics(model), model.rest_actuation());
   // of the end's normal
   Vec3 high = Vec3::Zero(), low = Vec3::Zero();
   for (Index v = 0; v < model.rest.rows(); ++v)
-    if (model.used[v] && model.rest(v, 0) == 60) {
+    if (model.elements.used[v] && model.rest(v, 0) == 60) {
       if (model.rest(v, 2) == 4) high += found.state.positions.row(v).transpose();
       if (model.rest(v, 2) == 0) low += found.state.positions.row(v).transpose();
     }
@@ -183,7 +183,7 @@ TEST(Tractions, AFollowingLoadBendsACantileverAsTheElasticaSays) {
 /// The Jacobian against differences, where the load's stiffness is not symmetric.
 TEST(Tractions, JacobiansAreThoseOfDifferences) {
   RobotSpec spec = cable_beam();
-  spec.tractions = {traction("x_high", {1, 2, 3}, true), pressure("z_high", 2)};
+  spec.loads.tractions = {traction("x_high", {1, 2, 3}, true), pressure("z_high", 2)};
   expect_differences_at(spec, values({0.94, 0.96}));
   spec.actuators = {by_load(spec.actuators[0])};
   expect_differences_at(spec, values({0.3}));
@@ -192,7 +192,7 @@ TEST(Tractions, JacobiansAreThoseOfDifferences) {
 TEST(Tractions, AreRefusedWithAReason) {
   const auto refused = [](const TractionSpec& bad, const std::string& why) {
     RobotSpec spec = strip();
-    spec.tractions = {bad};
+    spec.loads.tractions = {bad};
     try {
       (void)compile(spec);
       ADD_FAILURE() << "not refused: " << why;
@@ -205,7 +205,7 @@ TEST(Tractions, AreRefusedWithAReason) {
   refused(traction("nowhere", {0, 0, 1}, false), "nowhere");
   refused({"wind", {Box{{1, 1, 1}, {2, 2, 2}}, {}}, true, {0, 0, 0}, 3}, "holds");
   RobotSpec twice = strip();
-  twice.tractions = {pressure("x_high", 1), pressure("y_high", 1)};
+  twice.loads.tractions = {pressure("x_high", 1), pressure("y_high", 1)};
   EXPECT_THROW((void)compile(twice), InvalidInput);
   RobotSpec inside = strip();
   Region middle;
@@ -217,7 +217,7 @@ TEST(Tractions, AreRefusedWithAReason) {
     inside.mesh.triangles.push_back({t[face[0]], t[face[1]], t[face[2]]});
   }
   inside.mesh.regions.push_back(middle);
-  inside.tractions = {pressure("middle", 1)};
+  inside.loads.tractions = {pressure("middle", 1)};
   EXPECT_THROW((void)compile(inside), InvalidInput) << "faces between elements";
 }
 

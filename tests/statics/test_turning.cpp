@@ -31,7 +31,7 @@ FixedSpec turning(const std::string& region, const Vec3& axis, std::optional<Vec
 /// bar's axis.
 RobotSpec twisted_bar(double degrees, std::array<int, 3> cells = {16, 4, 4}) {
   RobotSpec spec = physical_robot(block_mesh(cells, {80, 10, 10}));
-  spec.quadratic = true;
+  spec.mesh_options.quadratic = true;
   spec.fixed.push_back(turning("x_high", {1, 0, 0}, {}, degrees));
   return spec;
 }
@@ -40,7 +40,7 @@ RobotSpec twisted_bar(double degrees, std::array<int, 3> cells = {16, 4, 4}) {
 double section_turn(const Model& model, const Points& positions, double x) {
   double sine = 0, cosine = 0;
   for (Index v = 0; v < positions.rows(); ++v) {
-    if (!model.used[v] || std::abs(model.rest(v, 0) - x) > 1e-6) continue;
+    if (!model.elements.used[v] || std::abs(model.rest(v, 0) - x) > 1e-6) continue;
     const Eigen::Vector2d from(model.rest(v, 1) - 5, model.rest(v, 2) - 5);
     const Eigen::Vector2d to(positions(v, 1) - 5, positions(v, 2) - 5);
     cosine += from.dot(to);
@@ -95,7 +95,7 @@ TEST(TurnedSupport, FollowsAWholeTurn) {
   EXPECT_GT(whole.report.continuation_steps, 11);
   EXPECT_NEAR(std::abs(section_turn(model, whole.state.positions, 40)), 180, 1);
   EXPECT_NEAR(section_turn(model, whole.state.positions, 20), 90, 2);
-  for (const Index v : model.turns[0].vertices)
+  for (const Index v : model.held.turns[0].vertices)
     EXPECT_LT((whole.state.positions.row(v) - model.rest.row(v)).norm(), 1e-12);
   const double torque = moment_x(model, statics, whole.state);
   EXPECT_GT(torque, 0);

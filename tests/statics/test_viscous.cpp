@@ -281,7 +281,7 @@ TEST(Viscosity, ABarCreepsUnderALoad) {
   spec.markers.push_back({"tip", {std::string("x_high"), {}}});
   const Model free = compile(spec);
   const Statics freely(free);
-  spec.forces = {{"pull", {std::string("x_high"), {}}, {1e-3, 0, 0}}};
+  spec.loads.forces = {{"pull", {std::string("x_high"), {}}, {1e-3, 0, 0}}};
   const Model model = compile(spec);
   const Statics statics(model);
   const double stress = 1e-3 / 100;
@@ -314,7 +314,7 @@ TEST(Viscosity, ABarCreepsUnderALoad) {
 TEST(Viscosity, TimesBeginAfterALongRestUnderTheLoads) {
   RobotSpec spec = viscous_finger();
   spec.materials[0].density = 50000;
-  spec.gravity = {0, 0, -9.81};
+  spec.loads.gravity = {0, 0, -9.81};
   const Model model = compile(spec);
   const Statics statics(model);
   const Equilibrium relaxed = settled(statics, values({1}));

@@ -208,7 +208,7 @@ std::optional<Drop> attempt(Draw& draw, const std::string& name) {
   const double room = lowest_of(upper, 1) + lowest_of(lower, -1) + drop.displacement.z();
   if (room < 0.3 * drop.size_mm || meeting.raised_by(raise)) return {};
   drop.robot = two_bodies(name, lower, upper, drop.displacement);
-  drop.robot.quadratic = draw.chance(0.25);
+  drop.robot.mesh_options.quadratic = draw.chance(0.25);
   return drop;
 }
 

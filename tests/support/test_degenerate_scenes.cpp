@@ -36,17 +36,17 @@ TEST(DegenerateScenes, CompileToTwoBodiesThatAreHeld) {
     SCOPED_TRACE(scene.robot.name);
     names.insert(scene.robot.name);
     const Model model = compile(scene.robot);
-    EXPECT_LE(model.tetrahedra.size(), 300u);
-    EXPECT_EQ(model.tetrahedra.size(), scene.robot.mesh.tetrahedra.size());
-    ASSERT_EQ(model.supports.size(), 2u);
-    for (const Index v : model.supports[0].vertices) EXPECT_LT(v, scene.upper);
-    for (const Index v : model.supports[1].vertices) {
+    EXPECT_LE(model.elements.tetrahedra.size(), 300u);
+    EXPECT_EQ(model.elements.tetrahedra.size(), scene.robot.mesh.tetrahedra.size());
+    ASSERT_EQ(model.held.supports.size(), 2u);
+    for (const Index v : model.held.supports[0].vertices) EXPECT_LT(v, scene.upper);
+    for (const Index v : model.held.supports[1].vertices) {
       EXPECT_GE(v, scene.upper);
-      EXPECT_DOUBLE_EQ(model.held(v, 2), model.rest(v, 2) - press);
+      EXPECT_DOUBLE_EQ(model.held.at(v, 2), model.rest(v, 2) - press);
       EXPECT_EQ(model.rest(v, 2), model.rest.col(2).maxCoeff());
     }
-    for (const Tetrahedron& t : model.tetrahedra) EXPECT_EQ(t[0] < scene.upper, t[3] < scene.upper);
-    scene.robot.quadratic = true;
+    for (const Tetrahedron& t : model.elements.tetrahedra) EXPECT_EQ(t[0] < scene.upper, t[3] < scene.upper);
+    scene.robot.mesh_options.quadratic = true;
     // wedges and spikes of few elements may be round ones
     for (const std::string& warning : compile(scene.robot).warnings)
       EXPECT_EQ(warning.rfind("The edges are straight", 0), 0u) << warning;

@@ -38,8 +38,8 @@ TEST(RandomDrops, CompileAndAreApartAtRest) {
     EXPECT_FALSE(cross_when_moved(drop, Vec3::Zero()));
     EXPECT_TRUE(covered_faces(mesh.vertices, mesh.tetrahedra).empty());
     const Model model = compile(drop.robot);
-    EXPECT_EQ(model.edge_nodes.empty(), !drop.robot.quadratic);
-    quadratic += drop.robot.quadratic ? 1 : 0;
+    EXPECT_EQ(model.elements.edge_nodes.empty(), !drop.robot.mesh_options.quadratic);
+    quadratic += drop.robot.mesh_options.quadratic ? 1 : 0;
   }
   EXPECT_GE(sizes.size(), 6u);
   EXPECT_GT(quadratic, drops / 6);
@@ -75,10 +75,10 @@ TEST(RandomDrops, LeaveRoomForTheBodies) {
     const Model model = compile(drop.robot);
     const auto heights = [&](const Support& support) {
       std::vector<double> found;
-      for (const Index v : support.vertices) found.push_back(model.held(v, 2));
+      for (const Index v : support.vertices) found.push_back(model.held.at(v, 2));
       return found;
     };
-    const std::vector<double> bottom = heights(model.supports[0]), top = heights(model.supports[1]);
+    const std::vector<double> bottom = heights(model.held.supports[0]), top = heights(model.held.supports[1]);
     const double room = *std::min_element(top.begin(), top.end()) - *std::max_element(bottom.begin(), bottom.end());
     least = std::min(least, room / drop.size_mm);
     held += bottom.size() + top.size();

@@ -73,7 +73,7 @@ struct ServedRobot {
         statics(model),
         document(model, "softkin view"),
         served(model, [this](const LiveRequest& request) { robot->ask(request); }),
-        robot(std::make_unique<LiveRobot>(model, statics, document, options,
+        robot(std::make_unique<LiveRobot>(statics, document, options,
                                           statics.solve(model.rest_actuation(), statics.rest(), options),
                                           [this](auto answer) { served.server.show(std::move(answer)); })) {}
   ~ServedRobot() {

@@ -14,7 +14,7 @@ using runs::testing::one_thread;
 class Kept {
  public:
   explicit Kept(const Model& of, const StaticsOptions& options = one_thread())
-      : model(of), statics(model), document(model, ""), robot_(model, statics, document, options, rest(), taker()) {}
+      : model(of), statics(model), document(model, ""), robot_(statics, document, options, rest(), taker()) {}
 
   void ask(LiveRequest request) { robot_.ask(std::move(request)); }
   void command(RequestId id, const Eigen::VectorXd& commands) { ask({5, CommandRequest{id, commands}}); }
@@ -174,8 +174,8 @@ TEST(LiveRobot, EndsAmidASolve) {
   const Model model = bending_model();
   const Statics statics(model);
   const runs::PageDocument document(model, "");
-  LiveRobot robot(model, statics, document, one_thread(),
-                  statics.solve(model.rest_actuation(), statics.rest(), one_thread()), [](const auto&) {});
+  LiveRobot robot(statics, document, one_thread(), statics.solve(model.rest_actuation(), statics.rest(), one_thread()),
+                  [](const auto&) {});
   robot.ask({1, TargetRequest{1, 0, {100, 100, 100}}});
   std::this_thread::sleep_for(std::chrono::milliseconds(5));
   EXPECT_TRUE(robot.stop(testing::patient(5)));

@@ -181,7 +181,7 @@ struct ToldRobot {
             model, [this](const LiveRequest& request) { robot->ask(request); }, estimator.columns().size()),
         stream(0) {
     robot = std::make_unique<LiveRobot>(
-        model, statics, document, one_thread(), statics.solve(model.rest_actuation(), statics.rest(), one_thread()),
+        statics, document, one_thread(), statics.solve(model.rest_actuation(), statics.rest(), one_thread()),
         [this](auto answer) {
           stream.answer(answer);
           served.server.show(std::move(answer));

@@ -164,7 +164,7 @@ RobotSpec NumberedRobot::spec(const Eigen::VectorXd& values) const {
       root = scene::changed(root, numbers_[i].option, numbers_[i].name + "=" + exact(values[i]), "");
   RobotSpec spec = parse_scene(*root, file_, files_->kept(true));
   change(spec, asked_);
-  spec.gravity = turned(six_of(values, "base").degrees).transpose() * spec.gravity;
+  spec.loads.gravity = turned(six_of(values, "base").degrees).transpose() * spec.loads.gravity;
   return spec;
 }
 

@@ -255,7 +255,7 @@ std::vector<ReadingGroup> reading_groups(const Model& model, const std::vector<P
   for (Index c = 0; c < static_cast<Index>(columns.size()); ++c) {
     const PoseColumn& column = columns[c];
     std::string name = column.marker >= 0                  ? "marker " + model.markers[column.marker].name
-                       : column.support >= 0               ? "force of " + model.supports[column.support].name
+                       : column.support >= 0               ? "force of " + model.held.supports[column.support].name
                        : column.kind == Reading::direction ? "direction " + model.sensors[column.sensor]->name
                                                            : column.name;
     const auto same = std::find_if(groups.begin(), groups.end(), [&](const ReadingGroup& g) { return g.name == name; });

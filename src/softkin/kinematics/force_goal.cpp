@@ -36,7 +36,7 @@ Vec3 on_support(const Model& model, Index support, const Points& reactions) {
   Vec3 sum = Vec3::Zero();
   for (Index v = 0; v < reactions.rows(); ++v)
     for (int axis = 0; axis < 3; ++axis)
-      if (model.support_of[v][axis] == support) sum[axis] -= reactions(v, axis);
+      if (model.held.support_of[v][axis] == support) sum[axis] -= reactions(v, axis);
   return sum;
 }
 
@@ -48,7 +48,7 @@ bool any_force(const std::vector<Goal>& goals) {
 
 std::vector<std::string> names_of_pressed(const Model& model) {
   std::vector<std::string> names;
-  for (const Support& support : model.supports) names.push_back(support.name);
+  for (const Support& support : model.held.supports) names.push_back(support.name);
   for (const ContactPart& part : model.contact.parts)
     if (part.rank != ContactRank::robot) names.push_back(part.name);
   return names;
@@ -56,8 +56,8 @@ std::vector<std::string> names_of_pressed(const Model& model) {
 
 ForceGoal force_on(const Model& model, const std::string& name) {
   std::vector<ForceGoal> found;
-  for (std::size_t s = 0; s < model.supports.size(); ++s)
-    if (model.supports[s].name == name) found.push_back({ForceGoal::On::support, static_cast<Index>(s)});
+  for (std::size_t s = 0; s < model.held.supports.size(); ++s)
+    if (model.held.supports[s].name == name) found.push_back({ForceGoal::On::support, static_cast<Index>(s)});
   for (std::size_t p = 0; p < model.contact.parts.size(); ++p)
     if (model.contact.parts[p].rank != ContactRank::robot && model.contact.parts[p].name == name)
       found.push_back({ForceGoal::On::part, static_cast<Index>(p)});
@@ -102,8 +102,8 @@ bool inverse::any_on_support(const std::vector<Goal>& goals) {
   });
 }
 
-std::vector<Exertion> inverse::exertions_of(const Model& model, const Statics& statics, const std::vector<Goal>& goals,
-                                            const State& at) {
+std::vector<Exertion> inverse::exertions_of(const Statics& statics, const std::vector<Goal>& goals, const State& at) {
+  const Model& model = statics.model();
   std::vector<Exertion> found;
   if (!any_force(goals)) return found;
   const ElementDeformation deformation = statics.measured(at);
@@ -122,10 +122,10 @@ std::vector<Exertion> inverse::exertions_of(const Model& model, const Statics& s
   return found;
 }
 
-std::vector<ExertionSlopes> inverse::exertion_slopes(const Model& model, const Statics& statics,
-                                                     const std::vector<Goal>& goals, const Pose& at,
-                                                     const StaticsOptions& options, double accuracy,
+std::vector<ExertionSlopes> inverse::exertion_slopes(const Statics& statics, const std::vector<Goal>& goals,
+                                                     const Pose& at, const StaticsOptions& options, double accuracy,
                                                      Sensitivity& sensitivity) {
+  const Model& model = statics.model();
   std::vector<ExertionSlopes> slopes;
   if (at.exertions.empty()) return slopes;
   const State& state = at.equilibrium.state;

@@ -144,7 +144,7 @@ class Check {
     if (model_.formulation != Formulation::physical)
       refuse("a force is found in the physical formulation alone: target shapes have no forces");
     const std::vector<ContactPart>& parts = model_.contact.parts;
-    const std::size_t count = goal.on == ForceGoal::On::support ? model_.supports.size() : parts.size();
+    const std::size_t count = goal.on == ForceGoal::On::support ? model_.held.supports.size() : parts.size();
     const auto place = static_cast<std::size_t>(goal.index);
     const bool there = goal.index >= 0 && place < count;
     if (!there || (goal.on == ForceGoal::On::part && parts[place].rank == ContactRank::robot))

@@ -36,7 +36,7 @@ struct ForceGoal {
   /// What bears the force: an entry of the description's `fixed`; an obstacle or a body.
   enum class On { support, part };
   On on = On::support;                         // which of these index numbers
-  Index index = 0;                             // of model.supports; of model.contact.parts, an obstacle or a body
+  Index index = 0;                             // of model.held.supports; of model.contact.parts, an obstacle or a body
   Vec3 force = Vec3::Zero();                   // [N]
   std::array<bool, 3> axes{true, true, true};  // components that count
   double mm_per_N = 1;                         // > 0; what a wrong force counts [mm/N]

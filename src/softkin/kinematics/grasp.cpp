@@ -70,8 +70,9 @@ Pressed pressed(const Model& model, Index body, const ElementDeformation& shape)
   return sum;
 }
 
-Grasp close_around(const Model& model, const Statics& statics, const std::vector<Actuation>& closing, Index body,
+Grasp close_around(const Statics& statics, const std::vector<Actuation>& closing, Index body,
                    const StaticsOptions& options, const GraspProgress& progress, const GraspStage& stage) {
+  const Model& model = statics.model();
   const std::string name = "'" + body_at(model, body).name + "'";
   if (closing.empty()) throw InvalidInput("a grasp needs an actuation that the gripper closes with");
   Grasp grasp;
@@ -124,9 +125,9 @@ namespace {
 /// From equilibrium to equilibrium below the largest pull.
 class Pulling {
  public:
-  Pulling(const Model& model, const Statics& statics, const State& grasp, Index body, const StaticsOptions& options,
+  Pulling(const Statics& statics, const State& grasp, Index body, const StaticsOptions& options,
           const GraspProgress& progress, Pull& pull)
-      : model_(model),
+      : model_(statics.model()),
         statics_(statics),
         grasp_(grasp),
         body_(body),
@@ -230,8 +231,9 @@ class Pulling {
 
 }  // namespace
 
-Pull largest_pull(const Model& model, const Statics& statics, const State& grasp, const PullTask& task,
-                  const StaticsOptions& options, const GraspProgress& progress) {
+Pull largest_pull(const Statics& statics, const State& grasp, const PullTask& task, const StaticsOptions& options,
+                  const GraspProgress& progress) {
+  const Model& model = statics.model();
   const auto& [body, direction, most_N] = task;
   const FreeBody& held = body_at(model, body);
   if (!(direction.along.norm() > 0) || !direction.along.allFinite())
@@ -244,7 +246,7 @@ Pull largest_pull(const Model& model, const Statics& statics, const State& grasp
   pull.last.actuation = grasp.actuation;
   const double presses = std::max(gravity * held.mass_kg, pressed(model, body, statics.measured(grasp)).normal_N);
   const double first = presses > 0 ? begin_share * presses : least_share * most_pull(model, body);
-  Pulling(model, statics, grasp, body, options, progress, pull).to_limit(first, most);
+  Pulling(statics, grasp, body, options, progress, pull).to_limit(first, most);
   pull.moved_mm = (held.center.at(pull.last.state.positions) - held.center.at(grasp.positions)).norm();
   pull.pressed = pressed(model, body, statics.measured(pull.last.state));
   return pull;

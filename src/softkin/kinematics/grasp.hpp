@@ -39,8 +39,8 @@ struct Grasp {
 /// body     index into model.bodies
 /// returns  that a step has no equilibrium, or the body falls, is not held
 /// throws   InvalidInput as pulled() and Statics::solve do, and without a step
-[[nodiscard]] Grasp close_around(const Model& model, const Statics& statics, const std::vector<Actuation>& closing,
-                                 Index body, const StaticsOptions& options = {}, const GraspProgress& progress = {},
+[[nodiscard]] Grasp close_around(const Statics& statics, const std::vector<Actuation>& closing, Index body,
+                                 const StaticsOptions& options = {}, const GraspProgress& progress = {},
                                  const GraspStage& stage = {});
 
 /// A direction to pull in, and what it is called.
@@ -88,7 +88,7 @@ struct Pull {
 /// grasp   an equilibrium that solve() returned, the body free
 /// throws  InvalidInput as above, on a direction without length, a largest force that is not > 0, and as Statics::solve
 ///         does
-[[nodiscard]] Pull largest_pull(const Model& model, const Statics& statics, const State& grasp, const PullTask& task,
+[[nodiscard]] Pull largest_pull(const Statics& statics, const State& grasp, const PullTask& task,
                                 const StaticsOptions& options = {}, const GraspProgress& progress = {});
 
 /// Of the commands along the axes, the largest that a body may be pulled with [N].

@@ -68,13 +68,13 @@ Eigen::VectorXd evenly(int place, Index size) {
 
 class Inverse {
  public:
-  Inverse(const Model& model, const Statics& statics, const std::vector<Goal>& goals, const InverseOptions& options,
+  Inverse(const Statics& statics, const std::vector<Goal>& goals, const InverseOptions& options,
           const ProgressCallback& progress)
-      : model_(model),
+      : model_(statics.model()),
         statics_(statics),
         goals_(goals),
         options_(options),
-        response_(model, statics, goals, options, free_actuators(model, options), progress) {}
+        response_(statics, goals, options, free_actuators(model_, options), progress) {}
 
   /// known: may the start's report stand for it?
   InverseResult solve(const Equilibrium& start, bool known) {
@@ -101,7 +101,7 @@ class Inverse {
     const bool same_time =
         !statics_.viscous() || (start.history == statics.history && start.elapsed_s == statics.elapsed_s);
     const bool known = start.knows(m) && start.multipliers.size() == m && start.share == 1 && same_time &&
-                       (!options_.statics.stable || (is_told(first) && first.report.unstable_modes == 0));
+                       (!options_.statics.stable || (is_told(first) && first.report.physical.unstable_modes == 0));
     first.actuation = start.actuation.size() > 0 ? start.actuation : model_.rest_actuation();
     first.report.status = Status::converged;
     if (known || response_.solve(first.actuation, start, first)) return true;
@@ -326,30 +326,31 @@ const char* name_of(InverseStatus status) {
   return "not converged";
 }
 
-InverseResult solve_inverse(const Model& model, const Statics& statics, const std::vector<Goal>& goals,
-                            const State& start, const InverseOptions& options, const ProgressCallback& progress) {
-  return solve_inverse(model, statics, goals, Equilibrium{start, {}, {}}, options, progress);
+InverseResult solve_inverse(const Statics& statics, const std::vector<Goal>& goals, const State& start,
+                            const InverseOptions& options, const ProgressCallback& progress) {
+  return solve_inverse(statics, goals, Equilibrium{start, {}, {}}, options, progress);
 }
 
-InverseResult solve_inverse(const Model& model, const Statics& statics, const std::vector<Goal>& goals,
-                            const Equilibrium& start, const InverseOptions& options, const ProgressCallback& progress) {
+InverseResult solve_inverse(const Statics& statics, const std::vector<Goal>& goals, const Equilibrium& start,
+                            const InverseOptions& options, const ProgressCallback& progress) {
   const auto begin = std::chrono::steady_clock::now();
+  const Model& model = statics.model();
   check_goals(model, goals);
   check_options(model, start.state, options);
   const bool known = start.report.status == Status::converged;
-  InverseResult result = Inverse(model, statics, goals, options, progress).solve(start, known);
+  InverseResult result = Inverse(statics, goals, options, progress).solve(start, known);
   tell_stop(result, options.statics.deadline);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;
 }
 
-InverseResult solve_inverse_from(const Model& model, const Statics& statics, const std::vector<Goal>& goals,
-                                 const Actuation& start, const InverseOptions& options,
-                                 const ProgressCallback& progress) {
+InverseResult solve_inverse_from(const Statics& statics, const std::vector<Goal>& goals, const Actuation& start,
+                                 const InverseOptions& options, const ProgressCallback& progress) {
   const auto begin = std::chrono::steady_clock::now();
   const auto seconds = [begin] {
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   };
+  const Model& model = statics.model();
   check_goals(model, goals);
   const Progress nothing_yet{0, std::numeric_limits<double>::infinity(), options.tolerance_mm, -1};
   Equilibrium first = statics.solve(start, statics.rest(), options.statics,
@@ -369,11 +370,11 @@ InverseResult solve_inverse_from(const Model& model, const Statics& statics, con
     return result;
   }
   const double error =
-      inverse::errors_of(model, goals, first.state.positions, inverse::exertions_of(model, statics, goals, first.state))
+      inverse::errors_of(model, goals, first.state.positions, inverse::exertions_of(statics, goals, first.state))
           .maxCoeff();
   InverseOptions begun = options;  // at the start's time
   begun.statics.history = first.state.history;
-  result = solve_inverse(model, statics, goals, first, begun, progress);
+  result = solve_inverse(statics, goals, first, begun, progress);
   result.history.insert(result.history.begin(), {first.actuation, first.report.status, error, first.report.iterations});
   ++result.equilibria;
   result.seconds = seconds();

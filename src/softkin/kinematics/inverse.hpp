@@ -71,22 +71,20 @@ struct InverseResult {
 ///           The problem is Eq. (13) of Fang et al. 2020; gradient: their Alg. 2, as corrected in docs/paper.md
 /// throws    InvalidInput as check_goals and Statics::solve do; on options out of range, sizes that do not fit, a
 ///           preferred actuation or a start outside the ranges
-[[nodiscard]] InverseResult solve_inverse(const Model& model, const Statics& statics, const std::vector<Goal>& goals,
-                                          const State& start, const InverseOptions& options = {},
-                                          const ProgressCallback& progress = {});
+[[nodiscard]] InverseResult solve_inverse(const Statics& statics, const std::vector<Goal>& goals, const State& start,
+                                          const InverseOptions& options = {}, const ProgressCallback& progress = {});
 
 /// The same from what solve() returned, which need not be solved for again: where it stays the best one its report is
 /// that of the result.
-[[nodiscard]] InverseResult solve_inverse(const Model& model, const Statics& statics, const std::vector<Goal>& goals,
+[[nodiscard]] InverseResult solve_inverse(const Statics& statics, const std::vector<Goal>& goals,
                                           const Equilibrium& start, const InverseOptions& options = {},
                                           const ProgressCallback& progress = {});
 
 /// The same from an actuation, whose equilibrium is found first, from rest; it is the first of the history. Where it
 /// has none, errors_mm is empty and the remark tells why; where it was stopped on the way there they are of the last
 /// good shape.
-[[nodiscard]] InverseResult solve_inverse_from(const Model& model, const Statics& statics,
-                                               const std::vector<Goal>& goals, const Actuation& start,
-                                               const InverseOptions& options = {},
+[[nodiscard]] InverseResult solve_inverse_from(const Statics& statics, const std::vector<Goal>& goals,
+                                               const Actuation& start, const InverseOptions& options = {},
                                                const ProgressCallback& progress = {});
 
 }  // namespace softkin

@@ -66,17 +66,16 @@ class Response {
 /// Of every goal of an equilibrium that solve() returned; empty where no force is among them.
 ///
 /// throws  InvalidInput where the statics know no forces: they are answered by a map
-[[nodiscard]] std::vector<Exertion> exertions_of(const Model& model, const Statics& statics,
-                                                 const std::vector<Goal>& goals, const State& at);
+[[nodiscard]] std::vector<Exertion> exertions_of(const Statics& statics, const std::vector<Goal>& goals,
+                                                 const State& at);
 
 /// The derivatives of a pose's, of the same length, and the sensitivity with which they go: the one that is given, but
 /// where the supports' reactions have to be asked for with it.
 ///
 /// equation  of what is touched: dF = -sum over its vertices of K_contact dx, with what friction's normal forces change
-[[nodiscard]] std::vector<ExertionSlopes> exertion_slopes(const Model& model, const Statics& statics,
-                                                          const std::vector<Goal>& goals, const Pose& at,
-                                                          const StaticsOptions& options, double accuracy,
-                                                          Sensitivity& sensitivity);
+[[nodiscard]] std::vector<ExertionSlopes> exertion_slopes(const Statics& statics, const std::vector<Goal>& goals,
+                                                          const Pose& at, const StaticsOptions& options,
+                                                          double accuracy, Sensitivity& sensitivity);
 
 /// Are derivatives of reactions needed?
 [[nodiscard]] bool any_on_support(const std::vector<Goal>& goals);

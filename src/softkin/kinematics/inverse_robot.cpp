@@ -18,9 +18,9 @@ constexpr double slope_accuracy = 1e-6;
 
 }  // namespace
 
-RobotResponse::RobotResponse(const Model& model, const Statics& statics, const std::vector<Goal>& goals,
-                             const InverseOptions& options, std::vector<Index> free, const ProgressCallback& progress)
-    : model_(model),
+RobotResponse::RobotResponse(const Statics& statics, const std::vector<Goal>& goals, const InverseOptions& options,
+                             std::vector<Index> free, const ProgressCallback& progress)
+    : model_(statics.model()),
       statics_(statics),
       goals_(goals),
       options_(options),
@@ -65,7 +65,7 @@ Actuation RobotResponse::actuation_of(const Eigen::VectorXd& shares, const Actua
 
 const std::vector<Exertion>& RobotResponse::exertions_at(const State& state) const {
   if (any_force_ && (last_.positions.rows() == 0 || last_.positions != state.positions))
-    last_ = {state.positions, exertions_of(model_, statics_, goals_, state)};
+    last_ = {state.positions, exertions_of(statics_, goals_, state)};
   return last_.exertions;
 }
 
@@ -169,7 +169,7 @@ bool RobotResponse::slopes(const Pose& at, Slopes& slopes) {
   else if (!any_on_support(goals_))  // else it is asked for with the reactions
     slopes.sensitivity = statics_.sensitivity(state, options_.statics, slope_accuracy);
   const std::vector<ExertionSlopes> exertions =
-      exertion_slopes(model_, statics_, goals_, at, options_.statics, slope_accuracy, slopes.sensitivity);
+      exertion_slopes(statics_, goals_, at, options_.statics, slope_accuracy, slopes.sensitivity);
   if (!slopes.sensitivity.regular) return false;
   const Eigen::MatrixXd all = goal_slopes(model_, goals_, state.positions, slopes.sensitivity, at.exertions, exertions);
   const auto free = static_cast<Index>(free_.size());

@@ -12,8 +12,8 @@ namespace softkin::inverse {
 class RobotResponse : public Response {
  public:
   /// All but the callback must outlive the object. free: actuators whose shares are searched.
-  RobotResponse(const Model& model, const Statics& statics, const std::vector<Goal>& goals,
-                const InverseOptions& options, std::vector<Index> free, const ProgressCallback& progress);
+  RobotResponse(const Statics& statics, const std::vector<Goal>& goals, const InverseOptions& options,
+                std::vector<Index> free, const ProgressCallback& progress);
 
   /// The pose of an equilibrium. taut: slack cables are shortened to their paths.
   [[nodiscard]] Pose pose_of(Equilibrium equilibrium, bool taut) const;

@@ -17,9 +17,8 @@ Eigen::MatrixXd jacobian(const Model& model, const Points& positions, const Sens
   return result;
 }
 
-Eigen::MatrixXd jacobian(const Model& model, const Statics& statics, const Equilibrium& equilibrium,
-                         const std::vector<Index>& markers) {
-  return jacobian(model, equilibrium.state.positions, statics.sensitivity(equilibrium.state), markers);
+Eigen::MatrixXd jacobian(const Statics& statics, const Equilibrium& equilibrium, const std::vector<Index>& markers) {
+  return jacobian(statics.model(), equilibrium.state.positions, statics.sensitivity(equilibrium.state), markers);
 }
 
 Vec3 marker_slope(const Model& model, const Perturbed& number, std::size_t marker, const Points& positions,

@@ -17,7 +17,7 @@ namespace softkin {
 /// The same at an equilibrium that statics.solve() returned; zero where its sensitivity is not regular.
 ///
 /// throws  as the above and Statics::sensitivity do
-[[nodiscard]] Eigen::MatrixXd jacobian(const Model& model, const Statics& statics, const Equilibrium& equilibrium,
+[[nodiscard]] Eigen::MatrixXd jacobian(const Statics& statics, const Equilibrium& equilibrium,
                                        const std::vector<Index>& markers);
 
 /// How a marker moves with a number of the robot, with the vertices and in them [mm per unit of the number].

@@ -33,7 +33,7 @@ std::vector<Index> spread_vertices(const Model& model, Index count) {
   std::vector<Index> chosen;
   Eigen::VectorXd away = Eigen::VectorXd::Constant(model.robot_vertices(), std::numeric_limits<double>::infinity());
   for (Index v = 0; v < model.robot_vertices(); ++v)
-    if (!model.used[v]) away[v] = -1;
+    if (!model.elements.used[v]) away[v] = -1;
   while (static_cast<Index>(chosen.size()) < count) {
     Index farthest = 0;
     if (!(away.maxCoeff(&farthest) > 0)) break;
@@ -207,7 +207,7 @@ class Builder {
     const auto start = [this](const KinematicMap::Place& place, const Eigen::VectorXd& commands) {
       return start_of(place, commands);
     };
-    std::optional<std::string> remark = maps::check_map(model_, statics_, options_, round, start, crew_, data());
+    std::optional<std::string> remark = maps::check_map(statics_, options_, round, start, crew_, data());
     if (!remark) return false;
     result_.accurate = remark->empty();
     result_.remark = std::move(*remark);

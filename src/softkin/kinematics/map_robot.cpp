@@ -37,8 +37,9 @@ class OfMap : public GivenEquilibria {
     found.report.solver = "map";
     constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
     SolveReport& report = found.report;
-    for (double* of_iteration : {&report.tolerance_mm, &report.step_mm, &report.estimated_error_mm,
-                                 &report.gradient_norm, &report.energy, &report.residual_N, &report.pull_N})
+    for (double* of_iteration :
+         {&report.tolerance_mm, &report.step_mm, &report.estimated_error_mm, &report.gradient_norm, &report.energy,
+          &report.physical.residual_N, &report.physical.pull_N})
       *of_iteration = unknown;
     Eigen::VectorXd values(map_.outputs());
     const Eigen::VectorXd commands = map_.commands(actuation);
@@ -138,11 +139,11 @@ Model seen_by(const Model& model, const MapData& data) {
     way.points = {{{begin}, {1.0}}, {{begin + 1}, {1.0}}};
     way.gaps.clear();
   }
-  seen.held = seen.rest;
-  seen.dead_load = Points::Zero(seen.rest.rows(), 3);
-  seen.fixed.assign(static_cast<std::size_t>(seen.rest.rows()), {false, false, false});
-  seen.used.assign(static_cast<std::size_t>(seen.rest.rows()), true);
-  seen.support_of.assign(static_cast<std::size_t>(seen.rest.rows()), {-1, -1, -1});
+  seen.held.at = seen.rest;
+  seen.loads.dead = Points::Zero(seen.rest.rows(), 3);
+  seen.held.fixed.assign(static_cast<std::size_t>(seen.rest.rows()), {false, false, false});
+  seen.elements.used.assign(static_cast<std::size_t>(seen.rest.rows()), true);
+  seen.held.support_of.assign(static_cast<std::size_t>(seen.rest.rows()), {-1, -1, -1});
   return seen;
 }
 
@@ -233,10 +234,10 @@ InverseResult solve_inverse_by_map(const Model& model, const KinematicMap& map, 
   InverseOptions search = options;
   if (search.preferred.size() == 0) search.preferred = start;
   const MapRobot robot(model, map);
-  const InverseResult near = solve_inverse_from(robot.model(), robot.statics(), goals, start, search, progress);
-  if (near.errors_mm.size() == 0) return solve_inverse_from(model, statics, goals, start, search, progress);
+  const InverseResult near = solve_inverse_from(robot.statics(), goals, start, search, progress);
+  if (near.errors_mm.size() == 0) return solve_inverse_from(statics, goals, start, search, progress);
   search.other_starts = 0;  // the map has been tried from them
-  InverseResult found = solve_inverse_from(model, statics, goals, near.equilibrium.actuation, search, progress);
+  InverseResult found = solve_inverse_from(statics, goals, near.equilibrium.actuation, search, progress);
   found.seconds += near.seconds;
   return found;
 }

@@ -95,17 +95,21 @@ std::vector<Goal> goals_of(const MarkerPath& path, const Waypoint& waypoint) {
   return goals;
 }
 
-PathFollower::PathFollower(const Model& model, const Statics& statics, const MarkerPath& path,
-                           const TrajectoryOptions& options)
-    : model_(model), statics_(statics), path_(path), options_(options), clock_(statics), state_(statics.rest()) {
+PathFollower::PathFollower(const Statics& statics, const MarkerPath& path, const TrajectoryOptions& options)
+    : model_(statics.model()),
+      statics_(statics),
+      path_(path),
+      options_(options),
+      clock_(statics),
+      state_(statics.rest()) {
   check_path(path);
-  for (const Waypoint& waypoint : path.waypoints) check_goals(model, goals_of(path, waypoint));
-  if (options_.start.size() > 0) check_actuation(model, options_.start);
+  for (const Waypoint& waypoint : path.waypoints) check_goals(model_, goals_of(path, waypoint));
+  if (options_.start.size() > 0) check_actuation(model_, options_.start);
   if (!options_.nearest) return;
   if (auto* known = std::get_if<std::vector<WorkspaceSample>>(&*options_.nearest))
-    samples_.emplace(model, std::move(*known));
+    samples_.emplace(model_, std::move(*known));
   else
-    (void)plan_workspace(model, {.samples = std::get<Index>(*options_.nearest)});  // throws where there is none
+    (void)plan_workspace(model_, {.samples = std::get<Index>(*options_.nearest)});  // throws where there is none
 }
 
 Eigen::VectorXd PathFollower::shares_of(const Actuation& actuation) const {
@@ -190,7 +194,7 @@ InverseResult PathFollower::advance(const ProgressCallback& progress) {
   if (next_ > 0) inverse.other_starts = 0;
   const bool same_time = !clock_.counts(waypoint.time);
   inverse.start_sensitivity = sensitivity_.regular && !moved && same_time ? &sensitivity_ : nullptr;
-  InverseResult found = solve_inverse(model_, statics_, goals, from, inverse, progress);
+  InverseResult found = solve_inverse(statics_, goals, from, inverse, progress);
   found.equilibria += spent.equilibria;
   found.seconds += spent.seconds;
   if (found.stopped) return found;
@@ -231,9 +235,9 @@ void PathFollower::learn(const std::vector<Goal>& goals, const InverseResult& fo
   if (slopes_before_.size() > 0 && !(move_.norm() > least_move)) slopes_before_.resize(0, 0);
 }
 
-std::vector<InverseResult> follow_path(const Model& model, const Statics& statics, const MarkerPath& path,
-                                       const TrajectoryOptions& options, const ProgressCallback& progress) {
-  PathFollower follower(model, statics, path, options);
+std::vector<InverseResult> follow_path(const Statics& statics, const MarkerPath& path, const TrajectoryOptions& options,
+                                       const ProgressCallback& progress) {
+  PathFollower follower(statics, path, options);
   std::vector<InverseResult> waypoints;
   while (!follower.done()) {
     InverseResult found = follower.advance(progress);

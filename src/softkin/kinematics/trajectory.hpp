@@ -38,10 +38,10 @@ struct TrajectoryOptions {
 /// Follows a path: inverse kinematics waypoint by waypoint, each from the solution before.
 class PathFollower {
  public:
-  /// model, statics and path must outlive it. throws InvalidInput on a path without markers or waypoints, a waypoint
+  /// statics and path must outlive it. throws InvalidInput on a path without markers or waypoints, a waypoint
   /// with other numbers of targets than markers, and as solve_inverse does; nearest: as NearestSamples and
   /// sample_actuations do
-  PathFollower(const Model& model, const Statics& statics, const MarkerPath& path, const TrajectoryOptions& options);
+  PathFollower(const Statics& statics, const MarkerPath& path, const TrajectoryOptions& options);
 
   [[nodiscard]] std::size_t next() const { return next_; }  // waypoint
   /// Were all waypoints solved?
@@ -92,7 +92,7 @@ class PathFollower {
 };
 
 /// The whole path; what was done where progress stopped it. Throws as PathFollower does.
-[[nodiscard]] std::vector<InverseResult> follow_path(const Model& model, const Statics& statics, const MarkerPath& path,
+[[nodiscard]] std::vector<InverseResult> follow_path(const Statics& statics, const MarkerPath& path,
                                                      const TrajectoryOptions& options = {},
                                                      const ProgressCallback& progress = {});
 

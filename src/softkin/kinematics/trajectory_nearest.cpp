@@ -65,7 +65,7 @@ bool PathFollower::sample(InverseResult& spent, const ProgressCallback& progress
   const StaticsOptions& statics = options_.inverse.statics;
   const int threads =
       statics.threads > 0 ? statics.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  solve_groups(model_, statics_, plan, statics, threads, desk, told);
+  solve_groups(statics_, plan, statics, threads, desk, told);
   spent.equilibria += desk.count();
   spent.seconds += seconds_from(start);
   if (stopped) return false;

@@ -54,11 +54,11 @@ void check_holds(const Model& model, const Vec3& direction) {
   const double rear = direction.dot(point_of(model, model.feet[0]).at(model.rest));
   const double front = direction.dot(point_of(model, model.feet[1]).at(model.rest));
   bool at_rear = false, at_front = false;
-  for (std::size_t v = 0; v < model.fixed.size(); ++v) {
-    if (!model.used[v]) continue;
+  for (std::size_t v = 0; v < model.held.fixed.size(); ++v) {
+    if (!model.elements.used[v]) continue;
     bool held = false;
     for (Index axis = 0; axis < 3; ++axis)
-      held = held || (model.fixed[v][axis] && std::abs(direction[axis]) > straight);
+      held = held || (model.held.fixed[v][axis] && std::abs(direction[axis]) > straight);
     if (!held) continue;
     const bool near_front = direction.dot(model.rest.row(static_cast<Index>(v))) > (rear + front) / 2;
     (near_front ? at_front : at_rear) = true;
@@ -80,13 +80,13 @@ void check_fields(const Model& model) {
 }
 
 void check_loads(const Model& model, const Vec3& direction) {
-  if (!model.tractions.empty() || !model.moments.empty())
+  if (!model.loads.tractions.empty() || !model.loads.moments.empty())
     throw InvalidInput({.file = model.name},
                        "a pressure, traction or moment may push along the direction "
                        "of travel as the robot bends: a walk has none");
-  if (model.dead_load.size() == 0) return;
-  const double along = (model.dead_load * direction).sum();
-  if (std::abs(along) > 1e-9 * model.dead_load.rowwise().norm().sum())
+  if (model.loads.dead.size() == 0) return;
+  const double along = (model.loads.dead * direction).sum();
+  if (std::abs(along) > 1e-9 * model.loads.dead.rowwise().norm().sum())
     throw InvalidInput({.file = model.name}, "weight and forces act along the direction of travel with " +
                                                  std::to_string(along) + " N: a walk is on a level floor");
 }

@@ -31,9 +31,9 @@ void begin_with_the_middle(const Model& model, const Actuations& actuations, std
 
 class Group {
  public:
-  Group(const Model& model, const Statics& statics, const WorkspacePlan& plan, const StaticsOptions& options,
+  Group(const Statics& statics, const WorkspacePlan& plan, const StaticsOptions& options,
         const ProgressCallback& progress)
-      : model_(model), statics_(statics), plan_(plan), options_(one_of_many(options)), progress_(progress) {}
+      : model_(statics.model()), statics_(statics), plan_(plan), options_(one_of_many(options)), progress_(progress) {}
 
   /// Nothing where progress stopped it.
   std::optional<WorkspaceSample> solve(Index number) {
@@ -116,13 +116,13 @@ WorkspacePlan plan_workspace(const Model& model, const SamplingOptions& options)
   return plan;
 }
 
-bool solve_group(const Model& model, const Statics& statics, const WorkspacePlan& plan, const StaticsOptions& options,
+bool solve_group(const Statics& statics, const WorkspacePlan& plan, const StaticsOptions& options,
                  const GroupTask& task, const std::function<void(const WorkspaceSample&)>& give,
                  const ProgressCallback& progress) {
   const std::vector<Index>& samples = plan.groups.at(task.group);
   const auto is_missing = [](const std::optional<Status>& known) { return !known; };
   auto missing = std::count_if(task.known.begin(), task.known.end(), is_missing);
-  Group group(model, statics, plan, options, progress);
+  Group group(statics, plan, options, progress);
   bool has_middle = false;
   for (std::size_t i = 0; i < samples.size() && missing > 0; ++i) {
     const std::optional<Status>& known = task.known.at(i);
@@ -137,15 +137,15 @@ bool solve_group(const Model& model, const Statics& statics, const WorkspacePlan
   return true;
 }
 
-void solve_groups(const Model& model, const Statics& statics, const WorkspacePlan& plan, const StaticsOptions& options,
-                  int threads, GroupDesk& desk, const ProgressCallback& progress) {
+void solve_groups(const Statics& statics, const WorkspacePlan& plan, const StaticsOptions& options, int threads,
+                  GroupDesk& desk, const ProgressCallback& progress) {
   std::atomic<bool> stopped = false;
   const ProgressCallback go_on = [&](const Progress& p) { return !stopped && (!progress || progress(p)); };
   work_together(threads, stopped, [&] {
     const std::optional<GroupTask> task = desk.take();
     if (!task) return false;
     const auto keep = [&](const WorkspaceSample& sample) { desk.keep(sample); };
-    if (!solve_group(model, statics, plan, options, *task, keep, go_on)) stopped = true;
+    if (!solve_group(statics, plan, options, *task, keep, go_on)) stopped = true;
     return true;
   });
 }

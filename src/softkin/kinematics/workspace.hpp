@@ -37,7 +37,7 @@ struct GroupTask {
 ///
 /// options  threads and reuse_factor are set here
 /// returns  false where progress stopped it
-bool solve_group(const Model& model, const Statics& statics, const WorkspacePlan& plan, const StaticsOptions& options,
+bool solve_group(const Statics& statics, const WorkspacePlan& plan, const StaticsOptions& options,
                  const GroupTask& task, const std::function<void(const WorkspaceSample&)>& give,
                  const ProgressCallback& progress = {});
 
@@ -52,7 +52,7 @@ class GroupDesk {
 
 /// Solves groups of the desk on so many threads until none is left or progress, which is called on any of them,
 /// returns false. Rethrows the first exception of a thread.
-void solve_groups(const Model& model, const Statics& statics, const WorkspacePlan& plan, const StaticsOptions& options,
-                  int threads, GroupDesk& desk, const ProgressCallback& progress = {});
+void solve_groups(const Statics& statics, const WorkspacePlan& plan, const StaticsOptions& options, int threads,
+                  GroupDesk& desk, const ProgressCallback& progress = {});
 
 }  // namespace softkin

@@ -88,18 +88,18 @@ struct HoldCommand {
 
 /// The angle by which a support turns what it holds.
 struct TurnCommand {
-  Index turn = -1;  // index into Model::turns
+  Index turn = -1;  // index into Held::turns
 };
 
 /// A moment on a rigid region, about an axis.
 struct MomentCommand {
-  Index moment = -1;  // index into Model::moments
+  Index moment = -1;  // index into Loads::moments
   int axis = 0;       // about which it turns
 };
 
 /// The pressure of a traction.
 struct PressureCommand {
-  Index traction = -1;  // index into Model::tractions
+  Index traction = -1;  // index into Loads::tractions
 };
 
 /// What an actuator is. The last six are no drives of the robot but what is done to it

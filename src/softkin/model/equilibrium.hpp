@@ -85,6 +85,20 @@ struct LoadBranch {
   std::vector<Point> points{};  // of the actuator, in their order along it
 };
 
+/// What the physical formulation tells of how an equilibrium was found, beside SolveReport.
+struct PhysicalReport {
+  double residual_N = 0;       // the largest force out of balance at a vertex or on a rigid region [N]
+  double pull_N = 0;           // the largest sum of what elements pull at a vertex [N], which it is compared with
+  int unstable_modes = 0;      // ways in which the equilibrium is unstable
+  int buckled = 0;             // how often an unstable equilibrium was left for a stable one
+  double buckled_mm = 0;       // the largest move of a vertex thereby [mm]
+  double snapped_mm = 0;       // the longest move that a step made beside what its tangent predicts [mm]; 0: none
+  double snapped_from = 0;     // share of the way at which that step began [-]
+  double friction_change = 0;  // of a vertex' friction when normal forces were found anew, over the largest [-]
+  double unstable_from = 0;    // the first share of the way at which an equilibrium passed was unstable [-]
+  LoadBranch branch;           // where a maximum was looked for
+};
+
 /// How a solve ended, and what it took.
 struct SolveReport {
   Status status = Status::not_converged;  // of the result
@@ -101,20 +115,11 @@ struct SolveReport {
   double energy = 0;                      // at the last shape evaluated
   double step_mm = 0;                     // last step [mm]
   double tolerance_mm = 0;                // step at which the iteration stops [mm]; NaN: a map answered, see answered()
-  double gradient_norm = 0;  // at the last shape evaluated: norm of what is not in balance, as in IterationRecord
-  double residual_N = 0;     // physical: the largest force out of balance at a vertex or on a rigid region [N]
-  double pull_N = 0;       // physical: the largest sum of what elements pull at a vertex [N], which it is compared with
-  int unstable_modes = 0;  // physical: ways in which the equilibrium is unstable
-  int buckled = 0;         // physical: how often an unstable equilibrium was left for a stable one
-  double buckled_mm = 0;   // the largest move of a vertex thereby [mm]
-  double snapped_mm = 0;   // physical: the longest move that a step made beside what its tangent predicts [mm]; 0: none
-  double snapped_from = 0;     // share of the way at which that step began [-]
-  double friction_change = 0;  // of a vertex' friction when normal forces were found anew, over the largest [-]
-  double unstable_from = 0;    // physical: the first share of the way at which an equilibrium passed was unstable [-]
-  double estimated_error_mm = 0;         // distance from the fixed point that the small step may hide [mm]
+  double gradient_norm = 0;       // at the last shape evaluated: norm of what is not in balance, as in IterationRecord
+  PhysicalReport physical;        // else as it is begun
+  double estimated_error_mm = 0;  // distance from the fixed point that the small step may hide [mm]
   std::vector<IterationRecord> history;  // of every iteration; empty without StaticsOptions::keep_history
   std::vector<TracedStep> trace;         // with StaticsOptions::trace
-  LoadBranch branch;                     // where a maximum was looked for
   double seconds = 0;                    // that the solve took [s]
 
   /// A map gave the equilibrium: there is nothing to tell of an iteration.

@@ -34,16 +34,18 @@ bool differ(const Vec3& a, const Vec3& b) {
 
 /// A robot that gives no gravity has that of the whole, where the whole gives one.
 Vec3 common_gravity(const std::vector<PlacedRobot>& robots, const CommonSpec& common) {
-  const auto turned = [](const PlacedRobot& placed) { return Vec3(placed.place.rotation * placed.robot.gravity); };
+  const auto turned = [](const PlacedRobot& placed) {
+    return Vec3(placed.place.rotation * placed.robot.loads.gravity);
+  };
   const Vec3 gravity = common.gravity ? *common.gravity : turned(robots[0]);
   for (const PlacedRobot& placed : robots) {
     const RobotSpec& robot = placed.robot;
-    if (common.gravity && robot.gravity_origin.file.empty() && robot.gravity.isZero(0)) continue;
+    if (common.gravity && robot.loads.gravity_origin.file.empty() && robot.loads.gravity.isZero(0)) continue;
     if (!differ(turned(placed), gravity)) continue;
     const std::string whose = common.gravity ? "the whole" : "robot '" + robots[0].name + "'";
-    const Origin& origin = common.gravity ? common.gravity_origin : robots[0].robot.gravity_origin;
+    const Origin& origin = common.gravity ? common.gravity_origin : robots[0].robot.loads.gravity_origin;
     throw InvalidInput(placed.origin, "robot '" + placed.name + "': as it stands, its gravity is " +
-                                          gravity_text(turned(placed), robot.gravity_origin) + ", but that of " +
+                                          gravity_text(turned(placed), robot.loads.gravity_origin) + ", but that of " +
                                           whose + " is " + gravity_text(gravity, origin) +
                                           ": leave 'gravity' out of the robots' scenes and give it in this one");
   }
@@ -86,7 +88,7 @@ void check_orders(const std::vector<PlacedRobot>& robots) {
 
 /// Shapes choose among the nodes of the edges too.
 void elevate(RobotSpec& robot) {
-  if (!robot.quadratic || order_of(robot.mesh) == 2 || !robot.mesh.prisms.empty()) return;
+  if (!robot.mesh_options.quadratic || order_of(robot.mesh) == 2 || !robot.mesh.prisms.empty()) return;
   check_cells(robot.mesh, {.file = robot.name});
   robot.mesh = elevated(robot.mesh);
 }
@@ -102,18 +104,19 @@ class Joiner {
       throw InvalidInput(robot_.contact->origin,
                          "a robot among several has no 'contact', 'obstacles' or 'bodies' of its own: give them in " +
                              all_.name + ", which joins the robots");
-    if (robot_.liquid_around)
-      throw InvalidInput(robot_.liquid_around->origin,
+    if (robot_.loads.liquid_around)
+      throw InvalidInput(robot_.loads.liquid_around->origin,
                          "a robot among several has no liquid around it of its own: give "
                          "'submerged' in " +
                              all_.name + ", which joins the robots");
     const Mesh& mesh = all_.mesh;
     all_.robots.push_back({placed_.name, robot_.name, static_cast<Index>(mesh.vertices.rows()),
                            static_cast<Index>(mesh.tetrahedra.size()), static_cast<Index>(mesh.prisms.size()),
-                           robot_.mesh_origin, robot_.accept_mesh_errors});
-    all_.quadratic = all_.quadratic || robot_.quadratic;
-    all_.curved = all_.curved || robot_.curve || robot_.curved;
-    all_.linear_by_choice = (all_.robots.size() == 1 || all_.linear_by_choice) && robot_.linear_by_choice;
+                           robot_.mesh_options.origin, robot_.mesh_options.accept_errors});
+    all_.mesh_options.quadratic = all_.mesh_options.quadratic || robot_.mesh_options.quadratic;
+    all_.mesh_options.curved = all_.mesh_options.curved || robot_.mesh_options.curve || robot_.mesh_options.curved;
+    all_.mesh_options.linear_by_choice =
+        (all_.robots.size() == 1 || all_.mesh_options.linear_by_choice) && robot_.mesh_options.linear_by_choice;
     add_regions();
     add_supports();
     add_actuators();
@@ -300,15 +303,15 @@ class Joiner {
   static void fill(FieldSpec&) {}  // refused
 
   void add_points() {
-    for (const ForceSpec& force : robot_.forces)
-      all_.forces.push_back({placed_.name + "." + force.name, full(force.at), placed_.place.rotation * force.force,
-                             turned_range(force, force.range), placed_.place.rotation * force.moment,
-                             turned_range(force, force.moment_range)});
-    for (TractionSpec& traction : robot_.tractions) {
+    for (const ForceSpec& force : robot_.loads.forces)
+      all_.loads.forces.push_back({placed_.name + "." + force.name, full(force.at),
+                                   placed_.place.rotation * force.force, turned_range(force, force.range),
+                                   placed_.place.rotation * force.moment, turned_range(force, force.moment_range)});
+    for (TractionSpec& traction : robot_.loads.tractions) {
       traction.name = placed_.name + "." + traction.name;
       traction.where = full(traction.where);
       traction.kilopascals = placed_.place.rotation * traction.kilopascals;
-      all_.tractions.push_back(std::move(traction));
+      all_.loads.tractions.push_back(std::move(traction));
     }
     for (FibreSpec& fibre : robot_.fibres) all_.fibres.push_back(full(std::move(fibre)));
     for (const auto& layer : robot_.layers) all_.layers.push_back(std::make_shared<const LayerSpec>(full(*layer)));
@@ -323,7 +326,7 @@ class Joiner {
   void add_mesh() {
     Mesh& mesh = robot_.mesh;
     std::vector<std::string> notes = robot_.notes;
-    if (robot_.curve && order_of(mesh) == 2) curve_mesh(robot_, mesh, notes);
+    if (robot_.mesh_options.curve && order_of(mesh) == 2) curve_mesh(robot_, mesh, notes);
     for (const std::string& note : notes) all_.notes.push_back("Robot '" + placed_.name + "': " + note);
     place(mesh.vertices);
     std::erase_if(mesh.regions, [](const Region& region) { return region.name == "all"; });
@@ -350,7 +353,7 @@ RobotSpec joined(std::vector<PlacedRobot> robots, const CommonSpec& common) {
   all.name = common.name;
   all.formulation = common_formulation(robots, common);
   all.weights = common_weights(robots, common);
-  all.gravity = common_gravity(robots, common);
+  all.loads.gravity = common_gravity(robots, common);
   const auto each = [&](const auto& act) {
     for (PlacedRobot& placed : robots) {
       try {
@@ -363,8 +366,8 @@ RobotSpec joined(std::vector<PlacedRobot> robots, const CommonSpec& common) {
   each([](PlacedRobot& placed) { elevate(placed.robot); });
   check_orders(robots);
   each([&](PlacedRobot& placed) { Joiner(placed, all).add(); });
-  all.mesh_origin = all.robots[0].mesh_origin;
-  all.accept_mesh_errors =
+  all.mesh_options.origin = all.robots[0].mesh_origin;
+  all.mesh_options.accept_errors =
       std::any_of(all.robots.begin(), all.robots.end(), [](const RobotPart& part) { return part.accept_mesh_errors; });
   return all;
 }
@@ -382,15 +385,15 @@ void add_common(RobotSpec& robots, RobotSpec common) {
   append_parts(robots.fixed, common.fixed);
   append_parts(robots.rigid, common.rigid);
   append_parts(robots.actuators, common.actuators);
-  append_parts(robots.forces, common.forces);
-  append_parts(robots.tractions, common.tractions);
+  append_parts(robots.loads.forces, common.loads.forces);
+  append_parts(robots.loads.tractions, common.loads.tractions);
   append_parts(robots.fibres, common.fibres);
   append_parts(robots.layers, common.layers);
   append_parts(robots.markers, common.markers);
   append_parts(robots.sensors, common.sensors);
   append_parts(robots.feet, common.feet);
   robots.contact = std::move(common.contact);
-  robots.liquid_around = common.liquid_around;
+  robots.loads.liquid_around = common.loads.liquid_around;
 }
 
 }  // namespace softkin

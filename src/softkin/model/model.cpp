@@ -238,7 +238,10 @@ std::vector<Index> nodes_of(const CavityFace& face) {
 
 int order_of(const Model& model) {
   const auto is_quadratic = [](const auto& layer) { return !layer->faces.empty() && layer->faces[0].edges[0] >= 0; };
-  return !model.edge_nodes.empty() || std::any_of(model.layers.begin(), model.layers.end(), is_quadratic) ? 2 : 1;
+  return !model.elements.edge_nodes.empty() ||
+                 std::any_of(model.reinforcement.layers.begin(), model.reinforcement.layers.end(), is_quadratic)
+             ? 2
+             : 1;
 }
 
 std::vector<Triangle> flat_triangles(const CavityFace& face) {
@@ -253,9 +256,9 @@ std::vector<bool> vertices_of_elements(const Model& model) {
     for (const auto& element : elements)
       for (const Index v : element) of_element[v] = true;
   };
-  mark(model.tetrahedra);
-  mark(model.edge_nodes);
-  mark(model.prisms);
+  mark(model.elements.tetrahedra);
+  mark(model.elements.edge_nodes);
+  mark(model.elements.prisms);
   return of_element;
 }
 
@@ -364,15 +367,16 @@ bool varies(const Actuator& actuator) {
 
 std::string fingerprint_of(const Model& model) {
   Hash hash;
-  hash.add(model.formulation, model.rest, model.tetrahedra, model.edge_nodes, model.prisms, model.tetrahedron_roles,
-           model.prism_roles, model.region_names, model.materials, model.actuators, model.markers, model.rigid,
-           model.fixed, model.held, model.dead_load);
+  hash.add(model.formulation, model.rest, model.elements.tetrahedra, model.elements.edge_nodes, model.elements.prisms,
+           model.elements.tetrahedron_roles, model.elements.prism_roles, model.elements.region_names,
+           model.elements.materials, model.actuators, model.markers, model.rigid, model.held.fixed, model.held.at,
+           model.loads.dead);
   if (model.weights != ElementWeights::printed) hash.add(model.weights);
-  if (!model.turns.empty()) hash.add(model.turns);
-  if (!model.tractions.empty()) hash.add(model.tractions);
-  if (!model.moments.empty()) hash.add(model.moments);
-  if (!model.fibres.empty()) hash.add(model.fibres);
-  if (!model.layers.empty()) hash.add(model.layers);
+  if (!model.held.turns.empty()) hash.add(model.held.turns);
+  if (!model.loads.tractions.empty()) hash.add(model.loads.tractions);
+  if (!model.loads.moments.empty()) hash.add(model.loads.moments);
+  if (!model.reinforcement.fibres.empty()) hash.add(model.reinforcement.fibres);
+  if (!model.reinforcement.layers.empty()) hash.add(model.reinforcement.layers);
   if (!model.growths.empty()) hash.add(model.growths);
   if (model.contact.any()) hash.add(model.contact, model.bodies);
   if (model.magnetism) {

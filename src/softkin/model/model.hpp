@@ -145,17 +145,13 @@ struct Fibre {
 /// What an element is made of: a material, or the actuator that it belongs to; physical: a material always, and a
 /// prism of a dea has its actuator too.
 struct ElementRole {
-  Index material = -1;  // index into Model::materials, or -1
+  Index material = -1;  // index into Elements::materials, or -1
   Index actuator = -1;  // index into Model::actuators, or -1
-  Index region = -1;    // index into Model::region_names, for output
+  Index region = -1;    // index into Elements::region_names, for output
 };
 
-/// A compiled robot: everything that depends on topology and rest shape alone. Not modified after compile().
-struct Model {
-  std::string name;                                     // the scene's file name, for messages
-  Formulation formulation = Formulation::target_shape;  // by which equations it is solved
-  ElementWeights weights = ElementWeights::printed;     // target-shape
-  Points rest;                          // #V by 3 [mm], every vertex of the mesh, then those of bodies and obstacles
+/// What a robot is made of.
+struct Elements {
   std::vector<Tetrahedron> tetrahedra;  // without void elements (physical: nor those of chambers); positive volume
   std::vector<EdgeNodes> edge_nodes;    // order 2: of every tetrahedron; order 1: empty
   std::vector<Prism> prisms;            // without void elements; positive volume
@@ -163,37 +159,60 @@ struct Model {
   std::vector<double> tetrahedron_volumes, prism_volumes;   // at rest [mm^3]
   std::vector<std::string> region_names;                    // of volume, that output tells apart
   std::vector<Material> materials;                          // by ElementRole::material
-  std::vector<Actuator> actuators;                          // in the order of commands and loads
-  std::vector<Marker> markers;                              // in the order of the description
-  std::vector<std::shared_ptr<const Sensor>> sensors;       // the same
-  std::vector<Foot> feet;                                   // none, or the rear one and the front one
-  std::vector<RigidRegion> rigid;                           // disjoint; bodies, too
-  std::vector<FreeBody> bodies;                             // the same
-  std::vector<std::array<bool, 3>> fixed;                   // per vertex and axis; vertices of no element are fixed
-  Points held;                                              // #V by 3 [mm]: where fixed axes are held; else rest
-  std::vector<Support> supports;                            // in the order of the description's `fixed`
-  std::vector<SupportTurn> turns;  // of supports; their vertices are fixed, `held` is without the turn
-  std::vector<std::array<Index, 3>>
-      support_of;    // per vertex and axis: the support that bears it, the first of several,
-                     // or -1; a rigid region that is held is borne as a whole
-  Points dead_load;  // #V by 3 [N]: weight, forces, tractions that follow nothing; physical, else empty
-  std::vector<FollowingTraction> tractions;            // that turn with the surface, and liquids around
-  std::vector<RegionMoment> moments;                   // on rigid regions
-  std::vector<Fibre> fibres;                           // threads, in the order of the description
-  std::vector<std::shared_ptr<const Layer>> layers;    // sheets, the same
+  std::vector<bool> used;                                   // per vertex: is it a vertex of an element
+};
+
+/// What holds a robot.
+struct Held {
+  std::vector<std::array<bool, 3>> fixed;        // per vertex and axis; vertices of no element are fixed
+  Points at;                                     // #V by 3 [mm]: where fixed axes are held; else rest
+  std::vector<Support> supports;                 // in the order of the description's `fixed`
+  std::vector<SupportTurn> turns;                // of supports; their vertices are fixed, `at` is without the turn
+  std::vector<std::array<Index, 3>> support_of;  // per vertex and axis: the support that bears it, the first of
+                                                 // several, or -1; a rigid region that is held is borne as a whole
+};
+
+/// What loads a robot beside its actuators; physical.
+struct Loads {
+  Points dead;                               // #V by 3 [N]: weight, forces, tractions that follow nothing; or empty
+  std::vector<FollowingTraction> tractions;  // that turn with the surface, and liquids around
+  std::vector<RegionMoment> moments;         // on rigid regions
+
+  /// Is there any?
+  [[nodiscard]] bool any() const { return !dead.isZero(0) || !tractions.empty() || !moments.empty(); }
+};
+
+/// What stiffens a robot, in the order of the description; physical.
+struct Reinforcement {
+  std::vector<Fibre> fibres;                         // threads
+  std::vector<std::shared_ptr<const Layer>> layers;  // sheets
+};
+
+/// A compiled robot: everything that depends on topology and rest shape alone. Not modified after compile().
+struct Model {
+  std::string name;                                     // the scene's file name, for messages
+  Formulation formulation = Formulation::target_shape;  // by which equations it is solved
+  ElementWeights weights = ElementWeights::printed;     // target-shape
+  Points rest;                      // #V by 3 [mm], every vertex of the mesh, then those of bodies and obstacles
+  Elements elements;                // with what they are made of
+  std::vector<Actuator> actuators;  // in the order of commands and loads
+  std::vector<Marker> markers;      // in the order of the description
+  std::vector<std::shared_ptr<const Sensor>> sensors;  // the same
+  std::vector<Foot> feet;                              // none, or the rear one and the front one
+  std::vector<RigidRegion> rigid;                      // disjoint; bodies, too
+  std::vector<FreeBody> bodies;                        // the same
+  Held held;                                           // by supports
+  Loads loads;                                         // beside those of actuators
+  Reinforcement reinforcement;                         // threads and sheets
   std::vector<std::shared_ptr<const Growth>> growths;  // by GrowthDrive::growth
   ContactModel contact;                                // what may touch what
   std::shared_ptr<const Magnetism> magnetism;          // physical; none: nothing is magnetic
-  std::vector<bool> used;                              // per vertex: is it a vertex of an element
   double diagonal_mm = 0;                              // of the bounding box of the used vertices
   std::vector<std::string> notes;     // what compile() changed or the user should know, a sentence each
   std::vector<std::string> warnings;  // what is probably not meant, a sentence each: units, elements that lock
 
   /// How many vertices are the mesh's: the first ones.
   [[nodiscard]] Index robot_vertices() const { return static_cast<Index>(rest.rows()) - contact.other_vertices; }
-
-  /// Is there anything that loads it but its actuators?
-  [[nodiscard]] bool loaded() const { return !dead_load.isZero(0) || !tractions.empty() || !moments.empty(); }
 
   /// Vertices of a bounded part of its surroundings, which follow each other.
   [[nodiscard]] std::array<Index, 2> vertices_of_part(Index part) const;

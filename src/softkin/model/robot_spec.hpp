@@ -162,30 +162,40 @@ struct RobotPart {
   bool accept_mesh_errors = false;                 // as of RobotSpec
 };
 
+/// How a mesh is taken.
+struct MeshOptions {
+  Origin origin;                   // of the entry that names it
+  bool accept_errors = false;      // take doubled or overlapping elements, with a note
+  bool quadratic = false;          // physical: elevate a mesh of order 1 to order 2
+  std::optional<CurveSpec> curve;  // physical, order 2: how the edges are curved; none: as the mesh has them
+  bool curved = false;             // of several robots: one was, by a `curve` of its own
+  bool linear_by_choice = false;   // it was said that the mesh stays of order 1: what that costs is told as a note
+};
+
+/// What loads a robot beside its actuators; physical.
+struct LoadsSpec {
+  Vec3 gravity{0, 0, 0};                          // [m/s^2]
+  Origin gravity_origin;                          // no file: none is given
+  std::vector<ForceSpec> forces;                  // on points
+  std::vector<TractionSpec> tractions;            // on faces
+  std::optional<LiquidAroundSpec> liquid_around;  // none: nothing but the atmosphere
+};
+
 /// A robot as the user describes it: plain data, lengths in mm. compile() turns it into a Model.
 struct RobotSpec {
-  std::string name;                                     // the scene's file name, for messages
-  Formulation formulation = Formulation::target_shape;  // by which equations it is solved
-  ElementWeights weights = ElementWeights::printed;     // target-shape
-  Mesh mesh;                                            // in mm
-  Origin mesh_origin;                                   // of the entry that names it
-  bool accept_mesh_errors = false;                      // take doubled or overlapping elements, with a note
-  bool quadratic = false;                               // physical: elevate a mesh of order 1 to order 2
-  std::optional<CurveSpec> curve;       // physical, order 2: how the edges are curved; none: as the mesh has them
-  bool curved = false;                  // of several robots: one was, by a `curve` of its own
-  std::vector<std::string> notes;       // of what was done before compile()
-  bool linear_by_choice = false;        // it was said that the mesh stays of order 1: what that costs is told as a note
-  Vec3 gravity{0, 0, 0};                // [m/s^2]; physical
-  Origin gravity_origin;                // no file: none is given
-  std::vector<ForceSpec> forces;        // physical
-  std::vector<TractionSpec> tractions;  // physical
-  std::vector<FibreSpec> fibres;        // physical
+  std::string name;                                        // the scene's file name, for messages
+  Formulation formulation = Formulation::target_shape;     // by which equations it is solved
+  ElementWeights weights = ElementWeights::printed;        // target-shape
+  Mesh mesh;                                               // in mm
+  MeshOptions mesh_options;                                // how it is taken
+  std::vector<std::string> notes;                          // of what was done before compile()
+  LoadsSpec loads;                                         // beside those of actuators
+  std::vector<FibreSpec> fibres;                           // physical
   std::vector<std::shared_ptr<const LayerSpec>> layers;    // physical
-  std::optional<LiquidAroundSpec> liquid_around;           // physical; none: nothing but the atmosphere
   std::vector<RegionSpec> regions;                         // beside those of the mesh
   std::vector<MaterialSpec> materials;                     // later ones count where they overlap
   std::vector<RegionRef> voids;                            // volumes without material
-  std::vector<FixedSpec> fixed;                            // what is held, in the order of Model::supports
+  std::vector<FixedSpec> fixed;                            // what is held, in the order of Held::supports
   std::vector<RigidSpec> rigid;                            // what moves as one body
   std::vector<ActuatorSpec> actuators;                     // in the order of commands
   std::vector<MarkerSpec> markers;                         // points that are watched

@@ -35,7 +35,7 @@ std::string Answers::remark() const {
 InverseResult Answers::inverse(const std::vector<Goal>& goals, const Actuation& start, const InverseOptions& options,
                                const ProgressCallback& progress) const {
   if (used_ && used_->polished) return solve_inverse_by_map(model_, *map_, statics_, goals, start, options, progress);
-  return solve_inverse_from(model_, statics_, goals, start, options, progress);
+  return solve_inverse_from(statics_, goals, start, options, progress);
 }
 
 }  // namespace softkin::runs

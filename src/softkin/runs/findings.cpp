@@ -21,7 +21,8 @@ bool asks_for_motion(const Model& model, const StepRecord& record) {
     if (from_rest != 0 && !may_hang) return true;
   }
   const auto turns = [](const SupportTurn& turn) { return turn.degrees != 0; };
-  return model.loaded() || model.held != model.rest || std::any_of(model.turns.begin(), model.turns.end(), turns);
+  return model.loads.any() || model.held.at != model.rest ||
+         std::any_of(model.held.turns.begin(), model.held.turns.end(), turns);
 }
 
 void add_implausible(const Model& model, const StepRecord& record, std::vector<Finding>& found) {
@@ -37,7 +38,7 @@ void add_implausible(const Model& model, const StepRecord& record, std::vector<F
 /// Of a force, its moment and their centre without what is but rounding.
 template <class Forces>
 Forces without_rounding(Forces forces, const Model& model, const StepRecord& record) {
-  const double rounding = 1e-9 * record.pull_N;
+  const double rounding = 1e-9 * record.physical.pull_N;
   if (!(forces.force.norm() > rounding)) forces.force.setZero();
   if (!(forces.moment.norm() > rounding * model.diagonal_mm)) forces.moment.setZero();
   if (!(forces.center.norm() > 0)) forces.center.setZero();
@@ -45,10 +46,10 @@ Forces without_rounding(Forces forces, const Model& model, const StepRecord& rec
 }
 
 void add_contacts(const Model& model, const StepRecord& record, std::vector<Finding>& found) {
-  if (!record.contacts) return;
+  if (!record.forces.contacts) return;
   bool any = false;
-  for (const PairForces& pair : *record.contacts) {
-    if (!(pair.normal_N > 1e-9 * record.pull_N)) continue;
+  for (const PairForces& pair : *record.forces.contacts) {
+    if (!(pair.normal_N > 1e-9 * record.physical.pull_N)) continue;
     any = true;
     found.emplace_back(finding::Contact{model.contact.label(pair.b),
                                         pair.a == pair.b ? std::string() : model.contact.label(pair.a),
@@ -60,9 +61,9 @@ void add_contacts(const Model& model, const StepRecord& record, std::vector<Find
 /// A choice of the points, evenly by their places.
 void add_branch(const StepRecord& record, std::vector<Finding>& found) {
   constexpr std::size_t most = 12;
-  const auto& points = record.branch.points;
+  const auto& points = record.physical.branch.points;
   if (points.size() < 2) return;
-  LoadBranch chosen{record.branch.actuator};
+  LoadBranch chosen{record.physical.branch.actuator};
   const auto top = std::max_element(points.begin(), points.end(),
                                     [](const auto& a, const auto& b) { return std::abs(a.load) < std::abs(b.load); });
   const std::size_t stride = 1 + (points.size() - 1) / most, last = points.size() - 1;
@@ -73,17 +74,20 @@ void add_branch(const StepRecord& record, std::vector<Finding>& found) {
 }
 
 void add_forces(const Model& model, const StepRecord& record, std::vector<Finding>& found) {
-  if (record.stress) found.emplace_back(*record.stress);
-  for (std::size_t s = 0; s < record.reactions.size(); ++s)
-    found.emplace_back(finding::Support{model.supports[s].name, without_rounding(record.reactions[s], model, record)});
-  if (record.magnetic) found.emplace_back(without_rounding(*record.magnetic, model, record));
+  if (record.forces.stress) found.emplace_back(*record.forces.stress);
+  for (std::size_t s = 0; s < record.forces.reactions.size(); ++s)
+    found.emplace_back(
+        finding::Support{model.held.supports[s].name, without_rounding(record.forces.reactions[s], model, record)});
+  if (record.forces.magnetic) found.emplace_back(without_rounding(*record.forces.magnetic, model, record));
   add_contacts(model, record, found);
-  if (record.buckled > 0) found.emplace_back(finding::Buckled{record.buckled, record.buckled_mm});
-  if (record.snapped_mm > 0) found.emplace_back(finding::Snapped{record.snapped_mm, record.snapped_from});
-  if (record.unstable_modes > 0)
-    found.emplace_back(finding::Unstable{record.unstable_modes});
-  else if (record.unstable_from > 0)
-    found.emplace_back(finding::UnstableWay{record.unstable_from});
+  if (record.physical.buckled > 0)
+    found.emplace_back(finding::Buckled{record.physical.buckled, record.physical.buckled_mm});
+  if (record.physical.snapped_mm > 0)
+    found.emplace_back(finding::Snapped{record.physical.snapped_mm, record.physical.snapped_from});
+  if (record.physical.unstable_modes > 0)
+    found.emplace_back(finding::Unstable{record.physical.unstable_modes});
+  else if (record.physical.unstable_from > 0)
+    found.emplace_back(finding::UnstableWay{record.physical.unstable_from});
   add_branch(record, found);
 }
 
@@ -109,10 +113,10 @@ void add_actuators(const Model& model, const StepRecord& record, std::vector<Fin
 }
 
 void add_reinforcements(const Model& model, const StepRecord& record, std::vector<Finding>& found) {
-  for (std::size_t f = 0; f < record.fibres.size(); ++f)
-    found.emplace_back(finding::Fibre{model.fibres[f].name, record.fibres[f]});
-  for (std::size_t l = 0; l < record.layers.size(); ++l)
-    found.emplace_back(finding::Layer{model.layers[l]->name, record.layers[l]});
+  for (std::size_t f = 0; f < record.forces.fibres.size(); ++f)
+    found.emplace_back(finding::Fibre{model.reinforcement.fibres[f].name, record.forces.fibres[f]});
+  for (std::size_t l = 0; l < record.forces.layers.size(); ++l)
+    found.emplace_back(finding::Layer{model.reinforcement.layers[l]->name, record.forces.layers[l]});
 }
 
 /// How near the iteration came to the equilibrium.
@@ -121,8 +125,8 @@ void add_accuracy(const Model& model, const StepRecord& record, std::vector<Find
   if (physical && record.status != Status::converged) return;  // the iteration was of another shape
   if (record.answered()) return;
   if (std::isfinite(record.step_mm) && std::isfinite(record.estimated_error_mm))
-    found.emplace_back(
-        finding::Accuracy{record.step_mm, record.estimated_error_mm, physical, record.residual_N, record.pull_N});
+    found.emplace_back(finding::Accuracy{record.step_mm, record.estimated_error_mm, physical,
+                                         record.physical.residual_N, record.physical.pull_N});
   else
     found.emplace_back(finding::Diverged{});
 }

@@ -30,14 +30,13 @@ bool FollowFolder::has_written_commands() const {
   return false;
 }
 
-FollowRun::FollowRun(const Model& model, const Statics& statics, FollowTask task, const TrajectoryOptions& options,
-                     FollowFolder folder)
-    : model_(model),
+FollowRun::FollowRun(const Statics& statics, FollowTask task, const TrajectoryOptions& options, FollowFolder folder)
+    : model_(statics.model()),
       task_(std::move(task)),
       tolerance_mm_(options.inverse.tolerance_mm),
       folder_(std::move(folder)),
-      job_(model, statics, task_.path, task_.file, options),
-      run_(model, job_, folder_.run(), follow_head(model, task_.scene, options, task_.map), {"follow"}) {}
+      job_(statics, task_.path, task_.file, options),
+      run_(model_, job_, folder_.run(), follow_head(model_, task_.scene, options, task_.map), {"follow"}) {}
 
 Table FollowRun::commands() {
   return commands_table(model_, task_.path, records());

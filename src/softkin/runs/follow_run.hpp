@@ -44,9 +44,8 @@ struct FollowTask {
 /// A trajectory, waypoint by waypoint, and what is made of it.
 class FollowRun {
  public:
-  /// model and statics must outlive it. Throws as FollowJob
-  FollowRun(const Model& model, const Statics& statics, FollowTask task, const TrajectoryOptions& options,
-            FollowFolder folder);
+  /// statics must outlive it. Throws as FollowJob
+  FollowRun(const Statics& statics, FollowTask task, const TrajectoryOptions& options, FollowFolder folder);
 
   [[nodiscard]] Run<WaypointRecord>& run() { return run_; }
   [[nodiscard]] std::vector<WaypointRecord> records() { return run_.log().all(); }

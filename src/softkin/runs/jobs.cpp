@@ -41,17 +41,17 @@ std::vector<Actuation> acting_along(const Model& model, const std::vector<Actuat
 
 }  // namespace
 
-PathJob::PathJob(const Model& model, const Statics& statics, const std::vector<ActuationStep>& steps, std::string file,
+PathJob::PathJob(const Statics& statics, const std::vector<ActuationStep>& steps, std::string file,
                  const StaticsOptions& options, std::optional<State> start)
-    : model_(model),
+    : model_(statics.model()),
       statics_(statics),
       steps_(steps),
-      acting_(acting_along(model, steps, start)),
+      acting_(acting_along(model_, steps, start)),
       file_(std::move(file)),
       options_(options),
       clock_(statics),
       state_(start ? std::move(*start) : statics.rest()),
-      overlap_(model) {}
+      overlap_(model_) {}
 
 Codec<StepRecord> PathJob::codec() const {
   return codec_of<StepRecord>([this](const StepRecord& record) { return to_json(model_, record); },
@@ -99,14 +99,13 @@ void PathJob::go_on(std::size_t, const StepRecord& before, Points positions) {
   state_ = state_of(model_, before, std::move(positions));
 }
 
-FollowJob::FollowJob(const Model& model, const Statics& statics, const MarkerPath& path, std::string file,
-                     const TrajectoryOptions& options)
-    : model_(model),
+FollowJob::FollowJob(const Statics& statics, const MarkerPath& path, std::string file, const TrajectoryOptions& options)
+    : model_(statics.model()),
       statics_(statics),
       path_(path),
       file_(std::move(file)),
-      follower_(model, statics, path, options),
-      overlap_(model) {}
+      follower_(statics, path, options),
+      overlap_(model_) {}
 
 Codec<WaypointRecord> FollowJob::codec() const {
   return codec_of<WaypointRecord>(

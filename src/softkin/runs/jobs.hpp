@@ -174,7 +174,7 @@ class Run {
 class PathJob : public Job<StepRecord> {
  public:
   /// All must outlive the job. file: of the steps, for messages; start: of the first step, none: rest
-  PathJob(const Model& model, const Statics& statics, const std::vector<ActuationStep>& steps, std::string file,
+  PathJob(const Statics& statics, const std::vector<ActuationStep>& steps, std::string file,
           const StaticsOptions& options, std::optional<State> start = {});
 
   [[nodiscard]] std::size_t size() const override { return steps_.size(); }
@@ -201,8 +201,7 @@ class PathJob : public Job<StepRecord> {
 class FollowJob : public Job<WaypointRecord> {
  public:
   /// All must outlive the job. file: of the path, for messages. Throws as PathFollower.
-  FollowJob(const Model& model, const Statics& statics, const MarkerPath& path, std::string file,
-            const TrajectoryOptions& options);
+  FollowJob(const Statics& statics, const MarkerPath& path, std::string file, const TrajectoryOptions& options);
 
   [[nodiscard]] std::size_t size() const override { return path_.waypoints.size(); }
   [[nodiscard]] Codec<WaypointRecord> codec() const override;

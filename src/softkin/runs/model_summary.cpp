@@ -18,7 +18,7 @@ std::string grouped(std::size_t count) {
 /// The materials' laws, each once.
 std::string laws(const Model& model) {
   std::vector<std::string> names;
-  for (const Material& material : model.materials) {
+  for (const Material& material : model.elements.materials) {
     const std::string name = law_name(material.elastic.law);
     if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(name);
   }
@@ -41,13 +41,14 @@ const char* unit_of_measure(const Actuator& actuator) {
 
 std::string model_summary(const Model& model, const std::string& solver) {
   std::string text = grouped(static_cast<std::size_t>(model.robot_vertices())) + " vertices";
-  if (!model.tetrahedra.empty())
-    text += ", " + grouped(model.tetrahedra.size()) + " tetrahedra of order " + std::to_string(order_of(model));
-  if (!model.prisms.empty()) text += ", " + grouped(model.prisms.size()) + " prisms";
-  if (model.tetrahedra.empty() && model.prisms.empty())
+  if (!model.elements.tetrahedra.empty())
+    text +=
+        ", " + grouped(model.elements.tetrahedra.size()) + " tetrahedra of order " + std::to_string(order_of(model));
+  if (!model.elements.prisms.empty()) text += ", " + grouped(model.elements.prisms.size()) + " prisms";
+  if (model.elements.tetrahedra.empty() && model.elements.prisms.empty())
     text += ", layers alone, of order " + std::to_string(order_of(model));
   text += std::string("; ") + formulation_name(model.formulation) + " formulation";
-  if (!model.materials.empty() && model.formulation == Formulation::physical) text += " (" + laws(model) + ")";
+  if (!model.elements.materials.empty() && model.formulation == Formulation::physical) text += " (" + laws(model) + ")";
   if (model.weights != ElementWeights::printed) text += std::string(" (weights ") + weights_name(model.weights) + ")";
   if (!solver.empty()) text += ", solver " + solver;
   for (const FreeBody& body : model.bodies)
@@ -60,7 +61,7 @@ std::string model_summary(const Model& model, const std::string& solver) {
       text += std::string("\n") + kind_name(a) + " commanded by " + a.name + " " + bracketed_unit(a) + ", " +
               number(a.low) + " to " + number(a.high);
     else if (const auto* turn = a.as<TurnCommand>())
-      text += "\nsupport '" + model.turns[turn->turn].support + "' turned by " + a.name + " [deg]";
+      text += "\nsupport '" + model.held.turns[turn->turn].support + "' turned by " + a.name + " [deg]";
   for (const Actuator& a : model.actuators)
     if (drives(a))
       text += "\nactuator " + a.name + ": " + kind_name(a) + ", " +

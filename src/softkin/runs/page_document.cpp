@@ -112,16 +112,19 @@ Json page_markers(const Model& model) {
 
 std::vector<Index> vertices_of_element(const Model& model, std::size_t element) {
   const auto all = [](const auto& of) { return std::vector<Index>(of.begin(), of.end()); };
-  if (element >= model.tetrahedra.size()) return all(model.prisms[element - model.tetrahedra.size()]);
-  std::vector<Index> vertices = all(model.tetrahedra[element]);
-  if (!model.edge_nodes.empty())
-    vertices.insert(vertices.end(), model.edge_nodes[element].begin(), model.edge_nodes[element].end());
+  if (element >= model.elements.tetrahedra.size())
+    return all(model.elements.prisms[element - model.elements.tetrahedra.size()]);
+  std::vector<Index> vertices = all(model.elements.tetrahedra[element]);
+  if (!model.elements.edge_nodes.empty())
+    vertices.insert(vertices.end(), model.elements.edge_nodes[element].begin(),
+                    model.elements.edge_nodes[element].end());
   return vertices;
 }
 
 double volume_of(const Model& model, std::size_t element) {
-  const std::size_t tetrahedra = model.tetrahedra.size();
-  return element < tetrahedra ? model.tetrahedron_volumes[element] : model.prism_volumes[element - tetrahedra];
+  const std::size_t tetrahedra = model.elements.tetrahedra.size();
+  return element < tetrahedra ? model.elements.tetrahedron_volumes[element]
+                              : model.elements.prism_volumes[element - tetrahedra];
 }
 
 bool is_body(const Model& model, std::size_t triangle) {
@@ -143,8 +146,8 @@ std::vector<EmbeddedPoint> drawn_knots(const Model& model, const Fibre& fibre) {
 /// Threads, and the borders of layers.
 std::vector<std::vector<EmbeddedPoint>> reinforcement_lines(const Model& model) {
   std::vector<std::vector<EmbeddedPoint>> lines;
-  for (const Fibre& fibre : model.fibres) lines.push_back(drawn_knots(model, fibre));
-  for (const auto& layer : model.layers) {
+  for (const Fibre& fibre : model.reinforcement.fibres) lines.push_back(drawn_knots(model, fibre));
+  for (const auto& layer : model.reinforcement.layers) {
     std::vector<Triangle> triangles;
     std::vector<std::array<Index, 3>> beside;
     for (const CavityFace& face : layer->faces) {
@@ -358,7 +361,7 @@ std::string PageDocument::text(const MapData* map) const {
                 {"formulation", formulation_name(model_.formulation)},
                 {"actuators", page_actuators(model_)},
                 {"markers", page_markers(model_)},
-                {"regions", model_.region_names},
+                {"regions", model_.elements.region_names},
                 {"surface",
                  {{"rest", page_array("f32", coordinates(model_.rest, vertices_))},
                   {"triangles", page_triangles(surface_.triangles, numbering)},

@@ -71,14 +71,14 @@ WorstPlace worst_of(const Json& json) {
 /// What the physical formulation knows of forces and of stability.
 template <class Record, class Visit>
 void forces(Record& record, const Visit& visit) {
-  visit("residual_N", record.residual_N);
-  visit("pull_N", record.pull_N);
-  visit("unstable_modes", record.unstable_modes);
-  visit("buckled", record.buckled);
-  visit("buckled_mm", record.buckled_mm);
-  visit("snapped_mm", record.snapped_mm);
-  visit("snapped_from", record.snapped_from);
-  visit("unstable_from", record.unstable_from);
+  visit("residual_N", record.physical.residual_N);
+  visit("pull_N", record.physical.pull_N);
+  visit("unstable_modes", record.physical.unstable_modes);
+  visit("buckled", record.physical.buckled);
+  visit("buckled_mm", record.physical.buckled_mm);
+  visit("snapped_mm", record.physical.snapped_mm);
+  visit("snapped_from", record.physical.snapped_from);
+  visit("unstable_from", record.physical.unstable_from);
 }
 
 Json branch_json(const Model& model, const LoadBranch& branch) {
@@ -107,17 +107,17 @@ LoadBranch branch_of(const Model& model, const Json& json) {
 Json physical_json(const Model& model, const StepRecord& record) {
   Json json = {{"shape_load_share", record.shape_load_share}};
   forces(record, [&json](const char* key, const auto& value) { write_number(value, json[key]); });
-  json["stress"] = record.stress ? stress_json(*record.stress) : Json();
-  if (!record.branch.points.empty()) json["branch"] = branch_json(model, record.branch);
+  json["stress"] = record.forces.stress ? stress_json(*record.forces.stress) : Json();
+  if (!record.physical.branch.points.empty()) json["branch"] = branch_json(model, record.physical.branch);
   json["limit"] = record.worst ? worst_json(*record.worst) : Json();
   json["reactions"] = Json::array();
-  for (std::size_t s = 0; s < record.reactions.size(); ++s)
-    json["reactions"].push_back(reaction_json(model.supports[s], record.reactions[s]));
-  if (model.magnetism) json["magnetic"] = record.magnetic ? magnetic_json(*record.magnetic) : Json();
-  if (!record.fibres.empty()) json["fibres"] = fibres_json(model, record.fibres);
-  if (!record.layers.empty()) json["layers"] = layers_json(model, record.layers);
-  if (model.contact.any()) json["contacts"] = contacts_json(model, record.contacts);
-  if (model.contact.rubs()) json["friction_change"] = known(record.friction_change);
+  for (std::size_t s = 0; s < record.forces.reactions.size(); ++s)
+    json["reactions"].push_back(reaction_json(model.held.supports[s], record.forces.reactions[s]));
+  if (model.magnetism) json["magnetic"] = record.forces.magnetic ? magnetic_json(*record.forces.magnetic) : Json();
+  if (!record.forces.fibres.empty()) json["fibres"] = fibres_json(model, record.forces.fibres);
+  if (!record.forces.layers.empty()) json["layers"] = layers_json(model, record.forces.layers);
+  if (model.contact.any()) json["contacts"] = contacts_json(model, record.forces.contacts);
+  if (model.contact.rubs()) json["friction_change"] = known(record.physical.friction_change);
   if (!record.anchors.empty()) json["anchors"] = anchors_json(record.anchors);
   if (!record.eyelets.empty()) json["eyelets_mm"] = record.eyelets;
   return json;
@@ -126,22 +126,23 @@ Json physical_json(const Model& model, const StepRecord& record) {
 void read_physical(const Model& model, const Json& json, StepRecord& record) {
   record.shape_load_share = json.at("shape_load_share").get<double>();
   forces(record, [&json](const char* key, auto& value) { read_number(json.at(key), value); });
-  if (const Json& stress = json.at("stress"); !stress.is_null()) record.stress = stress_of(stress);
-  if (json.contains("branch")) record.branch = branch_of(model, json.at("branch"));
+  if (const Json& stress = json.at("stress"); !stress.is_null()) record.forces.stress = stress_of(stress);
+  if (json.contains("branch")) record.physical.branch = branch_of(model, json.at("branch"));
   if (const Json& worst = json.at("limit"); !worst.is_null()) record.worst = worst_of(worst);
   for (const Json& each : json.at("reactions"))
-    record.reactions.push_back(
+    record.forces.reactions.push_back(
         {point_of(each.at("force_N")), point_of(each.at("moment_N_mm")), point_of(each.at("center_mm"))});
   if (model.magnetism)
     if (const Json& load = json.at("magnetic"); !load.is_null())
-      record.magnetic = {point_of(load.at("force_N")), point_of(load.at("moment_N_mm")),
-                         point_of(load.at("center_mm"))};
-  if (json.contains("fibres")) record.fibres = fibres_of(json.at("fibres"));
-  if (json.contains("layers")) record.layers = layers_of(json.at("layers"));
+      record.forces.magnetic = {point_of(load.at("force_N")), point_of(load.at("moment_N_mm")),
+                                point_of(load.at("center_mm"))};
+  if (json.contains("fibres")) record.forces.fibres = fibres_of(json.at("fibres"));
+  if (json.contains("layers")) record.forces.layers = layers_of(json.at("layers"));
   if (json.contains("eyelets_mm")) record.eyelets = json.at("eyelets_mm").get<std::vector<double>>();
   if (!model.contact.any()) return;
-  if (const Json& contacts = json.at("contacts"); !contacts.is_null()) record.contacts = contacts_of(model, contacts);
-  if (model.contact.rubs()) record.friction_change = number_or_nan(json.at("friction_change"));
+  if (const Json& contacts = json.at("contacts"); !contacts.is_null())
+    record.forces.contacts = contacts_of(model, contacts);
+  if (model.contact.rubs()) record.physical.friction_change = number_or_nan(json.at("friction_change"));
   if (json.contains("anchors")) record.anchors = anchors_of(model, json.at("anchors"));
 }
 

@@ -117,12 +117,12 @@ class Steps {
   /// On each body, by what touches it.
   [[nodiscard]] std::vector<StepCurve> contacts() const {
     std::vector<StepCurve> curves;
-    const auto knows = [](const StepRecord& step) { return step.contacts.has_value(); };
+    const auto knows = [](const StepRecord& step) { return step.forces.contacts.has_value(); };
     if (steps_.empty() || !std::all_of(steps_.begin(), steps_.end(), knows)) return curves;
     for (const FreeBody& body : model_.bodies) {
       curves.push_back({"on " + body.name, "N", {}});
       for (const StepRecord& step : steps_)
-        curves.back().values.push_back(normal_force_on(model_, body.name, *step.contacts));
+        curves.back().values.push_back(normal_force_on(model_, body.name, *step.forces.contacts));
     }
     return curves;
   }

@@ -78,12 +78,12 @@ StepRecord step_record(const Model& model, const Equilibrium& found, const Eleme
   record.strain = strain_histogram(model, deformation);
   if (model.formulation == Formulation::physical && record.status == Status::limit && !record.answered())
     record.worst = worst_place(model, found.state.positions, deformation);
-  record.stress = stress_extremes(model, found.state.positions, deformation);
-  record.reactions = reactions(model, found.state.positions, deformation);
-  if (deformation.contacts) record.contacts = deformation.contacts->pairs;
-  record.magnetic = deformation.magnetic;
-  record.fibres = deformation.fibres;
-  record.layers = deformation.layers;
+  record.forces.stress = stress_extremes(model, found.state.positions, deformation);
+  record.forces.reactions = reactions(model, found.state.positions, deformation);
+  if (deformation.contacts) record.forces.contacts = deformation.contacts->pairs;
+  record.forces.magnetic = deformation.magnetic;
+  record.forces.fibres = deformation.fibres;
+  record.forces.layers = deformation.layers;
   return record;
 }
 

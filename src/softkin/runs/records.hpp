@@ -31,6 +31,16 @@ struct ActuatorRecord {
   std::vector<double> volumes_mL{};      // of each of several chambers that are connected
 };
 
+/// The forces of an equilibrium; physical, of a walk none.
+struct StepForces {
+  std::optional<StressExtremes> stress{};             // of all elements
+  std::vector<Reaction> reactions{};                  // per support
+  std::optional<MagneticLoad> magnetic{};             // where there is a magnetic field
+  std::vector<LayerForces> layers{};                  // of each; where a map answered none
+  std::vector<FibreForces> fibres{};                  // the same
+  std::optional<std::vector<PairForces>> contacts{};  // where the robot may touch anything
+};
+
 /// One equilibrium: what was asked, what came of it, and how. Of a report a step. The history of a record that was read
 /// has the iterations that were written.
 struct StepRecord : SolveReport {
@@ -45,16 +55,11 @@ struct StepRecord : SolveReport {
   SelfOverlap self_overlap;            // of the shape, set by who makes the record
   std::vector<Vec3> markers;           // [mm]
   std::vector<double> marker_turns{};  // from rest [degrees]; not finite where a marker has no orientation (turns.hpp)
-  std::vector<ActuatorRecord> actuators;              // in the order of the model
-  StrainHistogram strain;                             // how much of the body is strained how far
-  std::optional<StressExtremes> stress{};             // physical; of a walk none
-  std::vector<Reaction> reactions{};                  // the same, per support
-  std::optional<MagneticLoad> magnetic{};             // where there is a magnetic field; of a walk none
-  std::vector<LayerForces> layers{};                  // of each; as fibres
-  std::vector<FibreForces> fibres{};                  // of each; of a walk none, nor where a map answered
-  std::optional<std::vector<PairForces>> contacts{};  // where the robot may touch anything; of a walk none
-  std::optional<WorstPlace> worst{};                  // physical, where status is limit
-  std::vector<int> history_iterations;                // from 1, per entry of history; empty: all
+  std::vector<ActuatorRecord> actuators;  // in the order of the model
+  StepForces forces;                      // in and on the robot
+  StrainHistogram strain;                 // how much of the body is strained how far
+  std::optional<WorstPlace> worst{};      // physical, where status is limit
+  std::vector<int> history_iterations;    // from 1, per entry of history; empty: all
 
   std::optional<double> time_s{};           // of the path [s]; none: it has no times
   std::optional<double> viscous_loss_mJ{};  // since the step before; of a viscous robot on a path with times

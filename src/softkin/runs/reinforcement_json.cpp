@@ -7,7 +7,7 @@ namespace softkin::runs {
 Json fibres_json(const Model& model, const std::vector<FibreForces>& fibres) {
   Json all = Json::array();
   for (std::size_t f = 0; f < fibres.size(); ++f)
-    all.push_back({{"fibre", model.fibres[f].name},
+    all.push_back({{"fibre", model.reinforcement.fibres[f].name},
                    {"mean_N", known(fibres[f].mean_N)},
                    {"largest_N", known(fibres[f].largest_N)},
                    {"least_N", known(fibres[f].least_N)},
@@ -20,7 +20,7 @@ Json fibres_json(const Model& model, const std::vector<FibreForces>& fibres) {
 Json layers_json(const Model& model, const std::vector<LayerForces>& layers) {
   Json all = Json::array();
   for (std::size_t l = 0; l < layers.size(); ++l)
-    all.push_back({{"layer", model.layers[l]->name},
+    all.push_back({{"layer", model.reinforcement.layers[l]->name},
                    {"largest_N_mm", known(layers[l].largest_N_mm)},
                    {"least_N_mm", known(layers[l].least_N_mm)},
                    {"at_mm", json_of(layers[l].where)},

@@ -32,7 +32,7 @@ Json elastic_json(const ElasticLaw& e) {
 
 Json materials_json(const Model& model) {
   Json materials = Json::array();
-  for (const Material& material : model.materials) {
+  for (const Material& material : model.elements.materials) {
     Json json = {{"region", material.region}};
     if (model.formulation == Formulation::physical) {
       json["law"] = law_name(material.elastic.law);
@@ -120,8 +120,8 @@ Json head_json(const Model& model, const std::string& scene, const StaticsOption
                {"mesh",
                 {{"order", order_of(model)},
                  {"vertices", model.robot_vertices()},
-                 {"tetrahedra", model.tetrahedra.size()},
-                 {"prisms", model.prisms.size()}}},
+                 {"tetrahedra", model.elements.tetrahedra.size()},
+                 {"prisms", model.elements.prisms.size()}}},
                {"notes", model.notes},
                {"warnings", model.warnings}};
   if (model.weights != ElementWeights::printed) json["weights"] = weights_name(model.weights);
@@ -222,7 +222,7 @@ Json inverse_json(const Model& model, const InverseAnswer& answer) {
   if (newton && found.status != InverseStatus::reached) json["slope_mm_per_range"] = found.slope;
   if (newton && found.sensitivity.regular) {
     json["jacobian"] = jacobian_json(model, found.equilibrium.state.positions, found.sensitivity);
-    if (model.contact.any()) json["jacobian"]["one_sided"] = sliding_pairs(model, record.contacts);
+    if (model.contact.any()) json["jacobian"]["one_sided"] = sliding_pairs(model, record.forces.contacts);
   }
   json["history"] = history_json(found.history);
   return json;
@@ -329,7 +329,7 @@ RecordLog step_report(const Model& model, const std::string& scene, const std::f
 
 Vec3 found_of(const Model& model, const Goal& goal, const Points& positions, const StepRecord& record) {
   if (const auto* force = std::get_if<ForceGoal>(&goal.what))
-    return exerted_force(*force, record.reactions, record.contacts);
+    return exerted_force(*force, record.forces.reactions, record.forces.contacts);
   const auto at = [&](Index marker) { return model.markers[marker].at(positions); };
   if (const auto* position = std::get_if<PositionGoal>(&goal.what)) return at(position->marker);
   if (const auto* plane = std::get_if<PlaneGoal>(&goal.what)) return at(plane->marker);

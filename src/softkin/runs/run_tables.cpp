@@ -118,8 +118,8 @@ std::string line_title(const Model& model, const MarkerLine& line) {
 
 /// The sum of the normal forces between a body and all else [N]; none: not known.
 Cell contact_cell(const Model& model, const FreeBody& body, const StepRecord& record) {
-  if (!record.contacts) return {};
-  return normal_force_on(model, body.name, *record.contacts);
+  if (!record.forces.contacts) return {};
+  return normal_force_on(model, body.name, *record.forces.contacts);
 }
 
 }  // namespace
@@ -267,7 +267,7 @@ Row row_of(const Model& model, std::size_t step, const StepRecord& record, std::
     for (const FreeBody& body : model.bodies) row.push_back(contact_cell(model, body, record));
   row.push_back(record.answered() ? Cell("-") : Cell(std::int64_t{record.iterations}));
   row.insert(row.end(), {record.seconds, name_of(record.status)});
-  if (record.unstable_modes > 0) row.back() = std::string(name_of(record.status)) + ", unstable";
+  if (record.physical.unstable_modes > 0) row.back() = std::string(name_of(record.status)) + ", unstable";
   return row;
 }
 
@@ -292,7 +292,7 @@ Row row_of(const Model& model, std::size_t waypoint, const WaypointRecord& recor
     if (shows_measure(model.actuators[a])) row.emplace_back(record.actuators[a].achieved);
   if (turn) row.emplace_back(*turn);
   row.insert(row.end(), {record.error_mm, std::int64_t{record.equilibria}, record.seconds, name_of(record.end)});
-  if (record.unstable_modes > 0) row.back() = std::string(name_of(record.end)) + ", unstable";
+  if (record.physical.unstable_modes > 0) row.back() = std::string(name_of(record.end)) + ", unstable";
   return row;
 }
 
@@ -312,7 +312,7 @@ Row row_of(const Model& model, const WalkRecord& record) {
   add_values(record.actuation, row);
   row.insert(row.end(), {record.walk.rear_mm, record.walk.front_mm, record.walk.travel_mm});
   if (model.formulation == Formulation::physical) row.emplace_back(record.walk.friction_N);
-  row.emplace_back(sliding_text(model, record.walk.sliding) + (record.unstable_modes > 0 ? ", unstable" : ""));
+  row.emplace_back(sliding_text(model, record.walk.sliding) + (record.physical.unstable_modes > 0 ? ", unstable" : ""));
   return row;
 }
 

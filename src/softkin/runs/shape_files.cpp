@@ -20,8 +20,8 @@ namespace fs = std::filesystem;
 namespace {
 
 std::vector<ElementRole> all_roles(const Model& model) {
-  std::vector<ElementRole> roles = model.tetrahedron_roles;
-  roles.insert(roles.end(), model.prism_roles.begin(), model.prism_roles.end());
+  std::vector<ElementRole> roles = model.elements.tetrahedron_roles;
+  roles.insert(roles.end(), model.elements.prism_roles.begin(), model.elements.prism_roles.end());
   return roles;
 }
 
@@ -70,7 +70,7 @@ void add_forces(const Model& model, const ElementDeformation& deformation, VtuCo
   Field principal{"principal_stress_MPa", 3, {}}, support{"support", 1, {}};
   for (const auto& values : stress.principal)
     principal.values.insert(principal.values.end(), values.begin(), values.end());
-  for (const auto& axes : model.support_of) support.values.push_back(*std::max_element(axes.begin(), axes.end()));
+  for (const auto& axes : model.held.support_of) support.values.push_back(*std::max_element(axes.begin(), axes.end()));
   const Points& forces = deformation.reactions;
   content.cell_fields.push_back({"von_mises_MPa", 1, stress.von_mises});
   content.cell_fields.push_back(std::move(principal));
@@ -80,8 +80,8 @@ void add_forces(const Model& model, const ElementDeformation& deformation, VtuCo
     content.point_fields.push_back({"contact_pressure_kPa", 1, deformation.contacts->pressure_kPa});
   if (deformation.contacts && !deformation.contacts->slip_mm.empty())
     content.point_fields.push_back({"slip_mm", 1, deformation.contacts->slip_mm});
-  for (std::size_t s = 0; s < model.supports.size(); ++s)
-    content.constants.emplace_back("support_" + model.supports[s].name, static_cast<double>(s));
+  for (std::size_t s = 0; s < model.held.supports.size(); ++s)
+    content.constants.emplace_back("support_" + model.held.supports[s].name, static_cast<double>(s));
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     if (const std::string key = multiplier_key(model.actuators[a]); !key.empty())
       content.constants.emplace_back(key + "_" + model.actuators[a].name, deformation.multipliers[a]);
@@ -111,7 +111,7 @@ void add_surroundings(const Model& model, VtuContent& content) {
 
 /// Adds the faces of layers, each layer a region: whatever is known of elements is 0 in them.
 void add_layers(const Model& model, VtuContent& content) {
-  for (const auto& layer : model.layers) {
+  for (const auto& layer : model.reinforcement.layers) {
     if (layer->faces.empty()) continue;
     const auto region = static_cast<Index>(content.region_names.size());
     content.region_names.push_back("layer_" + layer->name);
@@ -159,9 +159,9 @@ void write_shape(const fs::path& path, const Model& model, const State& state, c
   VtuContent content;
   const Points& positions = state.positions;
   content.points = positions;
-  content.tetrahedra = model.tetrahedra;
-  content.edge_nodes = model.edge_nodes;
-  content.prisms = model.prisms;
+  content.tetrahedra = model.elements.tetrahedra;
+  content.edge_nodes = model.elements.edge_nodes;
+  content.prisms = model.elements.prisms;
   const Points moved = positions - model.rest;
   content.point_fields.push_back({"displacement_mm", 3, {moved.data(), moved.data() + moved.size()}});
 
@@ -176,7 +176,7 @@ void write_shape(const fs::path& path, const Model& model, const State& state, c
   }
   const Field mark{"converged", 1, std::vector<double>(deformation.strain.size(), converged ? 1 : 0)};
   content.cell_fields = {{"volume_ratio", 1, deformation.volume_ratio}, greatest, least, actuator, mark};
-  content.region_names = model.region_names;
+  content.region_names = model.elements.region_names;
   add_forces(model, deformation, content);
   add_layers(model, content);
   add_surroundings(model, content);

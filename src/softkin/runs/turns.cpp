@@ -22,12 +22,13 @@ bool is_of_one_element(const Model& model, const EmbeddedPoint& point) {
   const auto all = [&](const auto& belongs) {
     return std::all_of(point.vertices.begin(), point.vertices.end(), belongs);
   };
-  for (std::size_t t = 0; t < model.tetrahedra.size(); ++t)
+  for (std::size_t t = 0; t < model.elements.tetrahedra.size(); ++t)
     if (all([&](Index v) {
-          return has(model.tetrahedra[t], v) || (!model.edge_nodes.empty() && has(model.edge_nodes[t], v));
+          return has(model.elements.tetrahedra[t], v) ||
+                 (!model.elements.edge_nodes.empty() && has(model.elements.edge_nodes[t], v));
         }))
       return true;
-  return std::any_of(model.prisms.begin(), model.prisms.end(),
+  return std::any_of(model.elements.prisms.begin(), model.elements.prisms.end(),
                      [&](const Prism& prism) { return all([&](Index v) { return has(prism, v); }); });
 }
 

@@ -67,9 +67,9 @@ std::array<Barycentric, 4> integration_points() {
 
 void append_quadratic(const Model& model, const Points& positions, ElementDeformation& out) {
   const std::array<Barycentric, 4> points = integration_points();
-  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
-    const TetrahedronNodes now = nodes_of(positions, model.tetrahedra[e], model.edge_nodes[e]);
-    const TetrahedronNodes rest = nodes_of(model.rest, model.tetrahedra[e], model.edge_nodes[e]);
+  for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e) {
+    const TetrahedronNodes now = nodes_of(positions, model.elements.tetrahedra[e], model.elements.edge_nodes[e]);
+    const TetrahedronNodes rest = nodes_of(model.rest, model.elements.tetrahedra[e], model.elements.edge_nodes[e]);
     double least = std::numeric_limits<double>::infinity();
     Strain most{};
     std::array<double, 2> range{};
@@ -113,7 +113,7 @@ double volume_of(const Model& model, const ChamberDrive& chamber, const Points& 
   }
   if (!chamber.cavity.empty()) return enclosed_volume(positions, chamber.cavity);
   double sum = 0;
-  for (const Index e : chamber.tetrahedra) sum += signed_volume(positions, model.tetrahedra[e]);
+  for (const Index e : chamber.tetrahedra) sum += signed_volume(positions, model.elements.tetrahedra[e]);
   return sum;
 }
 
@@ -123,7 +123,7 @@ double measure_of(const Model& model, const Actuator& actuator, const Points& po
   if (const auto* chamber = actuator.as<ChamberDrive>()) return volume_of(model, *chamber, positions);
   double sum = 0;
   if (const auto* dea = actuator.as<DeaDrive>())
-    for (const Index e : dea->prisms) sum += mean_area(positions, model.prisms[e]);
+    for (const Index e : dea->prisms) sum += mean_area(positions, model.elements.prisms[e]);
   return sum;
 }
 
@@ -157,14 +157,15 @@ bool is_body(const ElementRole& role) {
 
 /// Of an element, tetrahedra first, then prisms.
 const ElementRole& role_of(const Model& model, std::size_t element) {
-  const std::size_t tetrahedra = model.tetrahedra.size();
-  return element < tetrahedra ? model.tetrahedron_roles[element] : model.prism_roles[element - tetrahedra];
+  const std::size_t tetrahedra = model.elements.tetrahedra.size();
+  return element < tetrahedra ? model.elements.tetrahedron_roles[element]
+                              : model.elements.prism_roles[element - tetrahedra];
 }
 
 Vec3 centroid_of(const Model& model, const Points& positions, std::size_t element) {
-  const std::size_t tetrahedra = model.tetrahedra.size();
-  return element < tetrahedra ? centroid(positions, model.tetrahedra[element])
-                              : centroid(positions, model.prisms[element - tetrahedra]);
+  const std::size_t tetrahedra = model.elements.tetrahedra.size();
+  return element < tetrahedra ? centroid(positions, model.elements.tetrahedra[element])
+                              : centroid(positions, model.elements.prisms[element - tetrahedra]);
 }
 
 std::vector<Sample> body_samples(const Model& model, const ElementDeformation& deformation) {
@@ -176,8 +177,8 @@ std::vector<Sample> body_samples(const Model& model, const ElementDeformation& d
           {extreme(deformation.strain[first + e]), deformation.range[first + e], volumes[e], roles[e].material});
     }
   };
-  add(model.tetrahedron_roles, model.tetrahedron_volumes, 0);
-  add(model.prism_roles, model.prism_volumes, model.tetrahedra.size());
+  add(model.elements.tetrahedron_roles, model.elements.tetrahedron_volumes, 0);
+  add(model.elements.prism_roles, model.elements.prism_volumes, model.elements.tetrahedra.size());
   return samples;
 }
 
@@ -193,25 +194,25 @@ double achieved_ratio(const Model& model, const Actuator& actuator, const Points
 
 ElementDeformation deformation_of(const Model& model, const Points& positions) {
   ElementDeformation deformation;
-  if (model.edge_nodes.empty())
-    append(model, model.tetrahedra, model.tetrahedron_volumes, positions, deformation);
+  if (model.elements.edge_nodes.empty())
+    append(model, model.elements.tetrahedra, model.elements.tetrahedron_volumes, positions, deformation);
   else
     append_quadratic(model, positions, deformation);
-  append(model, model.prisms, model.prism_volumes, positions, deformation);
+  append(model, model.elements.prisms, model.elements.prism_volumes, positions, deformation);
   return deformation;
 }
 
 std::vector<Reaction> reactions(const Model& model, const Points& positions, const ElementDeformation& deformation) {
   std::vector<Reaction> all;
   if (deformation.reactions.rows() == 0) return all;
-  for (const Support& support : model.supports) {
+  for (const Support& support : model.held.supports) {
     Reaction& reaction = all.emplace_back();
     for (const Index v : support.vertices)
       reaction.center += vertex_at(positions, v) / static_cast<double>(support.vertices.size());
   }
   for (Index v = 0; v < positions.rows(); ++v)
     for (int axis = 0; axis < 3; ++axis) {
-      const Index s = model.support_of[v][axis];
+      const Index s = model.held.support_of[v][axis];
       if (s < 0) continue;
       const Vec3 force = deformation.reactions(v, axis) * Vec3::Unit(axis);
       all[s].force += force;
@@ -236,7 +237,7 @@ std::optional<StressExtremes> stress_extremes(const Model& model, const Points& 
   const auto extreme = [&](double value, std::size_t e) {
     const Index region = role_of(model, e).region;
     return StressExtremes::Extreme{value, centroid_of(model, positions, e),
-                                   region < 0 ? "" : model.region_names[region]};
+                                   region < 0 ? "" : model.elements.region_names[region]};
   };
   return StressExtremes{extreme(stress.von_mises[most], most), extreme(stress.principal[greatest][0], greatest),
                         extreme(stress.principal[least][2], least)};
@@ -266,16 +267,17 @@ StrainHistogram strain_histogram(const Model& model, const ElementDeformation& d
     histogram.shares[std::min(bins - 1, static_cast<std::size_t>(std::floor(s.strain / width) - first))] +=
         s.volume / total;
 
-  for (std::size_t m = 0; m < model.materials.size(); ++m) {
-    if (!model.materials[m].linear_range) continue;
+  for (std::size_t m = 0; m < model.elements.materials.size(); ++m) {
+    if (!model.elements.materials[m].linear_range) continue;
     double whole = 0, beyond = 0;
     for (const Sample& s : samples)
       if (s.material == static_cast<Index>(m)) {
         whole += s.volume;
-        if (std::abs(s.strain) > *model.materials[m].linear_range) beyond += s.volume;
+        if (std::abs(s.strain) > *model.elements.materials[m].linear_range) beyond += s.volume;
       }
     if (whole > 0)  // else it is that of a dea alone
-      histogram.beyond.push_back({model.materials[m].region, *model.materials[m].linear_range, beyond / whole});
+      histogram.beyond.push_back(
+          {model.elements.materials[m].region, *model.elements.materials[m].linear_range, beyond / whole});
   }
   std::sort(samples.begin(), samples.end(),
             [](const Sample& a, const Sample& b) { return std::abs(a.strain) < std::abs(b.strain); });

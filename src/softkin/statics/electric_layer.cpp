@@ -51,12 +51,13 @@ PrismField field_of(const PrismNodes& rest, const PrismNodes& nodes) {
 }  // namespace
 
 std::vector<double> layer_permittivity(const Model& model, Index actuator) {
-  std::vector<double> permittivity(model.prisms.size(), 0);
+  std::vector<double> permittivity(model.elements.prisms.size(), 0);
   const auto& dea = std::get<DeaDrive>(model.actuators[actuator].drive);
   for (std::size_t i = 0; i < dea.prisms.size(); ++i) {
     const Index e = dea.prisms[i];
-    permittivity[e] = energy::vacuum_permittivity_MPa * model.materials[model.prism_roles[e].material].permittivity *
-                      dea.shares[i] * dea.shares[i];
+    permittivity[e] = energy::vacuum_permittivity_MPa *
+                      model.elements.materials[model.elements.prism_roles[e].material].permittivity * dea.shares[i] *
+                      dea.shares[i];
   }
   return permittivity;
 }
@@ -68,7 +69,7 @@ ElectricLayer electric_layer(const Model& model, Index actuator, const Points& p
   ElectricLayer layer;
   double most = -1;
   for (std::size_t i = 0; i < dea.prisms.size(); ++i) {
-    const Prism& prism = model.prisms[dea.prisms[i]];
+    const Prism& prism = model.elements.prisms[dea.prisms[i]];
     const PrismNodes nodes = nodes_of(positions, prism);
     const PrismField field = field_of(nodes_of(model.rest, prism), nodes);
     layer.capacitance_pF += pF_per_unit * permittivity[dea.prisms[i]] * field.capacity_mm;

@@ -23,16 +23,17 @@ bool is_air(const Model& model, const ElementRole& role) {
 
 std::vector<Tetrahedron> body_cells(const Model& model) {
   std::vector<Tetrahedron> cells;
-  cells.reserve(model.tetrahedra.size() * (model.edge_nodes.empty() ? 1 : 8) + 3 * model.prisms.size());
+  cells.reserve(model.elements.tetrahedra.size() * (model.elements.edge_nodes.empty() ? 1 : 8) +
+                3 * model.elements.prisms.size());
   const auto add = [&cells](const auto& pieces) { cells.insert(cells.end(), pieces.begin(), pieces.end()); };
-  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
-    if (is_air(model, model.tetrahedron_roles[e])) continue;
-    if (model.edge_nodes.empty())
-      cells.push_back(model.tetrahedra[e]);
+  for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e) {
+    if (is_air(model, model.elements.tetrahedron_roles[e])) continue;
+    if (model.elements.edge_nodes.empty())
+      cells.push_back(model.elements.tetrahedra[e]);
     else
-      add(split(model.tetrahedra[e], model.edge_nodes[e]));
+      add(split(model.elements.tetrahedra[e], model.elements.edge_nodes[e]));
   }
-  for (const Prism& prism : model.prisms) add(split(prism));
+  for (const Prism& prism : model.elements.prisms) add(split(prism));
   return cells;
 }
 

@@ -65,6 +65,10 @@ Statics::~Statics() = default;
 Statics::Statics(Statics&&) noexcept = default;
 Statics& Statics::operator=(Statics&&) noexcept = default;
 
+const Model& Statics::model() const {
+  return parts_->model;
+}
+
 State Statics::rest() const {
   State state;
   state.positions = parts_->model.rest;

@@ -86,6 +86,9 @@ class Statics {
   Statics(Statics&&) noexcept;
   Statics& operator=(Statics&&) noexcept;
 
+  /// The robot whose equilibria they are.
+  [[nodiscard]] const Model& model() const;
+
   /// The robot at rest, without an actuation: where a first solve begins.
   [[nodiscard]] State rest() const;
 

@@ -12,7 +12,7 @@ namespace {
 /// Waking a thread for every loop costs as much as some hundred elements.
 int worthwhile_threads(const Model& model) {
   constexpr std::size_t elements_each = 1000;
-  const std::size_t elements = model.tetrahedra.size() + model.prisms.size();
+  const std::size_t elements = model.elements.tetrahedra.size() + model.elements.prisms.size();
   return static_cast<int>(
       std::clamp<std::size_t>(elements / elements_each, 1, std::max(1u, std::thread::hardware_concurrency())));
 }

@@ -28,8 +28,8 @@ std::optional<std::size_t> worst_element(const Model& model, const ElementDeform
     for (std::size_t e = 0; e < roles.size(); ++e)
       if (roles[e].material >= 0 && (!worst || is_worse(first + e, *worst))) worst = first + e;
   };
-  look(model.tetrahedron_roles, 0);
-  look(model.prism_roles, model.tetrahedra.size());
+  look(model.elements.tetrahedron_roles, 0);
+  look(model.elements.prism_roles, model.elements.tetrahedra.size());
   return worst;
 }
 
@@ -43,7 +43,7 @@ class Surroundings {
 
   void tell(WorstPlace& place) const {
     if (tell_cables(place) || tell_rigid(place) || tell_chambers(place)) return;
-    if (has([&](Index v) { return model_.fixed[v] != std::array<bool, 3>{}; })) place.beside = "what is held";
+    if (has([&](Index v) { return model_.held.fixed[v] != std::array<bool, 3>{}; })) place.beside = "what is held";
   }
 
  private:
@@ -103,15 +103,15 @@ std::optional<WorstPlace> worst_place(const Model& model, const Points& position
   const std::optional<std::size_t> worst = worst_element(model, deformation);
   if (!worst) return std::nullopt;
   WorstPlace place;
-  place.prism = *worst >= model.tetrahedra.size();
-  const std::size_t e = place.prism ? *worst - model.tetrahedra.size() : *worst;
+  place.prism = *worst >= model.elements.tetrahedra.size();
+  const std::size_t e = place.prism ? *worst - model.elements.tetrahedra.size() : *worst;
   place.element = static_cast<Index>(e);
-  const ElementRole& role = (place.prism ? model.prism_roles : model.tetrahedron_roles)[e];
-  if (role.region >= 0) place.region = model.region_names[role.region];
+  const ElementRole& role = (place.prism ? model.elements.prism_roles : model.elements.tetrahedron_roles)[e];
+  if (role.region >= 0) place.region = model.elements.region_names[role.region];
   place.strain = largest_strain(deformation.strain[*worst]);
   place.volume_ratio = deformation.volume_ratio[*worst];
-  const std::span<const Index> corners =
-      place.prism ? std::span<const Index>(model.prisms[e]) : std::span<const Index>(model.tetrahedra[e]);
+  const std::span<const Index> corners = place.prism ? std::span<const Index>(model.elements.prisms[e])
+                                                     : std::span<const Index>(model.elements.tetrahedra[e]);
   place.at.setZero();
   for (const Index v : corners) place.at += positions.row(v).transpose() / static_cast<double>(corners.size());
   Surroundings(model, positions, corners).tell(place);

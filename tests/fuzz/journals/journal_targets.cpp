@@ -13,13 +13,13 @@ const Statics& statics_of_finger() {
 
 runs::PathJob& path_job() {
   static const std::vector<ActuationStep> steps(4, {finger().rest_actuation(), {}, 2});
-  static runs::PathJob job(finger(), statics_of_finger(), steps, "path.csv", {});
+  static runs::PathJob job(statics_of_finger(), steps, "path.csv", {});
   return job;
 }
 
 runs::FollowJob& follow_job() {
   static const MarkerPath path{{0}, {{true, false, true}}, {{{Vec3(30, 0, 15)}, {}, 2, false}}};
-  static runs::FollowJob job(finger(), statics_of_finger(), path, "path.csv", {});
+  static runs::FollowJob job(statics_of_finger(), path, "path.csv", {});
   return job;
 }
 

@@ -53,10 +53,10 @@ MeshVerdict verdict_of(const Mesh& mesh, const std::string& file) {
 void judge_scene(const RobotSpec& spec, MeshVerdict& verdict) {
   try {
     Model model = compile(spec);
-    verdict.empty_spaces = empty_spaces_in(model.rest, model.tetrahedra, model.prisms);
-    verdict.scene = {std::move(model.warnings), std::move(model.notes), std::nullopt, spec.accept_mesh_errors};
+    verdict.empty_spaces = empty_spaces_in(model.rest, model.elements.tetrahedra, model.elements.prisms);
+    verdict.scene = {std::move(model.warnings), std::move(model.notes), std::nullopt, spec.mesh_options.accept_errors};
   } catch (const InvalidInput& error) {
-    verdict.scene = {{}, {}, error.what(), spec.accept_mesh_errors};
+    verdict.scene = {{}, {}, error.what(), spec.mesh_options.accept_errors};
     verdict.empty_spaces = empty_spaces_in(spec.mesh.vertices, spec.mesh.tetrahedra, spec.mesh.prisms);
   }
 }
@@ -110,8 +110,8 @@ std::optional<CurvedInfo> curved_info(RobotSpec& spec) {
   if (mesh.tetrahedra.empty() || !mesh.prisms.empty()) return std::nullopt;
   const bool quadratic = !mesh.edge_nodes.empty();
   if (quadratic && !has_straight_edges(mesh)) return CurvedInfo{CurvedInfo::Of::mesh, {}, measure_curved(mesh)};
-  const auto of = spec.curve ? CurvedInfo::Of::scene : CurvedInfo::Of::smooth;
-  if (!spec.curve) spec.curve.emplace().smooth = true;
+  const auto of = spec.mesh_options.curve ? CurvedInfo::Of::scene : CurvedInfo::Of::smooth;
+  if (!spec.mesh_options.curve) spec.mesh_options.curve.emplace().smooth = true;
   Mesh curved = elevated(quadratic ? lowered(mesh) : mesh);
   std::vector<std::string> notes;
   const CurvedEdges done = curve_mesh(spec, curved, notes);

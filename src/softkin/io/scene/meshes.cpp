@@ -51,9 +51,9 @@ MeshFile read_file_of(const Context& context, const Map& map) {
 
 /// Where the first file is named; whether errors are accepted, of any.
 void note_origin(const Map& map, RobotSpec& spec) {
-  if (spec.mesh_origin.file.empty()) spec.mesh_origin = map.at("file").origin;
+  if (spec.mesh_options.origin.file.empty()) spec.mesh_options.origin = map.at("file").origin;
   if (const Node* accept = map.find("accept_errors"))
-    spec.accept_mesh_errors = choice(*accept, {"false", "true"}) == 1 || spec.accept_mesh_errors;
+    spec.mesh_options.accept_errors = choice(*accept, {"false", "true"}) == 1 || spec.mesh_options.accept_errors;
 }
 
 void check_joinable(const Node& node, const MeshFile& first, const MeshFile& next) {
@@ -93,9 +93,9 @@ void read_mesh_of(const Context& context, const Map& scene, RobotSpec& spec) {
     const Map map(scene.at("mesh"), {"file", "order", "curve", "accept_errors"});
     MeshFile read = read_file_of(context, map);
     spec.mesh = std::move(read.mesh);
-    spec.quadratic = read.quadratic;
-    spec.curve = std::move(read.curve);
-    spec.linear_by_choice = read.linear_by_choice;
+    spec.mesh_options.quadratic = read.quadratic;
+    spec.mesh_options.curve = std::move(read.curve);
+    spec.mesh_options.linear_by_choice = read.linear_by_choice;
     note_origin(map, spec);
     return;
   }
@@ -120,9 +120,9 @@ void read_mesh_of(const Context& context, const Map& scene, RobotSpec& spec) {
     add_curve(all->curve, read.curve);
   }
   spec.mesh = std::move(all->mesh);
-  spec.quadratic = all->quadratic;
-  spec.curve = std::move(all->curve);
-  spec.linear_by_choice = all->linear_by_choice;
+  spec.mesh_options.quadratic = all->quadratic;
+  spec.mesh_options.curve = std::move(all->curve);
+  spec.mesh_options.linear_by_choice = all->linear_by_choice;
 }
 
 }  // namespace softkin::scene

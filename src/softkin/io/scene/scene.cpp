@@ -185,17 +185,18 @@ void read_parts(const Context& context, const Map& map, RobotSpec& spec) {
   spec.formulation = formulation_of(context, map, spec.materials);
   if (const Node* node = map.find("weights")) spec.weights = read_weights(*node);
   if (const Node::Entry* gravity = map.entry("gravity")) {
-    spec.gravity = read_vector(*gravity->value);
-    spec.gravity_origin = gravity->origin;
+    spec.loads.gravity = read_vector(*gravity->value);
+    spec.loads.gravity_origin = gravity->origin;
   }
   each("void", [&](const Node& item) { spec.voids.push_back(read_region_name(item)); });
   each("fixed", [&](const Node& item) { spec.fixed.push_back(read_fixed(context, item)); });
   each("rigid", [&](const Node& item) { spec.rigid.push_back(read_rigid(context, item, spec.rigid.size() + 1)); });
   if (const Node* node = map.find("actuators")) spec.actuators = read_actuators(context, spec.formulation, *node);
-  if (const Node* node = map.find("submerged")) spec.liquid_around = read_submerged(context, *node, spec.gravity);
+  if (const Node* node = map.find("submerged"))
+    spec.loads.liquid_around = read_submerged(context, *node, spec.loads.gravity);
   if (const Node* node = map.find("atmosphere")) set_atmosphere(positive(*node), spec);
-  each("forces", [&](const Node& item) { spec.forces.push_back(read_force(context, item, forces)); });
-  each("tractions", [&](const Node& item) { spec.tractions.push_back(read_traction(context, item, tractions)); });
+  each("forces", [&](const Node& item) { spec.loads.forces.push_back(read_force(context, item, forces)); });
+  each("tractions", [&](const Node& item) { spec.loads.tractions.push_back(read_traction(context, item, tractions)); });
   each("fibres", [&](const Node& item) { spec.fibres.push_back(read_fibre(context, item, fibres)); });
   each("layers", [&](const Node& item) { spec.layers.push_back(read_layer(context, item, layers)); });
   each("markers", [&](const Node& item) { spec.markers.push_back(read_marker(context, item, markers)); });
@@ -286,14 +287,14 @@ bool parse_vector(const std::string& text, Vec3& vector) {
 }
 
 ForceSpec* find_force(RobotSpec& spec, const std::string& name) {
-  for (ForceSpec& force : spec.forces)
+  for (ForceSpec& force : spec.loads.forces)
     if (force.name == name) return &force;
   return nullptr;
 }
 
 std::string unknown_force(const RobotSpec& spec, const std::string& name) {
   std::vector<std::string> names;
-  for (const ForceSpec& force : spec.forces) names.push_back(force.name);
+  for (const ForceSpec& force : spec.loads.forces) names.push_back(force.name);
   return "no force " + excerpt(name) + (names.empty() ? "; the scene has none" : suggest_name(name, names));
 }
 

@@ -225,9 +225,9 @@ class Columns {
 
   /// What a support exerts: base_force_x_N.
   [[nodiscard]] std::optional<PoseColumn> force_of(const std::string& column) const {
-    for (std::size_t s = 0; s < model_.supports.size(); ++s)
+    for (std::size_t s = 0; s < model_.held.supports.size(); ++s)
       for (int axis = 0; axis < 3; ++axis)
-        if (column == model_.supports[s].name + "_force_" + "xyz"[axis] + "_N")
+        if (column == model_.held.supports[s].name + "_force_" + "xyz"[axis] + "_N")
           return PoseColumn{column, -1, axis, -1, Reading::force, static_cast<Index>(s)};
     return std::nullopt;
   }
@@ -282,7 +282,7 @@ std::vector<PoseColumn> possible_readings(const Model& model) {
       along_axes(sensor->name + "_direction_", "");
     else
       names.push_back(sensor->name + (sensor->kind == SensorKind::length ? "_length_mm" : "_angle_deg"));
-  for (const Support& support : model.supports) along_axes(support.name + "_force_", "_N");
+  for (const Support& support : model.held.supports) along_axes(support.name + "_force_", "_N");
   return reading_columns(model, names);
 }
 

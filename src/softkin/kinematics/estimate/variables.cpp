@@ -108,14 +108,14 @@ void Variables::add_variable(const EstimatedUnknown& unknown, Index actuator, In
 void Variables::add_stiffness(const EstimatedUnknown& unknown, const std::string& region) {
   constexpr double most = 10;  // times the mean, or as small a part of it
   const auto refuse = [&](const std::string& why) { refuse_unknown(unknown, why); };
-  const auto material = std::find_if(model_->materials.begin(), model_->materials.end(),
+  const auto material = std::find_if(model_->elements.materials.begin(), model_->elements.materials.end(),
                                      [&](const Material& m) { return m.region == region; });
-  if (material == model_->materials.end()) {
+  if (material == model_->elements.materials.end()) {
     std::vector<std::string> names;
-    for (const Material& m : model_->materials) names.push_back(m.region);
+    for (const Material& m : model_->elements.materials) names.push_back(m.region);
     refuse("there is no material of region '" + region + "'" + suggest_name(region, names));
   }
-  const auto index = static_cast<Index>(material - model_->materials.begin());
+  const auto index = static_cast<Index>(material - model_->elements.materials.begin());
   if (std::any_of(variables_.begin(), variables_.end(), [&](const Variable& v) { return v.material == index; }))
     refuse("it is to be told twice");
   if (unknown.somewhere) refuse("a stiffness has no place: name a force");
@@ -130,7 +130,7 @@ void Variables::add_stiffness(const EstimatedUnknown& unknown, const std::string
 
 std::string name_of(const Model& model, const Variable& variable) {
   if (variable.actuator >= 0) return model.actuators[variable.actuator].name;
-  return "materials." + model.materials[variable.material].region + ".stiffness";
+  return "materials." + model.elements.materials[variable.material].region + ".stiffness";
 }
 
 ToldNumber told_number(const Model& model, const Variable& variable, double value, double deviation) {
@@ -160,7 +160,7 @@ bool Variables::stiffens() const {
 Model Variables::stiffened(const Eigen::VectorXd& values) const {
   Model robot = *model_;
   for (Index i = 0; i < numbers(); ++i)
-    if (const Index m = variables_[i].material; m >= 0) stiffen(robot.materials[m], values[i]);
+    if (const Index m = variables_[i].material; m >= 0) stiffen(robot.elements.materials[m], values[i]);
   return robot;
 }
 

@@ -20,9 +20,14 @@ struct Compared {
 
 class Checker {
  public:
-  Checker(const Model& model, const Statics& statics, const MapOptions& options, const CheckStart& start, Crew& crew,
-          const MapData& data)
-      : model_(model), statics_(statics), options_(options), start_(start), crew_(crew), data_(data), map_(data) {}
+  Checker(const Statics& statics, const MapOptions& options, const CheckStart& start, Crew& crew, const MapData& data)
+      : model_(statics.model()),
+        statics_(statics),
+        options_(options),
+        start_(start),
+        crew_(crew),
+        data_(data),
+        map_(data) {}
 
   /// False where it was stopped. key: for the desk
   bool check_at(const Eigen::VectorXd& commands, Index key, Index number, Compared& made) {
@@ -112,12 +117,12 @@ std::string verdict(const MapData& data, const MapOptions& options, const std::v
 
 }  // namespace
 
-std::optional<std::string> check_map(const Model& model, const Statics& statics, const MapOptions& options, int round,
+std::optional<std::string> check_map(const Statics& statics, const MapOptions& options, int round,
                                      const CheckStart& start, Crew& crew, MapData& data) {
   const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(round);
   const RowMatrix commands = random_commands(data, options.checks, seed);
   std::vector<Compared> all(static_cast<std::size_t>(options.checks));
-  Checker checker(model, statics, options, start, crew, data);
+  Checker checker(statics, options, start, crew, data);
   const Index key = -1 - round;
   const bool done = crew.each(options.checks, {data.equilibria, 0, 0, "checking"}, &MapProgress::checks,
                               [&](Index i) { return checker.check_at(commands.row(i), key, i, all[i]); });

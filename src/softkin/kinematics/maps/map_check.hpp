@@ -11,8 +11,7 @@ using CheckStart = std::function<State(const KinematicMap::Place& place, const E
 ///
 /// round    each has random actuations of its own
 /// returns  why it is not as accurate as was asked for, empty: it is; nothing where it was stopped
-[[nodiscard]] std::optional<std::string> check_map(const Model& model, const Statics& statics,
-                                                   const MapOptions& options, int round, const CheckStart& start,
-                                                   Crew& crew, MapData& data);
+[[nodiscard]] std::optional<std::string> check_map(const Statics& statics, const MapOptions& options, int round,
+                                                   const CheckStart& start, Crew& crew, MapData& data);
 
 }  // namespace softkin::maps

@@ -115,7 +115,7 @@ std::optional<Sample> PieceSolver::solve(const Eigen::VectorXd& commands, const 
   Equilibrium found = statics_.solve(actuation, nearest ? nearest->state : statics_.rest(), own, progress);
   if (found.report.stopped) return std::nullopt;
   // beyond a snap shapes are others than those from where they were reached
-  if (found.report.status != Status::converged || found.report.snapped_mm > 0) return sample;
+  if (found.report.status != Status::converged || found.report.physical.snapped_mm > 0) return sample;
   sample.state = std::move(found.state);
   const Sensitivity sensitivity = statics_.sensitivity(sample.state, own, 1e-7);
   if (!sensitivity.regular) return sample;

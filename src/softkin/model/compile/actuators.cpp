@@ -176,9 +176,9 @@ std::vector<Index> in_model(const ActuatorSpec& spec, const std::vector<Index>& 
 std::vector<Index> tetrahedra_inside(const Model& model, const TriangleSurface& surface) {
   const SurfaceTree tree(surface.vertices, surface.triangles);
   std::vector<Index> inside;
-  for (std::size_t i = 0; i < model.tetrahedra.size(); ++i) {
+  for (std::size_t i = 0; i < model.elements.tetrahedra.size(); ++i) {
     Vec3 centroid = Vec3::Zero();
-    for (const Index v : model.tetrahedra[i]) centroid += 0.25 * vertex_at(model.rest, v);
+    for (const Index v : model.elements.tetrahedra[i]) centroid += 0.25 * vertex_at(model.rest, v);
     if (tree.contains(centroid)) inside.push_back(static_cast<Index>(i));
   }
   return inside;
@@ -212,8 +212,8 @@ void fill_chamber(Compilation& c, const ActuatorSpec& spec, const PneumaticSpec&
              "the surface");
     if (given.surface) chamber.surface = std::move(surface.triangles);
   }
-  take(c, spec, found, model.tetrahedron_roles, c.tetrahedron_of, "tetrahedron", chamber.tetrahedra);
-  for (const Index i : chamber.tetrahedra) actuator.rest_measure += model.tetrahedron_volumes[i];
+  take(c, spec, found, model.elements.tetrahedron_roles, c.tetrahedron_of, "tetrahedron", chamber.tetrahedra);
+  for (const Index i : chamber.tetrahedra) actuator.rest_measure += model.elements.tetrahedron_volumes[i];
 }
 
 /// Physical: the chamber of a region's elements.
@@ -264,9 +264,10 @@ void fill_membrane(Compilation& c, const ActuatorSpec& spec, const DeaSpec& give
     refuse(spec, "is a dea and needs prisms, but region '" + given.region + "' has " +
                      counted(region.tetrahedra.size(), "tetrahedron", "tetrahedra"));
   if (region.prisms.empty()) refuse(spec, "is a dea and needs prisms, but region '" + given.region + "' has none");
-  take(c, spec, in_model(spec, region.prisms, c.prism_at, "prism"), model.prism_roles, c.prism_of, "prism", prisms);
+  take(c, spec, in_model(spec, region.prisms, c.prism_at, "prism"), model.elements.prism_roles, c.prism_of, "prism",
+       prisms);
   for (const Index i : prisms) {
-    const Prism& p = model.prisms[i];
+    const Prism& p = model.elements.prisms[i];
     actuator.rest_measure += 0.5 * (area(model.rest, p[0], p[1], p[2]) + area(model.rest, p[3], p[4], p[5]));
   }
 }
@@ -290,7 +291,7 @@ void fill_shares(const Compilation& c, const ActuatorSpec& spec, const std::opti
     if (!(share >= 0 && std::isfinite(share))) fail("has a share of the voltage of " + number(share) + ": 0 or more");
     if (shares[prism] != none) fail("is there twice");
     const Index at = c.prism_at[prism];
-    if (at < 0 || c.model.prism_roles[at].actuator != static_cast<Index>(c.model.actuators.size()))
+    if (at < 0 || c.model.elements.prism_roles[at].actuator != static_cast<Index>(c.model.actuators.size()))
       fail("does not belong to actuator '" + spec.name + "'");
     shares[prism] = share;
   }

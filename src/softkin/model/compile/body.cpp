@@ -21,7 +21,7 @@ double diagonal_of(const Compilation& c, const std::string& robot) {
   Bounds bounds;
   const auto [begin, end] = vertices_of(c, robot);
   for (Index v = begin; v < end; ++v)
-    if (c.model.used[v]) bounds.extend(vertex_at(c.model.rest, v));
+    if (c.model.elements.used[v]) bounds.extend(vertex_at(c.model.rest, v));
   return bounds.diagonal().norm();
 }
 
@@ -35,12 +35,12 @@ const Body& body_of(Compilation& c, const std::string& robot) {
   std::vector<Tetrahedron> tetrahedra;
   std::vector<EdgeNodes> edge_nodes;
   std::vector<Prism> prisms;
-  for (std::size_t i = 0; i < model.tetrahedra.size(); ++i) {
-    if (model.tetrahedron_roles[i].material < 0 || !is_of(model.tetrahedra[i])) continue;
-    tetrahedra.push_back(model.tetrahedra[i]);
-    if (!model.edge_nodes.empty()) edge_nodes.push_back(model.edge_nodes[i]);
+  for (std::size_t i = 0; i < model.elements.tetrahedra.size(); ++i) {
+    if (model.elements.tetrahedron_roles[i].material < 0 || !is_of(model.elements.tetrahedra[i])) continue;
+    tetrahedra.push_back(model.elements.tetrahedra[i]);
+    if (!model.elements.edge_nodes.empty()) edge_nodes.push_back(model.elements.edge_nodes[i]);
   }
-  for (const Prism& prism : model.prisms)
+  for (const Prism& prism : model.elements.prisms)
     if (is_of(prism)) prisms.push_back(prism);
   Embedder embedder(model.rest, tetrahedra, prisms, edge_nodes);
   Body body{std::move(tetrahedra), std::move(prisms), std::move(embedder), diagonal_of(c, robot)};

@@ -28,7 +28,7 @@ void check_contact(Compilation& c, const ActuatorSpec& spec, const ChamberDrive&
   for (const CavityFace& face : chamber.cavity)
     for (const Index v : nodes_of(face)) vertices.insert(v);
   const auto loose = static_cast<std::size_t>(
-      std::count_if(vertices.begin(), vertices.end(), [&](Index v) { return !c.model.used[v]; }));
+      std::count_if(vertices.begin(), vertices.end(), [&](Index v) { return !c.model.elements.used[v]; }));
   if (loose == vertices.size()) refuse(spec, "has a chamber that does not touch the body");
   if (loose > 0)
     c.model.notes.push_back(counted(loose, "vertex", "vertices") + " on the boundary of the chamber of actuator '" +
@@ -84,18 +84,18 @@ std::array<Index, 3> sorted(Triangle corners) {
 /// The faces of a cavity that are none of the body's elements, nor of sheets.
 std::vector<CavityFace> open_faces(const Model& model, const std::vector<Triangle>& sheets,
                                    const std::vector<CavityFace>& cavity) {
-  std::vector<bool> marked(model.used.size());
+  std::vector<bool> marked(model.elements.used.size());
   for (const CavityFace& face : cavity)
     for (const Index v : face.corners) marked[v] = true;
   std::vector<Triangle> shared;
   const auto add = [&](Index a, Index b, Index c) {
     if (marked[a] && marked[b] && marked[c]) shared.push_back(sorted({a, b, c}));
   };
-  for (const Tetrahedron& t : model.tetrahedra) {
+  for (const Tetrahedron& t : model.elements.tetrahedra) {
     if (marked[t[0]] + marked[t[1]] + marked[t[2]] + marked[t[3]] < 3) continue;
     for (const auto& [a, b, c] : tetrahedron_faces) add(t[a], t[b], t[c]);
   }
-  for (const Prism& p : model.prisms) {
+  for (const Prism& p : model.elements.prisms) {
     for (const auto& [a, b, c] : prism_triangles) add(p[a], p[b], p[c]);
     for (const auto& q : prism_quads)  // either diagonal may have split it
       for (int i = 0; i < 4; ++i) add(p[q[i]], p[q[(i + 1) % 4]], p[q[(i + 2) % 4]]);
@@ -114,8 +114,8 @@ std::vector<CavityFace> open_faces(const Model& model, const std::vector<Triangl
 bool is_plate(const Model& model, const CavityFace& face, bool loose) {
   const std::vector<Index> vertices = nodes_of(face);
   const auto held = [&](Index v, int axis) {
-    return model.fixed[v][axis] &&
-           (!loose || (model.held(v, axis) == model.rest(v, axis) && turn_of(model, v) == nullptr));
+    return model.held.fixed[v][axis] &&
+           (!loose || (model.held.at(v, axis) == model.rest(v, axis) && turn_of(model, v) == nullptr));
   };
   const auto all_held = [&](int axis) {
     return std::all_of(vertices.begin(), vertices.end(), [&](Index v) { return held(v, axis); });
@@ -135,7 +135,7 @@ void check_openings(const Compilation& c, const ActuatorSpec& spec, const Chambe
   const Model& model = c.model;
   const std::vector<CavityFace> open = open_faces(model, c.sheets, chamber.cavity);
   const bool loose = std::any_of(open.begin(), open.end(), [&](const CavityFace& face) {
-    return std::any_of(face.corners.begin(), face.corners.end(), [&](Index v) { return !model.used[v]; });
+    return std::any_of(face.corners.begin(), face.corners.end(), [&](Index v) { return !model.elements.used[v]; });
   });
   std::vector<Triangle> triangles;
   for (const CavityFace& face : open) triangles.push_back(face.corners);
@@ -173,9 +173,9 @@ void take_as_flat(const Compilation& c, const ActuatorSpec& spec, ChamberDrive& 
 
 const std::vector<EmptySpace>& empty_spaces(Compilation& c) {
   if (!c.empty_spaces) {
-    std::vector<Tetrahedron> tetrahedra = c.model.tetrahedra;
+    std::vector<Tetrahedron> tetrahedra = c.model.elements.tetrahedra;
     tetrahedra.insert(tetrahedra.end(), c.chamber_tetrahedra.begin(), c.chamber_tetrahedra.end());
-    c.empty_spaces = empty_spaces_in(c.model.rest, tetrahedra, c.model.prisms);
+    c.empty_spaces = empty_spaces_in(c.model.rest, tetrahedra, c.model.elements.prisms);
     c.space_actuators.assign(c.empty_spaces->size(), -1);
   }
   return *c.empty_spaces;

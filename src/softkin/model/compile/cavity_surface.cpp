@@ -141,9 +141,9 @@ double filled_volume(const Compilation& c, const SurfaceTree& tree) {
       if (tree.contains(middle)) filled += volumes[e];
     }
   };
-  add(c.model.tetrahedra, c.model.tetrahedron_volumes);
+  add(c.model.elements.tetrahedra, c.model.elements.tetrahedron_volumes);
   add(c.chamber_tetrahedra, c.chamber_volumes);
-  add(c.model.prisms, c.model.prism_volumes);
+  add(c.model.elements.prisms, c.model.elements.prism_volumes);
   return filled;
 }
 

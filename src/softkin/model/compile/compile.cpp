@@ -59,7 +59,7 @@ EmbeddedPoint embed_point(Compilation& c, const PointRef& reference, const std::
     throw InvalidInput(reference.origin, what + ": " + error.what());
   }
   for (const Index v : mean.vertices)
-    if (!c.model.used[v])
+    if (!c.model.elements.used[v])
       throw InvalidInput(reference.origin, what + " is the mean of region '" + name + "', of which vertex " +
                                                std::to_string(v) + " (from 0) belongs to no element of the robot");
   return mean;
@@ -110,7 +110,7 @@ std::optional<Mesh> in_other_order(const RobotSpec& spec, std::vector<std::strin
   const Origin origin{.file = spec.name};
   const bool is_quadratic = order_of(spec.mesh) == 2;
   if (spec.formulation == Formulation::physical) {
-    if (!spec.quadratic || is_quadratic) return std::nullopt;
+    if (!spec.mesh_options.quadratic || is_quadratic) return std::nullopt;
     if (!spec.mesh.prisms.empty())
       throw InvalidInput(origin, "a mesh with prisms cannot be of order 2: prisms are linear");
     check_cells(spec.mesh, origin);
@@ -118,7 +118,7 @@ std::optional<Mesh> in_other_order(const RobotSpec& spec, std::vector<std::strin
   }
   if (is_quadratic)
     notes.emplace_back("The mesh is of order 2: its edge nodes are left out, target shapes are of linear elements.");
-  else if (spec.quadratic)
+  else if (spec.mesh_options.quadratic)
     notes.emplace_back("The elements stay linear: target shapes are not of order 2.");
   if (!is_quadratic) return std::nullopt;
   check_cells(spec.mesh, origin);
@@ -132,7 +132,7 @@ Model compile(const RobotSpec& spec) {
   const std::optional<Mesh> other = in_other_order(spec, notes);
   const Mesh& straight = other ? *other : spec.mesh;
   std::optional<Mesh> curved;
-  if (spec.curve && order_of(straight) == 2) curved = straight;
+  if (spec.mesh_options.curve && order_of(straight) == 2) curved = straight;
   Compilation c(spec, curved ? *curved : straight, straight);
   if (curved) curve_mesh(spec, *curved, notes);
   c.model.notes = std::move(notes);

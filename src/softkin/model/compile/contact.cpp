@@ -93,9 +93,9 @@ double distance_of(const ContactSpec& spec, double diagonal) {
 double softest(const Compilation& c) {
   const Model& model = c.model;
   double least = std::numeric_limits<double>::infinity();
-  for (const auto* roles : {&model.tetrahedron_roles, &model.prism_roles})
+  for (const auto* roles : {&model.elements.tetrahedron_roles, &model.elements.prism_roles})
     for (const ElementRole& role : *roles)
-      least = std::min(least, stiffness_at_rest(model.materials[role.material].elastic).youngs_modulus_MPa);
+      least = std::min(least, stiffness_at_rest(model.elements.materials[role.material].elastic).youngs_modulus_MPa);
   if (c.sheets.empty()) return least;
   for (const auto& layer : c.spec.layers)
     least = std::min(least, std::min(layer->e1, layer->e2) * layer->thickness_mm / model.diagonal_mm);
@@ -166,7 +166,8 @@ void add_robot_parts(Compilation& c, const ContactSpec& contact) {
       regions.emplace_back(c, c.regions.find(name, spec.origin));
     }
   std::vector<Index> owners;
-  model.triangles = boundary_triangles(c.model.tetrahedra, c.model.edge_nodes, c.model.prisms, &owners);
+  model.triangles =
+      boundary_triangles(c.model.elements.tetrahedra, c.model.elements.edge_nodes, c.model.elements.prisms, &owners);
   add_sheets(c, owners);
   std::vector<bool> any(model.parts.size());
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {

@@ -51,7 +51,7 @@ struct Slab {
 /// that changes most.
 double largest_gain(const Model& model, const Points& positions) {
   Vec3 low = Vec3::Constant(HUGE_VAL), high = -low;
-  for (const Tetrahedron& t : model.tetrahedra)
+  for (const Tetrahedron& t : model.elements.tetrahedra)
     for (const Index v : t) {
       low = low.cwiseMin(vertex_at(model.rest, v));
       high = high.cwiseMax(vertex_at(model.rest, v));
@@ -60,14 +60,15 @@ double largest_gain(const Model& model, const Points& positions) {
   const double length = (high - low).maxCoeff(&axis);
   std::array<Slab, slab_count> all;
   double whole = 0;
-  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
+  for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e) {
     double middle = 0;
-    for (const Index v : model.tetrahedra[e]) middle += model.rest(v, axis) / 4;
+    for (const Index v : model.elements.tetrahedra[e]) middle += model.rest(v, axis) / 4;
     Slab& slab = all[std::min<std::size_t>(slab_count - 1,
                                            static_cast<std::size_t>((middle - low[axis]) / length * slab_count))];
-    const double volume = model.tetrahedron_volumes[e];
+    const double volume = model.elements.tetrahedron_volumes[e];
     slab.volume += volume;
-    slab.gain += shape_integrals(nodes_of(positions, model.tetrahedra[e], model.edge_nodes[e])).sum() - volume;
+    slab.gain +=
+        shape_integrals(nodes_of(positions, model.elements.tetrahedra[e], model.elements.edge_nodes[e])).sum() - volume;
     whole += volume;
   }
   double largest = 0;
@@ -84,7 +85,7 @@ bool has_straight_edges(const Mesh& mesh) {
 }
 
 CurvedEdges curve_mesh(const RobotSpec& spec, Mesh& mesh, std::vector<std::string>& notes) {
-  const CurveSpec& curve = *spec.curve;
+  const CurveSpec& curve = *spec.mesh_options.curve;
   if (mesh.tetrahedra.empty())
     throw InvalidInput(curve.origin, "'curve' moves nodes of elements, and the mesh is of triangles alone");
   if (!has_straight_edges(mesh))
@@ -110,8 +111,8 @@ CurvedEdges curve_mesh(const RobotSpec& spec, Mesh& mesh, std::vector<std::strin
 
 void doubt_straight_edges(Compilation& c) {
   Model& model = c.model;
-  if (model.formulation != Formulation::physical || model.edge_nodes.empty()) return;
-  if (c.spec.curve || c.spec.curved || !has_straight_edges(c.mesh)) return;
+  if (model.formulation != Formulation::physical || model.elements.edge_nodes.empty()) return;
+  if (c.spec.mesh_options.curve || c.spec.mesh_options.curved || !has_straight_edges(c.mesh)) return;
   const Points bulges =
       smooth_bulges(c.mesh, labels_of(c.mesh, regions_of(c.spec, c.mesh)), CurveSpec{}.crease_degrees);
   Points positions = model.rest;

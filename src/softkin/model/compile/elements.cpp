@@ -155,22 +155,22 @@ void take_edge_nodes(const Compilation& c, const std::vector<Tetrahedron>& eleme
 
 void find_used_vertices(Compilation& c) {
   Model& model = c.model;
-  model.used = vertices_of_elements(model);
+  model.elements.used = vertices_of_elements(model);
   use_sheets(c);
   Bounds bounds;
-  model.fixed.assign(model.used.size(), {false, false, false});
-  std::vector<bool> of_chamber(model.used.size());
+  model.held.fixed.assign(model.elements.used.size(), {false, false, false});
+  std::vector<bool> of_chamber(model.elements.used.size());
   for (const Tetrahedron& t : c.chamber_tetrahedra)
     for (const Index v : t) of_chamber[v] = true;
   for (const EdgeNodes& nodes : c.chamber_edge_nodes)
     for (const Index v : nodes) of_chamber[v] = true;
   std::size_t unused = 0;
-  for (std::size_t v = 0; v < model.used.size(); ++v) {
-    if (model.used[v]) {
+  for (std::size_t v = 0; v < model.elements.used.size(); ++v) {
+    if (model.elements.used[v]) {
       bounds.extend(vertex_at(model.rest, static_cast<Index>(v)));
       continue;
     }
-    model.fixed[v] = {true, true, true};
+    model.held.fixed[v] = {true, true, true};
     if (!of_chamber[v]) ++unused;
   }
   model.diagonal_mm = bounds.diagonal().norm();
@@ -188,10 +188,10 @@ void name_regions(Compilation& c) {
   };
   for (const Region& region : c.regions.regions()) {
     if (region.dimension != 3) continue;
-    const auto index = static_cast<Index>(model.region_names.size());
-    model.region_names.push_back(region.name);
-    name(region.tetrahedra, c.tetrahedron_at, index, model.tetrahedron_roles);
-    name(region.prisms, c.prism_at, index, model.prism_roles);
+    const auto index = static_cast<Index>(model.elements.region_names.size());
+    model.elements.region_names.push_back(region.name);
+    name(region.tetrahedra, c.tetrahedron_at, index, model.elements.tetrahedron_roles);
+    name(region.prisms, c.prism_at, index, model.elements.prism_roles);
   }
 }
 
@@ -233,34 +233,37 @@ void compile_elements(Compilation& c) {
   }
   const std::vector<bool> void_prisms = void_elements(c, &Region::prisms, mesh.prisms.size());
   model.rest = mesh.vertices;
-  model.held = mesh.vertices;
+  model.held.at = mesh.vertices;
   // below this a volume is the rounding of the coordinates
   const double diagonal = (model.rest.colwise().maxCoeff() - model.rest.colwise().minCoeff()).norm();
   const double least_volume = 1e-15 * diagonal * diagonal * diagonal;
   const std::size_t reversed =
       orient(c, not_body,
-             Kind<Tetrahedron>{"tetrahedron", "tetrahedra", mesh.tetrahedra, model.tetrahedra,
-                               model.tetrahedron_volumes, c.tetrahedron_at, c.tetrahedron_of},
+             Kind<Tetrahedron>{"tetrahedron", "tetrahedra", mesh.tetrahedra, model.elements.tetrahedra,
+                               model.elements.tetrahedron_volumes, c.tetrahedron_at, c.tetrahedron_of},
              least_volume) +
       orient(c, not_chamber,
              Kind<Tetrahedron>{"tetrahedron", "tetrahedra", mesh.tetrahedra, c.chamber_tetrahedra, c.chamber_volumes,
                                c.chamber_at, c.chamber_of},
              least_volume) +
       orient(c, void_prisms,
-             Kind<Prism>{"prism", "prisms", mesh.prisms, model.prisms, model.prism_volumes, c.prism_at, c.prism_of},
+             Kind<Prism>{"prism", "prisms", mesh.prisms, model.elements.prisms, model.elements.prism_volumes,
+                         c.prism_at, c.prism_of},
              least_volume);
-  if (model.tetrahedra.empty() && model.prisms.empty() && !(mesh.tetrahedra.empty() && mesh.prisms.empty()))
+  if (model.elements.tetrahedra.empty() && model.elements.prisms.empty() &&
+      !(mesh.tetrahedra.empty() && mesh.prisms.empty()))
     throw InvalidInput(c.origin, std::string("every element of the mesh is void") +
                                      (c.chamber_tetrahedra.empty() ? "" : " or belongs to a chamber"));
   if (reversed > 0)
     model.notes.push_back(counted(reversed, "element was", "elements were") +
                           " reordered, because the order of the vertices made the volume negative.");
   if (!mesh.edge_nodes.empty()) {
-    take_edge_nodes(c, model.tetrahedra, c.tetrahedron_of, model.edge_nodes, model.tetrahedron_volumes);
+    take_edge_nodes(c, model.elements.tetrahedra, c.tetrahedron_of, model.elements.edge_nodes,
+                    model.elements.tetrahedron_volumes);
     take_edge_nodes(c, c.chamber_tetrahedra, c.chamber_of, c.chamber_edge_nodes, c.chamber_volumes);
   }
-  model.tetrahedron_roles.resize(model.tetrahedra.size());
-  model.prism_roles.resize(model.prisms.size());
+  model.elements.tetrahedron_roles.resize(model.elements.tetrahedra.size());
+  model.elements.prism_roles.resize(model.elements.prisms.size());
   c.chamber_roles.resize(c.chamber_tetrahedra.size());
   find_used_vertices(c);
   name_regions(c);

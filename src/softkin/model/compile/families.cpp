@@ -24,10 +24,10 @@ void check_family(const MaterialSpec& material, const FamilySpec& family) {
 /// The elements of a material, and the directions of its fibres there.
 std::shared_ptr<const Families> families_of(const Model& model, const MaterialSpec& material, Index index) {
   auto families = std::make_shared<Families>();
-  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e)
-    if (model.tetrahedron_roles[e].material == index) families->tetrahedra.push_back(static_cast<Index>(e));
-  for (std::size_t e = 0; e < model.prisms.size(); ++e)
-    if (model.prism_roles[e].material == index) families->prisms.push_back(static_cast<Index>(e));
+  for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e)
+    if (model.elements.tetrahedron_roles[e].material == index) families->tetrahedra.push_back(static_cast<Index>(e));
+  for (std::size_t e = 0; e < model.elements.prisms.size(); ++e)
+    if (model.elements.prism_roles[e].material == index) families->prisms.push_back(static_cast<Index>(e));
   const std::string owner = "the material of region '" + material.region + "': the direction of its fibres";
   for (const FamilySpec& spec : material.families->families) {
     check_family(material, spec);
@@ -39,7 +39,7 @@ std::shared_ptr<const Families> families_of(const Model& model, const MaterialSp
     for (const Index e : families->tetrahedra)
       family.directions.push_back(directions.of(model, static_cast<std::size_t>(e)));
     for (const Index e : families->prisms)
-      family.directions.push_back(directions.of(model, model.tetrahedra.size() + static_cast<std::size_t>(e)));
+      family.directions.push_back(directions.of(model, model.elements.tetrahedra.size() + static_cast<std::size_t>(e)));
   }
   return families;
 }
@@ -68,7 +68,7 @@ void compile_families(Compilation& c) {
       throw InvalidInput(spec.origin, "the material of region '" + spec.region + "' has no family of fibres");
     auto families = families_of(c.model, spec, static_cast<Index>(m));
     refuse_growth(c, *families, spec);
-    c.model.materials[m].families = std::move(families);
+    c.model.elements.materials[m].families = std::move(families);
   }
 }
 

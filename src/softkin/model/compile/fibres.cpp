@@ -74,12 +74,12 @@ class Carrier {
     std::vector<Prism> prisms;
     for (const Index e : region.tetrahedra) {
       const Index own = c.tetrahedron_at[e];
-      if (own < 0 || c.model.tetrahedron_roles[own].material < 0) continue;
-      tetrahedra.push_back(c.model.tetrahedra[own]);
-      if (!c.model.edge_nodes.empty()) edge_nodes.push_back(c.model.edge_nodes[own]);
+      if (own < 0 || c.model.elements.tetrahedron_roles[own].material < 0) continue;
+      tetrahedra.push_back(c.model.elements.tetrahedra[own]);
+      if (!c.model.elements.edge_nodes.empty()) edge_nodes.push_back(c.model.elements.edge_nodes[own]);
     }
     for (const Index e : region.prisms)
-      if (const Index own = c.prism_at[e]; own >= 0) prisms.push_back(c.model.prisms[own]);
+      if (const Index own = c.prism_at[e]; own >= 0) prisms.push_back(c.model.elements.prisms[own]);
     if (tetrahedra.empty() && prisms.empty())
       refuse_fibre(spec, "runs in region '" + *spec.region + "', which has no element of the body");
     own_ = std::make_unique<const Embedder>(c.model.rest, tetrahedra, prisms, edge_nodes);
@@ -123,7 +123,7 @@ FibrePlace place_between(const Points& rest, const EmbeddedPoint& a, const Embed
 void add_places(const Compilation& c, const Embedder& embedder, Index element, const Vec3& from, const Vec3& to,
                 Fibre& fibre) {
   constexpr double shortest_secant = 1e-3;  // over the element's longest edge: weights are known to 1e-13
-  const bool quadratic = !c.model.edge_nodes.empty();
+  const bool quadratic = !c.model.elements.edge_nodes.empty();
   const double length = (to - from).norm(), off = quadratic ? 0.5 / std::sqrt(3.0) : 0;
   const Vec3 along = (to - from) / length;
   const Vec3 half = std::max((quadratic ? 0.2 : 0.5) * length, shortest_secant * embedder.edge_of(element)) * along;
@@ -144,7 +144,7 @@ void check_numbers(const FibreSpec& spec, const std::set<std::string>& names) {
 /// What a fibre that does not stretch is held with [N].
 double unstretchable_N(const Compilation& c, const Embedder& embedder, const std::vector<Vec3>& corners) {
   double softest = std::numeric_limits<double>::infinity(), longest = 0;
-  for (const Material& material : c.model.materials)
+  for (const Material& material : c.model.elements.materials)
     softest = std::min(softest, stiffness_at_rest(material.elastic).youngs_modulus_MPa);
   for (const Vec3& corner : corners) longest = std::max(longest, embedder.edge_near(corner));
   return unstretchable * softest * longest * longest;
@@ -222,7 +222,7 @@ void compile_fibres(Compilation& c) {
   for (const FibreSpec& spec : c.spec.fibres) {
     check_numbers(spec, names);
     names.insert(spec.name);
-    c.model.fibres.push_back(fibre_of(c, spec, outside));
+    c.model.reinforcement.fibres.push_back(fibre_of(c, spec, outside));
   }
   std::erase_if(outside, [&](const auto& fibre) { return fibre.first <= 1e-6 * c.model.diagonal_mm; });
   if (outside.empty()) return;

@@ -68,7 +68,7 @@ void take_growing(const Compilation& c, const ActuatorSpec& spec, const std::str
   if (growth.tetrahedra.empty() && growth.prisms.empty())
     refuse(spec, "has nothing that grows: region '" + name + "' holds no element of the body");
   for (const Index e : growth.prisms)
-    if (const Index dea = c.model.prism_roles[e].actuator; dea >= 0)
+    if (const Index dea = c.model.elements.prism_roles[e].actuator; dea >= 0)
       refuse(spec, "lets the layer of dea '" + c.model.actuators[dea].name +
                        "' grow, which has an active stretch of its own");
 }
@@ -86,7 +86,8 @@ void add_growth(Compilation& c, Index actuator, const GrowthPart& part, Growers&
     for (const Index e : growth->tetrahedra)
       growth->directions.push_back(directions.of(c.model, static_cast<std::size_t>(e)));
     for (const Index e : growth->prisms)
-      growth->directions.push_back(directions.of(c.model, c.model.tetrahedra.size() + static_cast<std::size_t>(e)));
+      growth->directions.push_back(
+          directions.of(c.model, c.model.elements.tetrahedra.size() + static_cast<std::size_t>(e)));
   }
   c.model.growths.push_back(std::move(growth));
 }
@@ -109,7 +110,8 @@ void check_growth(const ActuatorSpec& spec, const GrowthSpec& growth, Formulatio
 }
 
 void compile_growth(Compilation& c) {
-  Growers growers{std::vector<Index>(c.model.tetrahedra.size(), -1), std::vector<Index>(c.model.prisms.size(), -1)};
+  Growers growers{std::vector<Index>(c.model.elements.tetrahedra.size(), -1),
+                  std::vector<Index>(c.model.elements.prisms.size(), -1)};
   for (std::size_t a = 0; a < c.spec.actuators.size(); ++a) {
     const auto* growth = c.spec.actuators[a].as<GrowthSpec>();
     if (growth == nullptr) continue;

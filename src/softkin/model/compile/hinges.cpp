@@ -15,7 +15,9 @@ namespace {
 class Blocks {
  public:
   explicit Blocks(const Model& model)
-      : model_(model), elements_(model.tetrahedra.size() + model.prisms.size()), sets_(elements_ + model.rigid.size()) {
+      : model_(model),
+        elements_(model.elements.tetrahedra.size() + model.elements.prisms.size()),
+        sets_(elements_ + model.rigid.size()) {
     join_by_faces();
     join_rigid();
     for (std::size_t e = 0; e < sets_count(); ++e) blocks_.insert(sets_.find(static_cast<Index>(e)));
@@ -38,10 +40,11 @@ class Blocks {
   /// visit(vertex, block), a vertex more than once.
   template <class Visit>
   void each_vertex(const Visit& visit) {
-    for (std::size_t e = 0; e < model_.tetrahedra.size(); ++e)
-      for (const Index v : model_.tetrahedra[e]) visit(v, sets_.find(static_cast<Index>(e)));
-    for (std::size_t e = 0; e < model_.prisms.size(); ++e)
-      for (const Index v : model_.prisms[e]) visit(v, sets_.find(static_cast<Index>(model_.tetrahedra.size() + e)));
+    for (std::size_t e = 0; e < model_.elements.tetrahedra.size(); ++e)
+      for (const Index v : model_.elements.tetrahedra[e]) visit(v, sets_.find(static_cast<Index>(e)));
+    for (std::size_t e = 0; e < model_.elements.prisms.size(); ++e)
+      for (const Index v : model_.elements.prisms[e])
+        visit(v, sets_.find(static_cast<Index>(model_.elements.tetrahedra.size() + e)));
     for (std::size_t r = 0; r < model_.rigid.size(); ++r)
       for (const Index v : model_.rigid[r].vertices) visit(v, sets_.find(static_cast<Index>(elements_ + r)));
   }
@@ -56,13 +59,13 @@ class Blocks {
       std::sort(corners.begin(), corners.end());
       visit(corners[0], corners[1], corners[2], static_cast<Index>(element));
     };
-    for (std::size_t e = 0; e < model_.tetrahedra.size(); ++e) {
-      const Tetrahedron& t = model_.tetrahedra[e];
+    for (std::size_t e = 0; e < model_.elements.tetrahedra.size(); ++e) {
+      const Tetrahedron& t = model_.elements.tetrahedra[e];
       for (int i = 0; i < 4; ++i) tell(std::array{t[(i + 1) % 4], t[(i + 2) % 4], t[(i + 3) % 4]}, e);
     }
-    for (std::size_t e = 0; e < model_.prisms.size(); ++e) {
-      const Prism& p = model_.prisms[e];
-      const std::size_t element = model_.tetrahedra.size() + e;
+    for (std::size_t e = 0; e < model_.elements.prisms.size(); ++e) {
+      const Prism& p = model_.elements.prisms[e];
+      const std::size_t element = model_.elements.tetrahedra.size() + e;
       for (const int i : {0, 3}) tell(std::array{p[i], p[i + 1], p[i + 2]}, element);
       for (int i = 0; i < 3; ++i) tell(std::array{p[i], p[(i + 1) % 3], p[i + 3], p[(i + 1) % 3 + 3]}, element);
     }
@@ -101,8 +104,9 @@ class Blocks {
         return;
       }
     };
-    for (std::size_t e = 0; e < model_.tetrahedra.size(); ++e) look(model_.tetrahedra[e], e);
-    for (std::size_t e = 0; e < model_.prisms.size(); ++e) look(model_.prisms[e], model_.tetrahedra.size() + e);
+    for (std::size_t e = 0; e < model_.elements.tetrahedra.size(); ++e) look(model_.elements.tetrahedra[e], e);
+    for (std::size_t e = 0; e < model_.elements.prisms.size(); ++e)
+      look(model_.elements.prisms[e], model_.elements.tetrahedra.size() + e);
   }
 
   const Model& model_;
@@ -157,7 +161,7 @@ Eigen::MatrixXd free_motions(const Model& model, const std::map<Index, Place>& p
     for (int axis = 0; axis < 3; ++axis) {
       std::size_t held = 0;
       for (const Index v : place.vertices)
-        if (model.fixed[v][axis]) {
+        if (model.held.fixed[v][axis]) {
           rows.push_back(row());
           add(rows.back(), v, block, axis, 1);
           if (++held == 200) break;  // of a face, far more than it takes

@@ -83,9 +83,9 @@ std::vector<CavityFace> faces_of(const Compilation& c, const LayerSpec& spec, co
       refuse_layer(spec, "is on " + label(where) + ", which has quadrilaterals: a layer lies on triangles");
     for (const Index i : region.triangles) triangles.push_back(c.mesh.triangles[i]);
   } else {
-    std::vector<bool> inside(c.model.used.size());
+    std::vector<bool> inside(c.model.elements.used.size());
     for (const Index v : region.vertices) inside[v] = true;
-    for (const Triangle& t : boundary_of(c.model.tetrahedra, c.model.prisms).triangles)
+    for (const Triangle& t : boundary_of(c.model.elements.tetrahedra, c.model.elements.prisms).triangles)
       if (inside[t[0]] && inside[t[1]] && inside[t[2]]) triangles.push_back(t);
   }
   if (triangles.empty()) refuse_layer(spec, "is on " + label(where) + ", which holds no face of the body");
@@ -94,7 +94,7 @@ std::vector<CavityFace> faces_of(const Compilation& c, const LayerSpec& spec, co
     const CavityFace face = face_of(c, t);
     const bool bare = !c.regions.edges().empty() && *std::min_element(face.edges.begin(), face.edges.end()) < 0;
     for (const Index v : nodes_of(face))
-      if (bare || !c.model.used[v])
+      if (bare || !c.model.elements.used[v])
         refuse_layer(spec, "has a face at " + point_text(vertex_at(c.model.rest, t[0])) +
                                " mm, of which a vertex belongs to no element of the robot: a layer beside the body "
                                "takes a mesh of order 1, which 'order: 2' raises");
@@ -151,10 +151,10 @@ std::vector<LayerPlace> carried_places(Compilation& c, const LayerSpec& spec, Tr
 }
 
 void add_layer_weight(Compilation& c, const LayerSpec& spec, const Layer& layer) {
-  const Vec3 per_area = spec.density * to_newtons_per_mm3 * spec.thickness_mm * c.spec.gravity;
+  const Vec3 per_area = spec.density * to_newtons_per_mm3 * spec.thickness_mm * c.spec.loads.gravity;
   for (const LayerPlace& place : layer.places)
     for (std::size_t i = 0; i < place.vertices.size(); ++i)
-      c.model.dead_load.row(place.vertices[i]) += place.area_mm2 * place.weights[i] * per_area.transpose();
+      c.model.loads.dead.row(place.vertices[i]) += place.area_mm2 * place.weights[i] * per_area.transpose();
 }
 
 Layer layer_of(Compilation& c, const LayerSpec& spec) {
@@ -173,7 +173,7 @@ Layer layer_of(Compilation& c, const LayerSpec& spec) {
   if (!spec.bending) return layer;
   if (c.regions.edges().empty())
     refuse_layer(spec, "bends, which takes a mesh of order 2 (`mesh: {order: 2}`): flat triangles do not bend");
-  add_bending(spec, c.model.rest, c.model.fixed, layer);
+  add_bending(spec, c.model.rest, c.model.held.fixed, layer);
   return layer;
 }
 
@@ -224,13 +224,14 @@ void use_sheets(Compilation& c) {
     if (region.dimension != 2) continue;
     for (const Index i : region.triangles) {
       const Triangle& t = c.mesh.triangles[i];
-      if (std::all_of(t.begin(), t.end(), [&](Index v) { return static_cast<bool>(c.model.used[v]); })) continue;
+      if (std::all_of(t.begin(), t.end(), [&](Index v) { return static_cast<bool>(c.model.elements.used[v]); }))
+        continue;
       c.sheets.push_back(t);
     }
   }
   for (const Triangle& t : c.sheets)
     for (const Index v : nodes_of(face_of(c, t)))
-      if (v >= 0) c.model.used[v] = true;  // else the layer is refused
+      if (v >= 0) c.model.elements.used[v] = true;  // else the layer is refused
 }
 
 void compile_layers(Compilation& c) {
@@ -243,8 +244,8 @@ void compile_layers(Compilation& c) {
   std::set<std::string> names;
   for (const auto& spec : c.spec.layers) {
     if (!names.insert(spec->name).second) throw InvalidInput(spec->origin, "there are two layers '" + spec->name + "'");
-    c.model.layers.push_back(std::make_shared<const Layer>(layer_of(c, *spec)));
-    add_layer_weight(c, *spec, *c.model.layers.back());
+    c.model.reinforcement.layers.push_back(std::make_shared<const Layer>(layer_of(c, *spec)));
+    add_layer_weight(c, *spec, *c.model.reinforcement.layers.back());
   }
 }
 

@@ -55,7 +55,7 @@ void check_liquid(const LiquidAroundSpec& spec, const Vec3& gravity) {
 void check_chambers(const Compilation& c) {
   for (const Actuator& actuator : c.model.actuators)
     if (const auto* chamber = actuator.as<ChamberDrive>(); chamber && !chamber->surface.empty())
-      throw InvalidInput(c.spec.liquid_around->origin,
+      throw InvalidInput(c.spec.loads.liquid_around->origin,
                          "the liquid around the robot would be in the chamber of actuator '" + actuator.name +
                              "', whose surface bounds no empty space of the mesh: close it in the mesh");
 }
@@ -63,15 +63,15 @@ void check_chambers(const Compilation& c) {
 }  // namespace
 
 void compile_liquid_around(Compilation& c) {
-  if (!c.spec.liquid_around) return;
-  const LiquidAroundSpec& spec = *c.spec.liquid_around;
-  check_liquid(spec, c.spec.gravity);
+  if (!c.spec.loads.liquid_around) return;
+  const LiquidAroundSpec& spec = *c.spec.loads.liquid_around;
+  check_liquid(spec, c.spec.loads.gravity);
   check_chambers(c);
-  const Boundary boundary = boundary_of(c.model.tetrahedra, c.model.prisms);
+  const Boundary boundary = boundary_of(c.model.elements.tetrahedra, c.model.elements.prisms);
   const DryFaces dry(c);
   FollowingTraction liquid;
   constexpr double cubic_metres_per_mm3 = 1e-9;
-  liquid.deeper_MPa_mm = spec.density * cubic_metres_per_mm3 * c.spec.gravity;
+  liquid.deeper_MPa_mm = spec.density * cubic_metres_per_mm3 * c.spec.loads.gravity;
   liquid.level_mm = spec.surface;
   for (const Triangle& t : boundary.triangles)
     if (!dry.has(t)) liquid.faces.push_back(loaded_face(c, t, 1));
@@ -80,7 +80,7 @@ void compile_liquid_around(Compilation& c) {
       for (int i = 0; i < 4; ++i) liquid.faces.push_back(loaded_face(c, {q[i], q[(i + 1) % 4], q[(i + 2) % 4]}, 0.5));
   c.model.notes.push_back("A liquid of " + number(spec.density) +
                           " kg/m^3 presses on the outer surface; walls of chambers and of empty spaces are dry.");
-  c.model.tractions.push_back(std::move(liquid));
+  c.model.loads.tractions.push_back(std::move(liquid));
 }
 
 }  // namespace softkin

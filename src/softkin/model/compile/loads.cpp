@@ -38,40 +38,43 @@ PrismIntegrals prism_integrals(const Points& vertices, const Prism& prism) {
 void add_weight(Compilation& c) {
   Model& model = c.model;
   const auto per_volume = [&](const ElementRole& role) {  // [N/mm^3]
-    return Eigen::RowVector3d(model.materials[role.material].density * cubic_metres * c.spec.gravity.transpose());
+    return Eigen::RowVector3d(model.elements.materials[role.material].density * cubic_metres *
+                              c.spec.loads.gravity.transpose());
   };
-  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
-    const Eigen::RowVector3d weight = per_volume(model.tetrahedron_roles[e]);
-    if (model.edge_nodes.empty()) {
-      for (const Index v : model.tetrahedra[e]) model.dead_load.row(v) += model.tetrahedron_volumes[e] / 4 * weight;
+  for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e) {
+    const Eigen::RowVector3d weight = per_volume(model.elements.tetrahedron_roles[e]);
+    if (model.elements.edge_nodes.empty()) {
+      for (const Index v : model.elements.tetrahedra[e])
+        model.loads.dead.row(v) += model.elements.tetrahedron_volumes[e] / 4 * weight;
       continue;
     }
     const TetrahedronWeights integrals =
-        shape_integrals(nodes_of(model.rest, model.tetrahedra[e], model.edge_nodes[e]));
+        shape_integrals(nodes_of(model.rest, model.elements.tetrahedra[e], model.elements.edge_nodes[e]));
     for (int i = 0; i < 10; ++i)
-      model.dead_load.row(i < 4 ? model.tetrahedra[e][i] : model.edge_nodes[e][i - 4]) += integrals[i] * weight;
+      model.loads.dead.row(i < 4 ? model.elements.tetrahedra[e][i] : model.elements.edge_nodes[e][i - 4]) +=
+          integrals[i] * weight;
   }
-  for (std::size_t e = 0; e < model.prisms.size(); ++e) {
-    const PrismIntegrals integrals = prism_integrals(model.rest, model.prisms[e]);
-    const Eigen::RowVector3d weight = per_volume(model.prism_roles[e]);
-    for (int i = 0; i < 6; ++i) model.dead_load.row(model.prisms[e][i]) += integrals[i] * weight;
+  for (std::size_t e = 0; e < model.elements.prisms.size(); ++e) {
+    const PrismIntegrals integrals = prism_integrals(model.rest, model.elements.prisms[e]);
+    const Eigen::RowVector3d weight = per_volume(model.elements.prism_roles[e]);
+    for (int i = 0; i < 6; ++i) model.loads.dead.row(model.elements.prisms[e][i]) += integrals[i] * weight;
   }
 }
 
 void check_density(Compilation& c) {
-  std::vector<bool> has_element(c.model.materials.size());
-  for (const auto* roles : {&c.model.tetrahedron_roles, &c.model.prism_roles})
+  std::vector<bool> has_element(c.model.elements.materials.size());
+  for (const auto* roles : {&c.model.elements.tetrahedron_roles, &c.model.elements.prism_roles})
     for (const ElementRole& role : *roles) has_element[role.material] = true;
   bool any = c.spec.contact && std::any_of(c.spec.contact->bodies.begin(), c.spec.contact->bodies.end(),
                                            [](const BodySpec& body) { return body.density > 0; });
   any = any ||
         std::any_of(c.spec.layers.begin(), c.spec.layers.end(), [](const auto& layer) { return layer->density > 0; });
   for (std::size_t m = 0; m < has_element.size(); ++m)
-    any = any || (has_element[m] && c.model.materials[m].density > 0);
+    any = any || (has_element[m] && c.model.elements.materials[m].density > 0);
   if (!any) throw InvalidInput(c.origin, "there is gravity but no material or layer has a density");
   for (std::size_t m = 0; m < has_element.size(); ++m)
-    if (has_element[m] && c.model.materials[m].density == 0)
-      c.model.notes.push_back("The material of region '" + c.model.materials[m].region +
+    if (has_element[m] && c.model.elements.materials[m].density == 0)
+      c.model.notes.push_back("The material of region '" + c.model.elements.materials[m].region +
                               "' has no density and so no weight.");
 }
 
@@ -153,7 +156,7 @@ std::vector<Index> moment_vertices(const Compilation& c, const ForceSpec& spec) 
   const std::vector<Index> vertices = c.regions.resolve({*region, spec.at.origin}).vertices;
   for (const RigidRegion& rigid : c.model.rigid)
     if (std::all_of(vertices.begin(), vertices.end(), [&](Index v) {
-          return !c.model.used[v] || std::binary_search(rigid.vertices.begin(), rigid.vertices.end(), v);
+          return !c.model.elements.used[v] || std::binary_search(rigid.vertices.begin(), rigid.vertices.end(), v);
         }))
       return spread_out(c.model.rest, rigid.vertices);
   refuse(" acts on a rigid region, which '" + *region + "' is not: list it under 'rigid'");
@@ -167,12 +170,12 @@ void add_moment(Compilation& c, const ForceSpec& spec) {
   RegionMoment of{moment_vertices(c, spec)};
   for (int axis = 0; axis < 3; ++axis)
     if (moment.along(axis)) {
-      const auto index = static_cast<Index>(c.model.moments.size());
+      const auto index = static_cast<Index>(c.model.loads.moments.size());
       c.force_commands.push_back(command_of(moment, axis, MomentCommand{index, axis}));
     } else {
       of.moment_Nmm[axis] = spec.moment[axis];
     }
-  c.model.moments.push_back(std::move(of));
+  c.model.loads.moments.push_back(std::move(of));
 }
 
 void add_force(Compilation& c, const ForceSpec& spec) {
@@ -188,7 +191,7 @@ void add_force(Compilation& c, const ForceSpec& spec) {
       continue;
     }
     for (std::size_t i = 0; i < at.vertices.size(); ++i)
-      c.model.dead_load(at.vertices[i], axis) += at.weights[i] * spec.force[axis];
+      c.model.loads.dead(at.vertices[i], axis) += at.weights[i] * spec.force[axis];
   }
   add_moment(c, spec);
 }
@@ -196,27 +199,27 @@ void add_force(Compilation& c, const ForceSpec& spec) {
 }  // namespace
 
 void compile_loads(Compilation& c) {
-  const bool weight = !c.spec.gravity.isZero(0);
+  const bool weight = !c.spec.loads.gravity.isZero(0);
   if (c.spec.formulation != Formulation::physical) {
     if (weight) c.model.notes.emplace_back("Gravity is left out: the target-shape formulation knows no forces.");
-    if (!c.spec.forces.empty())
-      c.model.notes.push_back(counted(c.spec.forces.size(), "force is", "forces are") +
+    if (!c.spec.loads.forces.empty())
+      c.model.notes.push_back(counted(c.spec.loads.forces.size(), "force is", "forces are") +
                               " left out: the target-shape formulation knows none.");
-    if (!c.spec.tractions.empty())
-      c.model.notes.push_back(counted(c.spec.tractions.size(), "traction is", "tractions are") +
+    if (!c.spec.loads.tractions.empty())
+      c.model.notes.push_back(counted(c.spec.loads.tractions.size(), "traction is", "tractions are") +
                               " left out: the target-shape formulation knows no forces.");
-    if (c.spec.liquid_around)
+    if (c.spec.loads.liquid_around)
       c.model.notes.emplace_back("The liquid around it is left out: the target-shape formulation knows no forces.");
     return;
   }
-  if (!c.spec.gravity.allFinite()) throw InvalidInput(c.origin, "gravity is not finite");
-  c.model.dead_load = Points::Zero(c.model.rest.rows(), 3);
+  if (!c.spec.loads.gravity.allFinite()) throw InvalidInput(c.origin, "gravity is not finite");
+  c.model.loads.dead = Points::Zero(c.model.rest.rows(), 3);
   if (weight) {
     check_density(c);
     add_weight(c);
   }
   std::set<std::string> names;
-  for (const ForceSpec& spec : c.spec.forces) {
+  for (const ForceSpec& spec : c.spec.loads.forces) {
     if (!spec.name.empty() && !names.insert(spec.name).second)
       throw InvalidInput(spec.at.origin, "there are two forces '" + spec.name + "'");
     add_force(c, spec);

@@ -40,12 +40,13 @@ std::vector<Wall> walls_of(const Model& model) {
   const std::vector<bool> rigid = rigid_vertices(model);
   const auto is_rigid = [&rigid](Index v) { return rigid[v]; };
   std::vector<Wall> walls;
-  for (const WallSample& sample : wall_samples(model.rest, model.tetrahedra, model.prisms, most_samples)) {
+  for (const WallSample& sample :
+       wall_samples(model.rest, model.elements.tetrahedra, model.elements.prisms, most_samples)) {
     const auto element = static_cast<std::size_t>(sample.element);
-    const Tetrahedron& corners = model.tetrahedra[element];
+    const Tetrahedron& corners = model.elements.tetrahedra[element];
     if (std::all_of(corners.begin(), corners.end(), is_rigid)) continue;
-    const auto material = static_cast<std::size_t>(model.tetrahedron_roles[element].material);
-    const Material& of = model.materials[material];
+    const auto material = static_cast<std::size_t>(model.elements.tetrahedron_roles[element].material);
+    const Material& of = model.elements.materials[material];
     const StiffnessAtRest stiffness = stiffness_at_rest(of.elastic);
     const double least = std::min(mixed_ratio, stiffness.poisson_ratio);
     const double as_mixed = bending_excess(sample, has_bulk_part(of.elastic.law) ? least : stiffness.poisson_ratio);
@@ -67,7 +68,9 @@ StiffnessAtRest stiffness_at_rest(const ElasticLaw& law) {
 
 void doubt_linear_tetrahedra(Compilation& c) {
   Model& model = c.model;
-  if (model.formulation != Formulation::physical || model.tetrahedra.empty() || !model.edge_nodes.empty()) return;
+  if (model.formulation != Formulation::physical || model.elements.tetrahedra.empty() ||
+      !model.elements.edge_nodes.empty())
+    return;
   // thin and soft walls bend: what they give way by adds up, as in a chain of springs
   const std::vector<Wall> walls = walls_of(model);
   const double excess = excess_of(walls, &Wall::excess), as_mixed = excess_of(walls, &Wall::excess_mixed);
@@ -80,12 +83,12 @@ void doubt_linear_tetrahedra(Compilation& c) {
   const std::string thick = decimal(std::sqrt(whole / across2), 1);
   const std::string stiff =
       excess < 1 ? "about " + decimal(100 * excess, 0) + " % too stiff" : "more than twice as stiff as they should be";
-  std::string cure =
-      model.prisms.empty() ? "take 'mesh: {file: F, order: 2}'" : "take a finer mesh, as prisms allow no 'order: 2'";
+  std::string cure = model.elements.prisms.empty() ? "take 'mesh: {file: F, order: 2}'"
+                                                   : "take a finer mesh, as prisms allow no 'order: 2'";
   if (as_mixed < worthwhile * excess)
     cure += "; 'elements: mixed' of the material, whose volume hardly changes, takes about " +
             decimal(100 * (1 - as_mixed / excess), 0) + " % of that off";
-  (c.spec.linear_by_choice ? model.notes : model.warnings)
+  (c.spec.mesh_options.linear_by_choice ? model.notes : model.warnings)
       .push_back("The walls that bend most are about " + thick +
                  " elements thick, of tetrahedra of order 1: where they bend they are " + stiff + "; " + cure + ".");
 }

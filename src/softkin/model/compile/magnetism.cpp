@@ -120,8 +120,8 @@ bool magnetise(const Compilation& c, Magnetism& magnetism) {
       any = any || !magnetism.remanence.back().isZero(0);
     }
   };
-  add(model.tetrahedron_roles);
-  add(model.prism_roles);
+  add(model.elements.tetrahedron_roles);
+  add(model.elements.prism_roles);
   return any;
 }
 
@@ -141,11 +141,11 @@ void check_grid(const Compilation& c, const Magnetism& magnetism, const FieldSou
   };
   for (std::size_t e = 0; e < magnetism.remanence.size(); ++e) {
     if (magnetism.remanence[e].isZero(0)) continue;
-    const std::size_t tetrahedra = c.model.tetrahedra.size();
+    const std::size_t tetrahedra = c.model.elements.tetrahedra.size();
     if (e < tetrahedra)
-      check(c.model.tetrahedra[e]);
+      check(c.model.elements.tetrahedra[e]);
     else
-      check(c.model.prisms[e - tetrahedra]);
+      check(c.model.elements.prisms[e - tetrahedra]);
   }
 }
 

@@ -173,13 +173,13 @@ void refuse_bare_elements(const Compilation& c) {
   const Model& model = c.model;
   const bool physical = c.spec.formulation == Formulation::physical;
   std::map<Index, std::size_t> bare;  // by region
-  for (const auto* roles : {&model.tetrahedron_roles, &model.prism_roles})
+  for (const auto* roles : {&model.elements.tetrahedron_roles, &model.elements.prism_roles})
     for (const ElementRole& role : *roles)
       if (role.material < 0 && (role.actuator < 0 || physical)) ++bare[role.region];
   if (bare.empty()) return;
   std::string text;
   for (const auto& [region, count] : bare) {
-    const std::string where = region < 0 ? "of no region" : "of region '" + model.region_names[region] + "'";
+    const std::string where = region < 0 ? "of no region" : "of region '" + model.elements.region_names[region] + "'";
     text += (text.empty() ? "" : " and ") + counted(count, "element") + " " + where;
   }
   const bool single = bare.size() == 1 && bare.begin()->second == 1;
@@ -194,8 +194,8 @@ bool only_actuated(const Compilation& c, const Region& region) {
                        [&](Index i) { return at[i] >= 0 && roles[at[i]].actuator >= 0; });
   };
   return !(region.tetrahedra.empty() && region.prisms.empty()) &&
-         actuated(region.tetrahedra, c.tetrahedron_at, c.model.tetrahedron_roles) &&
-         actuated(region.prisms, c.prism_at, c.model.prism_roles);
+         actuated(region.tetrahedra, c.tetrahedron_at, c.model.elements.tetrahedron_roles) &&
+         actuated(region.prisms, c.prism_at, c.model.elements.prism_roles);
 }
 
 /// The field in a layer under voltage goes with its permittivity.
@@ -203,7 +203,7 @@ void require_permittivity(const Compilation& c) {
   for (const Actuator& actuator : c.model.actuators) {
     if (!under_voltage(actuator)) continue;
     for (const Index e : actuator.as<DeaDrive>()->prisms) {
-      const MaterialSpec& material = c.spec.materials[c.model.prism_roles[e].material];
+      const MaterialSpec& material = c.spec.materials[c.model.elements.prism_roles[e].material];
       if (!material.permittivity)
         throw InvalidInput(material.origin, "the material of region '" + material.region +
                                                 "' needs 'permittivity', over that of the vacuum: actuator '" +
@@ -232,15 +232,15 @@ void compile_materials(Compilation& c) {
   const bool physical = c.spec.formulation == Formulation::physical;
   for (const MaterialSpec& spec : c.spec.materials) {
     if (!physical && spec.elastic && only_actuated(c, c.regions.find(spec.region, spec.origin))) continue;
-    const auto index = static_cast<Index>(model.materials.size());
-    model.materials.push_back(checked_material(spec, c.spec.formulation));
+    const auto index = static_cast<Index>(model.elements.materials.size());
+    model.elements.materials.push_back(checked_material(spec, c.spec.formulation));
     const Region& region = c.regions.find(spec.region, spec.origin);
-    if (model.materials.back().mixed && !region.prisms.empty())
+    if (model.elements.materials.back().mixed && !region.prisms.empty())
       throw InvalidInput(spec.origin, "the material of region '" + spec.region + "' has elements: mixed" +
                                           (spec.mixed ? "" : ", as its poisson_ratio is 0.5,") +
                                           " which prisms are not: take a poisson_ratio of 0.49 and elements: plain");
-    if (assign(region.tetrahedra, c.tetrahedron_at, index, physical, model.tetrahedron_roles) +
-            assign(region.prisms, c.prism_at, index, physical, model.prism_roles) ==
+    if (assign(region.tetrahedra, c.tetrahedron_at, index, physical, model.elements.tetrahedron_roles) +
+            assign(region.prisms, c.prism_at, index, physical, model.elements.prism_roles) ==
         0)
       throw InvalidInput(spec.origin, "region '" + spec.region +
                                           "' has a material but no element of the body: its elements are void, belong "

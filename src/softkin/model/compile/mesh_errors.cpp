@@ -64,10 +64,12 @@ void refuse_errors_of(Compilation& c, const RobotPart& robot, const IndexRange& 
 
 void refuse_mesh_errors(Compilation& c) {
   const Model& model = c.model;
-  if (!share_a_side(model.tetrahedra, c.chamber_tetrahedra, model.prisms, static_cast<Index>(model.rest.rows())))
+  if (!share_a_side(model.elements.tetrahedra, c.chamber_tetrahedra, model.elements.prisms,
+                    static_cast<Index>(model.rest.rows())))
     return;
   std::vector<RobotPart> robots = c.spec.robots;
-  if (robots.empty()) robots.push_back({"", "", 0, 0, 0, c.spec.mesh_origin, c.spec.accept_mesh_errors});
+  if (robots.empty())
+    robots.push_back({"", "", 0, 0, 0, c.spec.mesh_options.origin, c.spec.mesh_options.accept_errors});
   for (std::size_t r = 0; r < robots.size(); ++r) {
     const auto range = [&](Index RobotPart::*first, std::size_t count) {
       return IndexRange{static_cast<std::size_t>(robots[r].*first),

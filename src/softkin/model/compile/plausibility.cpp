@@ -75,9 +75,9 @@ void doubt_density(const Material& material, std::vector<std::string>& warnings)
 
 void doubt_moduli(Model& model) {
   double softest = HUGE_VAL;
-  for (const Material& material : model.materials)
+  for (const Material& material : model.elements.materials)
     softest = std::min(softest, stiffness_at_rest(material.elastic).youngs_modulus_MPa);
-  for (const Material& material : model.materials) {
+  for (const Material& material : model.elements.materials) {
     const double e = stiffness_at_rest(material.elastic).youngs_modulus_MPa;
     if (moduli_MPa.holds(e) && softest <= stiffest_soft_MPa) continue;
     model.warnings.push_back("The material of region '" + material.region + "' has a Young's modulus of " +
@@ -92,9 +92,9 @@ void doubt_moduli(Model& model) {
 void doubt_pressures(const Compilation& c, std::vector<std::string>& warnings) {
   constexpr double highest_kPa = 10000, in_stiffest_moduli = 20;
   double stiffest_kPa = 0;
-  for (const Material& material : c.model.materials)
+  for (const Material& material : c.model.elements.materials)
     stiffest_kPa = std::max(stiffest_kPa, 1000 * stiffness_at_rest(material.elastic).youngs_modulus_MPa);
-  if (c.model.materials.empty()) return;  // of layers alone, whose stiffness is for their thickness
+  if (c.model.elements.materials.empty()) return;  // of layers alone, whose stiffness is for their thickness
   const double most = std::min(highest_kPa, in_stiffest_moduli * stiffest_kPa);
   for (const Actuator& actuator : c.model.actuators) {
     const double kPa = std::max(std::abs(actuator.low), std::abs(actuator.high));
@@ -114,9 +114,9 @@ void doubt_units(Compilation& c) {
   if (model.formulation != Formulation::physical) return;
   doubt_moduli(model);
   doubt_pressures(c, model.warnings);
-  doubt_gravity(c.spec.gravity, model.warnings);
-  if (c.spec.gravity.isZero(0)) return;
-  for (const Material& material : model.materials) doubt_density(material, model.warnings);
+  doubt_gravity(c.spec.loads.gravity, model.warnings);
+  if (c.spec.loads.gravity.isZero(0)) return;
+  for (const Material& material : model.elements.materials) doubt_density(material, model.warnings);
 }
 
 }  // namespace softkin

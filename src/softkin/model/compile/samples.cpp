@@ -12,8 +12,9 @@ namespace {
 
 template <class Visit>
 auto visit_nodes(const Model& model, std::size_t element, const Visit& visit) {
-  const std::size_t tetrahedra = model.tetrahedra.size();
-  return element < tetrahedra ? visit(model.tetrahedra[element]) : visit(model.prisms[element - tetrahedra]);
+  const std::size_t tetrahedra = model.elements.tetrahedra.size();
+  return element < tetrahedra ? visit(model.elements.tetrahedra[element])
+                              : visit(model.elements.prisms[element - tetrahedra]);
 }
 
 double longest_edge(const Model& model, std::size_t element) {

@@ -17,7 +17,8 @@ namespace {
 /// What turns is held by one entry: where another would hold it changes with the angle.
 void check_turned(const Compilation& c, const FixedSpec& spec, const std::vector<Index>& vertices) {
   for (const Index v : vertices) {
-    const bool held = std::any_of(c.model.fixed[v].begin(), c.model.fixed[v].end(), [](bool axis) { return axis; });
+    const bool held =
+        std::any_of(c.model.held.fixed[v].begin(), c.model.held.fixed[v].end(), [](bool axis) { return axis; });
     if (turn_of(c.model, v) == nullptr && !(spec.rotation && held)) continue;
     throw InvalidInput(spec.where.origin, label(spec.where) + " holds vertex " + std::to_string(v) + " (from 0" +
                                               robot_text(c.spec, &RobotPart::vertices, v) + "), which an earlier " +
@@ -27,14 +28,14 @@ void check_turned(const Compilation& c, const FixedSpec& spec, const std::vector
 
 void hold(Compilation& c, const FixedSpec& spec, Index v, int axis) {
   const double place = c.model.rest(v, axis) + spec.displacement[axis];
-  if (c.model.used[v] && c.model.fixed[v][axis] && c.model.held(v, axis) != place)
+  if (c.model.elements.used[v] && c.model.held.fixed[v][axis] && c.model.held.at(v, axis) != place)
     throw InvalidInput(spec.where.origin, label(spec.where) + " holds vertex " + std::to_string(v) + " (from 0" +
                                               robot_text(c.spec, &RobotPart::vertices, v) + ") along " + "xyz"[axis] +
                                               " elsewhere than an earlier entry");
-  c.model.fixed[v][axis] = true;
-  c.model.held(v, axis) = place;
-  Index& bearer = c.model.support_of[v][axis];
-  if (c.model.used[v] && bearer < 0) bearer = static_cast<Index>(c.model.supports.size()) - 1;
+  c.model.held.fixed[v][axis] = true;
+  c.model.held.at(v, axis) = place;
+  Index& bearer = c.model.held.support_of[v][axis];
+  if (c.model.elements.used[v] && bearer < 0) bearer = static_cast<Index>(c.model.held.supports.size()) - 1;
 }
 
 void fix(Compilation& c, const FixedSpec& spec) {
@@ -43,10 +44,10 @@ void fix(Compilation& c, const FixedSpec& spec) {
   if (!spec.displacement.allFinite())
     throw InvalidInput(spec.where.origin, label(spec.where) + " is displaced by a number that is not finite");
   const Region region = c.regions.resolve(spec.where);
-  Support& support = c.model.supports.emplace_back();
+  Support& support = c.model.held.supports.emplace_back();
   support.name = support_name(c.spec.fixed, static_cast<std::size_t>(&spec - c.spec.fixed.data()));
   std::copy_if(region.vertices.begin(), region.vertices.end(), std::back_inserter(support.vertices),
-               [&](Index v) { return static_cast<bool>(c.model.used[v]); });
+               [&](Index v) { return static_cast<bool>(c.model.elements.used[v]); });
   if (support.vertices.empty())
     throw InvalidInput(spec.where.origin, label(spec.where) + " cannot be fixed: it holds no vertex of the body");
   check_turned(c, spec, support.vertices);
@@ -68,7 +69,7 @@ RigidRegion rigid_region(const Compilation& c, const RigidSpec& spec) {
   RigidRegion rigid;
   rigid.name = spec.name;
   for (const Index v : c.regions.resolve(spec.where).vertices)
-    if (c.model.used[v]) rigid.vertices.push_back(v);
+    if (c.model.elements.used[v]) rigid.vertices.push_back(v);
   if (!span_plane(c.model.rest, rigid.vertices))
     throw InvalidInput(spec.where.origin, rigid_label(spec) +
                                               " needs three vertices that are not on one line; it holds " +
@@ -81,8 +82,8 @@ void check_held(const Compilation& c, const RigidSpec& spec, const RigidRegion& 
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<Index> held;
     for (const Index v : rigid.vertices)
-      if (c.model.fixed[v][axis]) held.push_back(v);
-    const auto moved = [&](Index v) { return c.model.held(v, axis) - c.model.rest(v, axis); };
+      if (c.model.held.fixed[v][axis]) held.push_back(v);
+    const auto moved = [&](Index v) { return c.model.held.at(v, axis) - c.model.rest(v, axis); };
     for (const Index v : held)
       if (std::abs(moved(v) - moved(held.front())) > 1e-12 * c.model.diagonal_mm)
         throw InvalidInput(spec.where.origin,
@@ -98,10 +99,10 @@ void check_held(const Compilation& c, const RigidSpec& spec, const RigidRegion& 
 void bear(Model& model, const RigidRegion& rigid) {
   Index bearer = -1;
   for (const Index v : rigid.vertices)
-    for (const Index each : model.support_of[v])
+    for (const Index each : model.held.support_of[v])
       if (each >= 0 && (bearer < 0 || each < bearer)) bearer = each;
   if (bearer < 0) return;
-  for (const Index v : rigid.vertices) model.support_of[v] = {bearer, bearer, bearer};
+  for (const Index v : rigid.vertices) model.held.support_of[v] = {bearer, bearer, bearer};
 }
 
 class Parts {
@@ -123,13 +124,13 @@ class Parts {
 
 Parts connected_parts(const Model& model) {
   Parts parts(static_cast<std::size_t>(model.rest.rows()));
-  for (const Tetrahedron& t : model.tetrahedra) parts.join(t);
-  for (std::size_t e = 0; e < model.edge_nodes.size(); ++e) {
-    parts.join(model.edge_nodes[e]);
-    parts.join(std::array{model.tetrahedra[e][0], model.edge_nodes[e][0]});
+  for (const Tetrahedron& t : model.elements.tetrahedra) parts.join(t);
+  for (std::size_t e = 0; e < model.elements.edge_nodes.size(); ++e) {
+    parts.join(model.elements.edge_nodes[e]);
+    parts.join(std::array{model.elements.tetrahedra[e][0], model.elements.edge_nodes[e][0]});
   }
-  for (const Prism& p : model.prisms) parts.join(p);
-  for (const auto& layer : model.layers)
+  for (const Prism& p : model.elements.prisms) parts.join(p);
+  for (const auto& layer : model.reinforcement.layers)
     for (const CavityFace& face : layer->faces) parts.join(nodes_of(face));
   for (const RigidRegion& rigid : model.rigid) parts.join(rigid.vertices);
   for (const Actuator& actuator : model.actuators) {
@@ -157,7 +158,7 @@ Motions free_motions(const Model& model, const std::vector<Index>& vertices, con
   std::vector<Eigen::Matrix<double, 1, 6>> rows;
   for (const Index v : vertices)
     for (int axis = 0; axis < 3; ++axis) {
-      if (!model.fixed[v][axis]) continue;
+      if (!model.held.fixed[v][axis]) continue;
       const Vec3 unit = Vec3::Unit(axis);
       rows.emplace_back();
       rows.back() << unit.transpose(), ((vertex_at(model.rest, v) - centroid) / size).cross(unit).transpose();
@@ -232,9 +233,9 @@ std::string support_name(const std::vector<FixedSpec>& fixed, std::size_t entry)
 }
 
 void compile_supports(Compilation& c) {
-  c.model.support_of.assign(c.model.used.size(), {-1, -1, -1});
+  c.model.held.support_of.assign(c.model.elements.used.size(), {-1, -1, -1});
   for (const FixedSpec& spec : c.spec.fixed) fix(c, spec);
-  std::vector<Index> owner(c.model.used.size(), -1);
+  std::vector<Index> owner(c.model.elements.used.size(), -1);
   std::set<std::string> names;
   for (const RigidSpec& spec : c.spec.rigid) {
     if (!spec.name.empty() && !names.insert(spec.name).second)
@@ -259,7 +260,7 @@ void check_anchoring(const Model& model, const Origin& origin) {
   Parts parts = connected_parts(model);
   std::map<Index, std::vector<Index>> members;
   for (Index v = 0; v < model.rest.rows(); ++v)
-    if (model.used[v]) members[parts.root(v)].push_back(v);
+    if (model.elements.used[v]) members[parts.root(v)].push_back(v);
   std::string text;
   std::size_t loose = 0;
   for (const auto& [root, vertices] : members) {

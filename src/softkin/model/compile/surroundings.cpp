@@ -103,8 +103,8 @@ FacetedSurface facets_of(const Compilation& c, const Spec& spec) {
   if (const auto* cylinder = std::get_if<Cylinder>(&spec.shape)) return faceted(*cylinder, sagitta);
   if (const auto* capsule = std::get_if<Capsule>(&spec.shape)) return faceted(*capsule, sagitta);
   Bounds bounds;
-  for (std::size_t v = 0; v < c.model.used.size(); ++v)
-    if (c.model.used[v]) bounds.extend(vertex_at(c.model.rest, static_cast<Index>(v)));
+  for (std::size_t v = 0; v < c.model.elements.used.size(); ++v)
+    if (c.model.elements.used[v]) bounds.extend(vertex_at(c.model.rest, static_cast<Index>(v)));
   return faceted(std::get<Halfspace>(spec.shape), bounds.center(), halfspace_diagonals * c.model.diagonal_mm);
 }
 
@@ -120,14 +120,14 @@ void check_reach(const Compilation& c, const Spec& spec, const Points& vertices)
 /// Vertices of no element. fixed: they stay where they are, but for what is commanded
 void append_vertices(Model& model, const Points& vertices, bool fixed) {
   const Index first = static_cast<Index>(model.rest.rows()), rows = first + static_cast<Index>(vertices.rows());
-  for (Points* points : {&model.rest, &model.held, &model.dead_load}) points->conservativeResize(rows, 3);
+  for (Points* points : {&model.rest, &model.held.at, &model.loads.dead}) points->conservativeResize(rows, 3);
   model.rest.bottomRows(vertices.rows()) = vertices;
-  model.held.bottomRows(vertices.rows()) = vertices;
-  model.dead_load.bottomRows(vertices.rows()).setZero();
+  model.held.at.bottomRows(vertices.rows()) = vertices;
+  model.loads.dead.bottomRows(vertices.rows()).setZero();
   const auto count = static_cast<std::size_t>(rows);
-  model.fixed.resize(count, {fixed, fixed, fixed});
-  model.support_of.resize(count, {-1, -1, -1});
-  model.used.resize(count, false);
+  model.held.fixed.resize(count, {fixed, fixed, fixed});
+  model.held.support_of.resize(count, {-1, -1, -1});
+  model.elements.used.resize(count, false);
   model.contact.other_vertices += static_cast<Index>(vertices.rows());
 }
 
@@ -197,11 +197,11 @@ EmbeddedPoint mean_at(const Points& points, Index first, const Vec3& mean) {
 
 void weigh(Compilation& c, const BodySpec& spec, FreeBody& body, double volume) {
   body.mass_kg = spec.density * kilograms * volume;
-  if (!c.spec.gravity.isZero(0) && body.mass_kg == 0)
+  if (!c.spec.loads.gravity.isZero(0) && body.mass_kg == 0)
     c.model.notes.push_back("The " + label(spec) + " has no density and so no weight.");
   for (std::size_t i = 0; i < body.center.vertices.size(); ++i)
-    c.model.dead_load.row(body.center.vertices[i]) +=
-        body.center.weights[i] * body.mass_kg * c.spec.gravity.transpose();
+    c.model.loads.dead.row(body.center.vertices[i]) +=
+        body.center.weights[i] * body.mass_kg * c.spec.loads.gravity.transpose();
 }
 
 void add_body(Compilation& c, const BodySpec& spec, double least_area) {

@@ -20,7 +20,8 @@ std::string title(const TractionSpec& spec) {
 /// The faces of the body that a region is, with normals outwards; a quad is the mean of its two ways to be triangles.
 class BodyFaces {
  public:
-  explicit BodyFaces(const Compilation& c) : c_(c), boundary_(boundary_of(c.model.tetrahedra, c.model.prisms)) {}
+  explicit BodyFaces(const Compilation& c)
+      : c_(c), boundary_(boundary_of(c.model.elements.tetrahedra, c.model.elements.prisms)) {}
 
   [[nodiscard]] std::vector<LoadedFace> of(const TractionSpec& spec) const {
     std::set<std::vector<Index>> others;
@@ -37,7 +38,7 @@ class BodyFaces {
       for (const Index i : region.triangles) wanted.insert(sorted(c_.mesh.triangles[i]));
       for (const Index i : region.quads) wanted.insert(sorted(c_.mesh.quads[i]));
     }
-    std::vector<bool> inside(c_.model.used.size());
+    std::vector<bool> inside(c_.model.elements.used.size());
     for (const Index v : region.vertices) inside[v] = true;
     const auto is_loaded = [&](const auto& face) {
       if (named) return wanted.erase(sorted(face)) > 0;
@@ -107,7 +108,7 @@ void add_dead(Model& model, const Vec3& traction_MPa, const LoadedFace& loaded) 
     const SurfaceEdges edges(point, nodes, model.rest);
     const double area = loaded.share * point.weight * edges.u.cross(edges.v).norm();
     for (std::size_t i = 0; i < nodes.size(); ++i)
-      model.dead_load.row(nodes[i]) += area * point.shape[i] * traction_MPa.transpose();
+      model.loads.dead.row(nodes[i]) += area * point.shape[i] * traction_MPa.transpose();
   }
 }
 
@@ -123,20 +124,20 @@ std::vector<LoadedFace> surface_faces(const Compilation& c, const RegionRef& whe
 }
 
 void compile_tractions(Compilation& c) {
-  if (c.spec.tractions.empty()) return;
+  if (c.spec.loads.tractions.empty()) return;
   const BodyFaces body(c);
   std::set<std::string> names;
-  for (const TractionSpec& spec : c.spec.tractions) {
+  for (const TractionSpec& spec : c.spec.loads.tractions) {
     check(spec);
     if (!names.insert(spec.name).second)
       throw InvalidInput(spec.where.origin, "there are two tractions '" + spec.name + "'");
     std::vector<LoadedFace> faces = body.of(spec);
     const Vec3 traction = megapascals * spec.kilopascals;
     if (spec.range_kPa) {
-      c.force_commands.push_back(command_of(spec, c.model.tractions.size()));
-      c.model.tractions.push_back({Vec3::Zero(), 0, std::move(faces)});
+      c.force_commands.push_back(command_of(spec, c.model.loads.tractions.size()));
+      c.model.loads.tractions.push_back({Vec3::Zero(), 0, std::move(faces)});
     } else if (spec.follows)
-      c.model.tractions.push_back({traction, megapascals * spec.pressure_kPa, std::move(faces)});
+      c.model.loads.tractions.push_back({traction, megapascals * spec.pressure_kPa, std::move(faces)});
     else
       for (const LoadedFace& face : faces) add_dead(c.model, traction, face);
   }

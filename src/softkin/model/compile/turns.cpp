@@ -46,11 +46,11 @@ void add_turn(Compilation& c, const FixedSpec& spec, const Support& support) {
                    .origin = spec.where.origin};
   std::sort(turn.vertices.begin(), turn.vertices.end());
   if (!lies_off_axis(c.model, turn)) fail("is turned about an axis on which all of its vertices lie");
-  c.model.turns.push_back(std::move(turn));
+  c.model.held.turns.push_back(std::move(turn));
 }
 
 const SupportTurn* turn_of(const Model& model, Index vertex) {
-  for (const SupportTurn& turn : model.turns)
+  for (const SupportTurn& turn : model.held.turns)
     if (std::binary_search(turn.vertices.begin(), turn.vertices.end(), vertex)) return &turn;
   return nullptr;
 }
@@ -60,28 +60,29 @@ void turn_rigid(Model& model, const RigidRegion& rigid, const std::string& label
   bool otherwise = false;
   for (const Index v : rigid.vertices) {
     const SupportTurn* holder = turn_of(model, v);
-    otherwise = otherwise || (holder == nullptr ? model.fixed[v] != std::array<bool, 3>{} : turn && turn != holder);
+    otherwise =
+        otherwise || (holder == nullptr ? model.held.fixed[v] != std::array<bool, 3>{} : turn && turn != holder);
     if (holder != nullptr) turn = holder;
   }
   if (turn == nullptr) return;
   if (otherwise)
     throw InvalidInput(origin, label + " is held by '" + turn->support + "', which turns it, and by another support");
-  SupportTurn& turned = model.turns[turn - model.turns.data()];
+  SupportTurn& turned = model.held.turns[turn - model.held.turns.data()];
   std::vector<Index> all;
   std::vector<Index> region = rigid.vertices;
   std::sort(region.begin(), region.end());
   std::set_union(turned.vertices.begin(), turned.vertices.end(), region.begin(), region.end(), std::back_inserter(all));
   turned.vertices = std::move(all);
   for (const Index v : rigid.vertices) {
-    model.fixed[v] = {true, true, true};
-    model.held.row(v) = model.rest.row(v) + turned.displacement.transpose();
+    model.held.fixed[v] = {true, true, true};
+    model.held.at.row(v) = model.rest.row(v) + turned.displacement.transpose();
   }
 }
 
 void add_turn_commands(Compilation& c) {
   Model& model = c.model;
-  for (std::size_t t = 0; t < model.turns.size(); ++t) {
-    const SupportTurn& turn = model.turns[t];
+  for (std::size_t t = 0; t < model.held.turns.size(); ++t) {
+    const SupportTurn& turn = model.held.turns[t];
     Actuator command;
     command.name = turn.support + "_turn";
     if (command.name.find_first_of(",=\"#") != std::string::npos || command.name.front() == ' ')

@@ -108,7 +108,7 @@ Climb::End Climb::go_beyond(double way, const Measured& summit, Iterate& at) {
   if (last.measure == summit.measure) return End::lost;
   tell_beyond(last, passed == Passed::end);
   keep(last, at);
-  report_.unstable_modes = std::max(0, settler_.prepare(route_.here, at));
+  report_.physical.unstable_modes = std::max(0, settler_.prepare(route_.here, at));
   return End::summit;
 }
 
@@ -121,7 +121,7 @@ Climb::End Climb::back(Iterate& at) {
   if (!std::isfinite(slope) || slope * grows >= 0) return End::lost;
   const double way = asked_load() > first_load() ? -grows : grows;
   const double end = way == grows ? options_.beyond : 1;
-  report_.branch = {};
+  report_.physical.branch = {};
   note_branch(last);
   std::optional<Measured> next;
   const Passed passed = go_along(way, end, most_beyond * begin, last, next);
@@ -136,8 +136,8 @@ Climb::End Climb::back(Iterate& at) {
 }
 
 void Climb::note_branch(const Measured& point) {
-  report_.branch.actuator = load_;
-  report_.branch.points.push_back({point.measure, point.load});
+  report_.physical.branch.actuator = load_;
+  report_.physical.branch.points.push_back({point.measure, point.load});
 }
 
 /// "3.01 times its volume", "0.7 of its length"
@@ -156,16 +156,17 @@ void Climb::tell_beyond(const Measured& last, bool asked) {
 }
 
 void sort_branch(const System& system, SolveReport& report) {
-  auto& points = report.branch.points;
-  const double way = report.branch.actuator >= 0 ? -system.measures().sign(report.branch.actuator) : 1;
+  auto& points = report.physical.branch.points;
+  const double way =
+      report.physical.branch.actuator >= 0 ? -system.measures().sign(report.physical.branch.actuator) : 1;
   std::sort(points.begin(), points.end(),
             [way](const auto& a, const auto& b) { return way * a.measure < way * b.measure; });
 }
 
 void tell_snap(double move_mm, double from, SolveReport& report) {
-  if (move_mm <= report.snapped_mm) return;
-  report.snapped_mm = move_mm;
-  report.snapped_from = from;
+  if (move_mm <= report.physical.snapped_mm) return;
+  report.physical.snapped_mm = move_mm;
+  report.physical.snapped_from = from;
 }
 
 }  // namespace softkin::physical

@@ -23,16 +23,17 @@ double von_mises(const Mat3& stress) {
 /// In a shape [MPa].
 template <int K, int Q>
 CornerPressure Body::pressure_of(const Set<K, Q>& set, Index block, const Points& positions) const {
-  CornerPressure pressure = set.compliance[block];
+  CornerPressure pressure = set.corners.compliance[block];
   for (std::size_t i = 0; i < 4; ++i)
-    for (int l = 0; l < lanes; ++l) pressure.at[i][l] = pressure_unit_ * positions(set.pressures[block][i][l], 0);
+    for (int l = 0; l < lanes; ++l)
+      pressure.at[i][l] = pressure_unit_ * positions(set.corners.pressures[block][i][l], 0);
   return pressure;
 }
 
 template <int K, int Q>
 void Body::store_miss(const Set<K, Q>& set, Index block, const PressureMiss& miss, Scratch& scratch) const {
   const Index count = std::min<Index>(lanes, set.count - lanes * block);
-  double* out = scratch.pulls.data() + 3 * static_cast<std::ptrdiff_t>(set.first_miss + 4 * lanes * block);
+  double* out = scratch.pulls.data() + 3 * static_cast<std::ptrdiff_t>(set.corners.first_miss + 4 * lanes * block);
   for (Index l = 0; l < count; ++l)
     for (const Pack& at : miss.at) {
       out[0] = pressure_unit_ * at[l];
@@ -99,7 +100,7 @@ Body::Result Body::pull(const Demand& demand, const Points& positions, Scratch& 
   std::size_t first = 0;
   Result result;
   each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {
-    const bool pulls = set.branches > 0 && scratch.pulls_viscously();
+    const bool pulls = set.viscous.branches > 0 && scratch.pulls_viscously();
     team.pieces(static_cast<Index>(blocks.size()), [&](Index begin, Index end) {
       Shape<K> shape;
       ElasticForce<K> out;
@@ -263,7 +264,7 @@ void Body::stress(const Demand& demand, const Points& positions, Scratch& scratc
         elastic_stress<K, Q>(blocks[b], shape, points);
         if constexpr (K != 6)
           if (set.mixed) add_pressure_stress<K, Q>(blocks[b], pressure_of(set, b, positions), points);
-        if (set.branches > 0 && scratch.pulls_viscously())
+        if (set.viscous.branches > 0 && scratch.pulls_viscously())
           add_viscous_stress<K, Q>(blocks[b], branches_of(set, b, scratch), shape, points);
         if constexpr (K == 6)
           if (set.charged)
@@ -304,7 +305,7 @@ void Body::stiffness(const Demand& demand, const Points& positions, bool project
             add_pressure_stiffness<K, Q>(blocks[b], pressure_of(set, b, positions), shape, projected, out, coupling);
             store_coupling(set, b, coupling, slots);
           }
-        if (set.branches > 0 && scratch.pulls_viscously())
+        if (set.viscous.branches > 0 && scratch.pulls_viscously())
           add_viscous_stiffness<K, Q>(blocks[b], branches_of(set, b, scratch), shape, projected, out);
         if constexpr (K == 6)  // the field's has hardly anything that is positive
           if (set.charged && !projected)

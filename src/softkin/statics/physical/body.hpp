@@ -140,8 +140,7 @@ class Body : public Term {
     Index changed = -1;     // place among Scratch's; -1: no command changes its elements
     bool charged = false;   // is it under voltage
     double prestretch = 1;  // then its stretch, which no command changes
-    int branches = 0;
-    bool mixed = false;  // tetrahedra with pressures; their law is what split() leaves
+    bool mixed = false;     // tetrahedra with pressures; their law is what split() leaves
     Index count = 0;
     Index first_pull = 0;         // element e, node i pulls at first_pull + K e + i
     std::int64_t first_slot = 0;  // of its matrices
@@ -151,21 +150,32 @@ class Body : public Term {
     std::vector<std::array<Mat3, energy::lanes>> frames;  // dea: of the layer
     std::vector<std::array<Vec3, energy::lanes>> along;   // of a growth along a direction
     std::vector<energy::Pack> permittivity;               // under voltage: as energy/dielectric.hpp takes it
-    std::vector<energy::Pack> moduli, times;              // of branches, by block: [MPa], [s]
-    std::vector<energy::CornerPressure> compliance;       // mixed: softness and smoothing of every block
-    std::vector<std::array<std::array<Index, energy::lanes>, 4>> pressures;  // the same: vertices
-    Index first_miss = 0;                                                    // as first_pull, of these
-    std::size_t first_branch = 0, first_strain = 0, first_begun = 0;  // of its branches in Scratch, a history, begun
+    /// The pressures of tetrahedra that have some.
+    struct Corners {
+      std::vector<energy::CornerPressure> compliance;                          // softness and smoothing of every block
+      std::vector<std::array<std::array<Index, energy::lanes>, 4>> pressures;  // vertices
+      Index first_miss = 0;                                                    // as first_pull, of these
+    };
+    Corners corners;
+    /// What its branches relax by.
+    struct Viscosity {
+      int branches = 0;
+      std::vector<energy::Pack> moduli, times;                          // by block: [MPa], [s]
+      std::size_t first_branch = 0, first_strain = 0, first_begun = 0;  // in Scratch, a history, begun
+    };
+    Viscosity viscous;
 
     /// Numbers that a block remembers.
     [[nodiscard]] std::size_t strains_each() const {
-      return branches > 0 ? std::size_t{6} * Q * energy::lanes * (static_cast<std::size_t>(branches) + 1) : 0;
+      return viscous.branches > 0
+                 ? std::size_t{6} * Q * energy::lanes * (static_cast<std::size_t>(viscous.branches) + 1)
+                 : 0;
     }
     /// Of an element.
     [[nodiscard]] int matrices() const { return mixed ? (K + 4) * (K + 5) / 2 : K * (K + 1) / 2; }
     /// Of Scratch::begun.
     [[nodiscard]] std::size_t begun_each() const {
-      return std::size_t{energy::begun_entries} * Q * energy::lanes * static_cast<std::size_t>(branches);
+      return std::size_t{energy::begun_entries} * Q * energy::lanes * static_cast<std::size_t>(viscous.branches);
     }
   };
 
@@ -186,11 +196,12 @@ class Body : public Term {
   template <int K, int Q>
   [[nodiscard]] static energy::ViscousBlock branches_of(const Set<K, Q>& set, std::size_t block,
                                                         const Scratch& scratch) {
-    const std::size_t first = block * static_cast<std::size_t>(set.branches);
-    const double* strains = scratch.history ? scratch.history->strains.data() + set.first_strain : nullptr;
-    return {set.branches, set.moduli.data() + first, scratch.shares.data() + set.first_branch + first,
+    const std::size_t first = block * static_cast<std::size_t>(set.viscous.branches);
+    const double* strains = scratch.history ? scratch.history->strains.data() + set.viscous.first_strain : nullptr;
+    return {set.viscous.branches, set.viscous.moduli.data() + first,
+            scratch.shares.data() + set.viscous.first_branch + first,
             strains ? strains + set.strains_each() * block : nullptr,
-            scratch.begun.data() + set.first_begun + set.begun_each() * block};
+            scratch.begun.data() + set.viscous.first_begun + set.begun_each() * block};
   }
   Result pull(const Demand& demand, const Points& positions, Scratch& scratch, Team& team) const;
   void add_pulls(const Scratch& scratch, Points& sums, Team& team) const;

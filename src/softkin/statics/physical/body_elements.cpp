@@ -50,15 +50,15 @@ void set_law(LawBlock& block, int lane, const ElasticLaw& law) {
 template <int K, int Q>
 void Body::set_pressures(Set<K, Q>& set, const ElasticLaw& law, const std::array<Index, 4>& vertices, int first_lane) {
   if (first_lane == 0) {
-    set.compliance.emplace_back();
-    set.pressures.emplace_back();
+    set.corners.compliance.emplace_back();
+    set.corners.pressures.emplace_back();
   }
   const SplitLaw parts = split(law, K == 10);
   for (int l = first_lane; l < lanes; ++l) {
     set_law(set.blocks.back().law, l, parts.law);
-    set.compliance.back().softness[l] = parts.softness;
-    set.compliance.back().smoothing[l] = parts.smoothing;
-    for (std::size_t i = 0; i < 4; ++i) set.pressures.back()[i][l] = vertices[i];
+    set.corners.compliance.back().softness[l] = parts.softness;
+    set.corners.compliance.back().smoothing[l] = parts.smoothing;
+    for (std::size_t i = 0; i < 4; ++i) set.corners.pressures.back()[i][l] = vertices[i];
   }
 }
 
@@ -66,17 +66,17 @@ void Body::set_pressures(Set<K, Q>& set, const ElasticLaw& law, const std::array
 template <int K, int Q>
 Body::Set<K, Q>& Body::set_of(std::vector<Set<K, Q>>& sets, const Model& model, const ElementRole& role, Index grower,
                               bool mixed) {
-  const Material& material = model.materials[role.material];
+  const Material& material = model.elements.materials[role.material];
   const Law law = material.elastic.law;
   const auto branches = static_cast<int>(material.viscosity.size());
   const auto found = std::find_if(sets.begin(), sets.end(), [&](const Set<K, Q>& s) {
-    return s.law == law && s.actuator == role.actuator && s.grower == grower && s.branches == branches &&
+    return s.law == law && s.actuator == role.actuator && s.grower == grower && s.viscous.branches == branches &&
            s.mixed == mixed;
   });
   if (found != sets.end()) return *found;
   Set<K, Q>& set = sets.emplace_back();
   set.law = law;
-  set.branches = branches;
+  set.viscous.branches = branches;
   set.mixed = mixed;
   set.actuator = role.actuator;
   set.grower = grower;
@@ -91,7 +91,7 @@ Body::Set<K, Q>& Body::set_of(std::vector<Set<K, Q>>& sets, const Model& model, 
 template <int K, int Q, class Element>
 void Body::add(std::vector<Set<K, Q>>& sets, const Model& model, const ElementRole& role, Index element,
                const Element& nodes, const Pressures* pressures, Index grower) {
-  const Material& material = model.materials[role.material];
+  const Material& material = model.elements.materials[role.material];
   const bool mixed = pressures && material.mixed;
   Set<K, Q>& set = set_of(sets, model, role, grower, mixed);
   Eigen::Matrix<double, K, 3> rest;
@@ -102,15 +102,16 @@ void Body::add(std::vector<Set<K, Q>>& sets, const Model& model, const ElementRo
     set.blocks.emplace_back();
     set.nodes.emplace_back();
     set.frames.emplace_back();
-    set.moduli.resize(set.moduli.size() + material.viscosity.size());
-    set.times.resize(set.moduli.size());
+    set.viscous.moduli.resize(set.viscous.moduli.size() + material.viscosity.size());
+    set.viscous.times.resize(set.viscous.moduli.size());
   }
   ElasticBlock<K, Q>& block = set.blocks.back();
   for (int l = lane; l < lanes; ++l) {  // later elements overwrite the lanes that this one fills in advance
     set_law(block.law, l, material.elastic);
-    for (std::size_t i = 0, at = set.moduli.size() - material.viscosity.size(); i < material.viscosity.size(); ++i) {
-      set.moduli[at + i][l] = material.viscosity[i].modulus_MPa;
-      set.times[at + i][l] = material.viscosity[i].time_s;
+    for (std::size_t i = 0, at = set.viscous.moduli.size() - material.viscosity.size(); i < material.viscosity.size();
+         ++i) {
+      set.viscous.moduli[at + i][l] = material.viscosity[i].modulus_MPa;
+      set.viscous.times[at + i][l] = material.viscosity[i].time_s;
     }
     for (int q = 0; q < Q; ++q) {
       for (int i = 0; i < K; ++i) set_lane(block.slope[q][i], l, shape.slope[q].row(i).transpose());
@@ -129,21 +130,21 @@ void Body::add(std::vector<Set<K, Q>>& sets, const Model& model, const ElementRo
 void Body::add_elements(const Model& model, const Pressures* pressures) {
   const Growers growers = growers_of(model);
   const auto grower = [](const std::vector<Index>& of, Index e) { return of.empty() ? -1 : of[e]; };
-  for (const Index e : spatial_order(model.rest, model.tetrahedra)) {
-    const ElementRole& role = model.tetrahedron_roles[e];
-    const Tetrahedron& t = model.tetrahedra[e];
-    if (model.edge_nodes.empty()) {
+  for (const Index e : spatial_order(model.rest, model.elements.tetrahedra)) {
+    const ElementRole& role = model.elements.tetrahedron_roles[e];
+    const Tetrahedron& t = model.elements.tetrahedra[e];
+    if (model.elements.edge_nodes.empty()) {
       add(linear_, model, role, e, t, pressures, grower(growers.tetrahedra, e));
     } else {
       std::array<Index, 10> nodes;
       std::copy(t.begin(), t.end(), nodes.begin());
-      std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
+      std::copy(model.elements.edge_nodes[e].begin(), model.elements.edge_nodes[e].end(), nodes.begin() + 4);
       add(quadratic_, model, role, e, nodes, pressures, grower(growers.tetrahedra, e));
     }
   }
-  for (const Index e : spatial_order(model.rest, model.prisms))
-    add(prisms_, model, model.prism_roles[e], static_cast<Index>(model.tetrahedra.size()) + e, model.prisms[e], nullptr,
-        grower(growers.prisms, e));
+  for (const Index e : spatial_order(model.rest, model.elements.prisms))
+    add(prisms_, model, model.elements.prism_roles[e], static_cast<Index>(model.elements.tetrahedra.size()) + e,
+        model.elements.prisms[e], nullptr, grower(growers.prisms, e));
   for (auto& set : prisms_)
     if (set.charged) add_field(model, set);
 }
@@ -166,15 +167,15 @@ void Body::number_sets() {
     set.first_pull = pulls_;
     pulls_ += K * set.count;
     blocks_ += set.blocks.size();
-    set.first_branch = branches_;
-    set.first_strain = strains_;
-    branches_ += set.moduli.size();
-    set.first_begun = begun_;
+    set.viscous.first_branch = branches_;
+    set.viscous.first_strain = strains_;
+    branches_ += set.viscous.moduli.size();
+    set.viscous.first_begun = begun_;
     strains_ += set.strains_each() * set.blocks.size();
     begun_ += set.begun_each() * set.blocks.size();
   });
   each_set([&]<int K, int Q>(Set<K, Q>& set) {
-    set.first_miss = pulls_ + misses_;
+    set.corners.first_miss = pulls_ + misses_;
     if (set.mixed) misses_ += 4 * set.count;
   });
   const auto count_changed = [](auto& sets) {
@@ -194,7 +195,8 @@ void Body::number_pulls() {
       for (Index e = 0; e < set.count; ++e)
         for (int i = 0; i < K; ++i) visit(set.nodes[e / lanes][i][e % lanes], set.first_pull + K * e + i);
       for (Index e = 0; set.mixed && e < set.count; ++e)
-        for (int i = 0; i < 4; ++i) visit(set.pressures[e / lanes][i][e % lanes], set.first_miss + 4 * e + i);
+        for (int i = 0; i < 4; ++i)
+          visit(set.corners.pressures[e / lanes][i][e % lanes], set.corners.first_miss + 4 * e + i);
     });
   };
   pull_starts_.assign(static_cast<std::size_t>(vertices_) + 1, 0);
@@ -208,7 +210,7 @@ void Body::number_pulls() {
 /// The permittivities of a set under voltage, whose elements are there.
 void Body::add_field(const Model& model, Set<6, 6>& set) {
   const std::vector<double> permittivity = layer_permittivity(model, set.actuator);
-  const auto tetrahedra = static_cast<Index>(model.tetrahedra.size());
+  const auto tetrahedra = static_cast<Index>(model.elements.tetrahedra.size());
   set.permittivity.assign(set.blocks.size(), Pack{});
   for (Index e = 0; e < set.count; ++e)
     set.permittivity[e / lanes][e % lanes] = permittivity[set.elements[e] - tetrahedra];
@@ -232,7 +234,7 @@ void Body::add_cliques(linear::Cliques& cliques) {
     std::array<Index, K + 4> nodes;
     for (Index e = 0; e < set.count; ++e) {
       for (int i = 0; i < K; ++i) nodes[i] = set.nodes[e / lanes][i][e % lanes];
-      for (int i = 0; set.mixed && i < 4; ++i) nodes[K + i] = set.pressures[e / lanes][i][e % lanes];
+      for (int i = 0; set.mixed && i < 4; ++i) nodes[K + i] = set.corners.pressures[e / lanes][i][e % lanes];
       cliques.add(std::span(nodes).first(static_cast<std::size_t>(set.mixed ? K + 4 : K)));
     }
   });

@@ -43,8 +43,9 @@ class Downhill {
       auto [best, interrupted] = lower(at, mode);
       if (interrupted) return false;
       if (!best) return true;
-      ++report_.buckled;
-      report_.buckled_mm = std::max(report_.buckled_mm, system_.largest_move(at.positions, best->at.positions));
+      ++report_.physical.buckled;
+      report_.physical.buckled_mm =
+          std::max(report_.physical.buckled_mm, system_.largest_move(at.positions, best->at.positions));
       settler_.take(at, std::move(best->at));
       settler_.active = best->active;
       settler_.last = best->last;

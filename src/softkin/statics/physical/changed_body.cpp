@@ -32,11 +32,12 @@ void Body::add_directions(const Model& model) {
   for (const auto& each : model.growths) {
     const Growth& growth = *each;
     if (growth.directions.empty()) continue;
-    std::vector<Vec3> of(model.tetrahedra.size() + model.prisms.size(), Vec3::UnitX());
+    std::vector<Vec3> of(model.elements.tetrahedra.size() + model.elements.prisms.size(), Vec3::UnitX());
     for (std::size_t i = 0; i < growth.directions.size(); ++i) {
       const std::size_t tetrahedra = growth.tetrahedra.size();
-      const auto e = i < tetrahedra ? static_cast<std::size_t>(growth.tetrahedra[i])
-                                    : model.tetrahedra.size() + static_cast<std::size_t>(growth.prisms[i - tetrahedra]);
+      const auto e = i < tetrahedra
+                         ? static_cast<std::size_t>(growth.tetrahedra[i])
+                         : model.elements.tetrahedra.size() + static_cast<std::size_t>(growth.prisms[i - tetrahedra]);
       of[e] = growth.directions[i];
     }
     each_set([&](auto& set) {

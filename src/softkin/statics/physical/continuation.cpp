@@ -405,8 +405,8 @@ bool Continuation::come_to(const Demand& there, double next, bool unstable, Iter
   if (unstable && options_.stable && next < 1) {
     if (!buckle(settler_, there, at)) return false;
     way_.factorised = false;
-  } else if (unstable && next < 1 && report_.unstable_from == 0 && settler_.prepare(there, at) > 0) {
-    report_.unstable_from = whole(next);  // in the shape itself: the last factorisation was of one close to it
+  } else if (unstable && next < 1 && report_.physical.unstable_from == 0 && settler_.prepare(there, at) > 0) {
+    report_.physical.unstable_from = whole(next);  // in the shape itself: the last factorisation was of one close to it
   }
   if (way_.beyond && next >= way_.beyond->done) way_.beyond.reset();
   pass(there, next);

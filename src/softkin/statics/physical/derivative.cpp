@@ -120,7 +120,7 @@ Points Derivative::reactions(const Iterate& at, const Demand& demand, Index colu
     force += system_.measures().sign(held_[i]) * found_.multipliers(i, column) * system_.pull(held_[i], at);
   for (Index v = 0; v < force.rows(); ++v)
     for (int axis = 0; axis < 3; ++axis)
-      if (system_.model().support_of[v][axis] < 0) force(v, axis) = 0;
+      if (system_.model().held.support_of[v][axis] < 0) force(v, axis) = 0;
   return force;
 }
 

@@ -108,7 +108,7 @@ Matrix9 second_derivative(const Mat3& f, const Families& families, bool projecte
 }  // namespace
 
 bool FibreFamilies::any(const Model& model) {
-  return std::any_of(model.materials.begin(), model.materials.end(),
+  return std::any_of(model.elements.materials.begin(), model.elements.materials.end(),
                      [](const Material& material) { return material.families != nullptr; });
 }
 
@@ -130,9 +130,9 @@ void FibreFamilies::add(Elements<K, Q>& elements, const Model& model, const Node
 }
 
 FibreFamilies::FibreFamilies(const Model& model, const std::vector<std::int64_t>& slots)
-    : places_(model.tetrahedra.size() + model.prisms.size(), -1),
-      tetrahedra_(static_cast<Index>(model.tetrahedra.size())) {
-  for (const Material& material : model.materials) {
+    : places_(model.elements.tetrahedra.size() + model.elements.prisms.size(), -1),
+      tetrahedra_(static_cast<Index>(model.elements.tetrahedra.size())) {
+  for (const Material& material : model.elements.materials) {
     if (!material.families) continue;
     const Families& all = *material.families;
     const auto of_element = [&](std::size_t place) {
@@ -146,18 +146,18 @@ FibreFamilies::FibreFamilies(const Model& model, const std::vector<std::int64_t>
     };
     for (std::size_t i = 0; i < all.tetrahedra.size(); ++i) {
       const auto e = static_cast<std::size_t>(all.tetrahedra[i]);
-      if (model.edge_nodes.empty()) {
-        add(linear_, model, model.tetrahedra[e], of_element(i), all.tetrahedra[i], slots[e]);
+      if (model.elements.edge_nodes.empty()) {
+        add(linear_, model, model.elements.tetrahedra[e], of_element(i), all.tetrahedra[i], slots[e]);
         continue;
       }
       std::array<Index, 10> nodes;
-      std::copy(model.tetrahedra[e].begin(), model.tetrahedra[e].end(), nodes.begin());
-      std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
+      std::copy(model.elements.tetrahedra[e].begin(), model.elements.tetrahedra[e].end(), nodes.begin());
+      std::copy(model.elements.edge_nodes[e].begin(), model.elements.edge_nodes[e].end(), nodes.begin() + 4);
       add(quadratic_, model, nodes, of_element(i), all.tetrahedra[i], slots[e]);
     }
     for (std::size_t i = 0; i < all.prisms.size(); ++i) {
-      const auto e = static_cast<std::size_t>(all.prisms[i]), number = model.tetrahedra.size() + e;
-      add(prisms_, model, model.prisms[e], of_element(all.tetrahedra.size() + i), static_cast<Index>(number),
+      const auto e = static_cast<std::size_t>(all.prisms[i]), number = model.elements.tetrahedra.size() + e;
+      add(prisms_, model, model.elements.prisms[e], of_element(all.tetrahedra.size() + i), static_cast<Index>(number),
           slots[number]);
     }
   }

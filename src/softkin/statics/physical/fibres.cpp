@@ -29,7 +29,7 @@ Vec3 tangent(const std::vector<Index>& vertices, const std::vector<double>& slop
 
 }  // namespace
 
-Fibres::Fibres(const Model& model) : fibres_(model.fibres) {
+Fibres::Fibres(const Model& model) : fibres_(model.reinforcement.fibres) {
   std::map<std::vector<Index>, std::size_t> known;
   for (const Fibre& fibre : fibres_)
     for (const FibrePlace& place : fibre.places) {

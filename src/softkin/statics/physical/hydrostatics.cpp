@@ -77,12 +77,12 @@ Mat3 cross_matrix(const Vec3& w) {
 }  // namespace
 
 bool Hydrostatics::acts(const Model& model) {
-  return std::any_of(model.tractions.begin(), model.tractions.end(),
+  return std::any_of(model.loads.tractions.begin(), model.loads.tractions.end(),
                      [](const FollowingTraction& traction) { return !traction.deeper_MPa_mm.isZero(0); });
 }
 
 Hydrostatics::Hydrostatics(const Model& model) : model_(model) {
-  for (const FollowingTraction& traction : model.tractions)
+  for (const FollowingTraction& traction : model.loads.tractions)
     if (!traction.deeper_MPa_mm.isZero(0))
       for (const LoadedFace& loaded : traction.faces)
         faces_.push_back({nodes_of(loaded.face), loaded.share, traction.deeper_MPa_mm, traction.level_mm});
@@ -98,11 +98,11 @@ void Hydrostatics::find_rims() {
       passes[{std::min(a, b), std::max(a, b)}] += a < b ? face.share : -face.share;
     }
   const auto still = [&](Index v) {
-    const auto& fixed = model_.fixed[v];
+    const auto& fixed = model_.held.fixed[v];
     return fixed[0] && fixed[1] && fixed[2];
   };
   closed_ = std::all_of(passes.begin(), passes.end(), [&](const auto& edge) {
-    return edge.second == 0 || (model_.turns.empty() && still(edge.first.first) && still(edge.first.second));
+    return edge.second == 0 || (model_.held.turns.empty() && still(edge.first.first) && still(edge.first.second));
   });
 }
 

@@ -102,14 +102,14 @@ void put_stiffness(const Bent& bent, const Eigen::MatrixXd& hessian, double* out
 }  // namespace
 
 Layers::Layers(const Model& model) : model_(model) {
-  for (const auto& layer : model.layers) {
+  for (const auto& layer : model.reinforcement.layers) {
     add_membrane(*layer);
     add_bending(*layer);
   }
   std::vector<bool> held = vertices_of_elements(model);
   // what bends has a shape of its own, but a bag that is flat begins swollen: there the film has far to go
   if (std::none_of(model.actuators.begin(), model.actuators.end(), flat_at_rest))
-    for (const auto& layer : model.layers) {
+    for (const auto& layer : model.reinforcement.layers) {
       if (layer->bends.empty()) continue;
       for (const CavityFace& face : layer->faces)
         for (const Index v : nodes_of(face)) held[v] = true;
@@ -306,7 +306,7 @@ bool Layers::kinked() const {
 
 void Layers::tell(const Iterate& at, const Demand& /*demand*/, Term::Scratch& /*scratch*/, ElementDeformation& out,
                   Team& /*team*/) const {
-  for (const auto& layer : model_.layers) {
+  for (const auto& layer : model_.reinforcement.layers) {
     LayerForces told;
     double area = 0, wrinkled = 0, slack = 0;
     for (const LayerPlace& place : layer->places) {

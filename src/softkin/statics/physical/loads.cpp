@@ -12,16 +12,16 @@ void add_dead_load(const Points& load, double share, const Points& rest, const P
 }  // namespace
 
 DeadLoads::DeadLoads(const Model& model)
-    : model_(model), any_(model.dead_load.rows() > 0 && !model.dead_load.isZero(0)) {}
+    : model_(model), any_(model.loads.dead.rows() > 0 && !model.loads.dead.isZero(0)) {}
 
 void DeadLoads::evaluate(const Iterate& at, const Demand& demand, Scratch& /*scratch*/, Sum& sum,
                          Team& /*team*/) const {
-  if (any_) add_dead_load(model_.dead_load, demand.share, model_.rest, at.positions, sum);
+  if (any_) add_dead_load(model_.loads.dead, demand.share, model_.rest, at.positions, sum);
 }
 
 void DeadLoads::add_change(const Demand& from, const Demand& to, const Points& /*positions*/, Scratch& /*scratch*/,
                            Points& force, Team& /*team*/) const {
-  if (any_) force -= (to.share - from.share) * model_.dead_load;
+  if (any_) force -= (to.share - from.share) * model_.loads.dead;
 }
 
 void FadingLoads::evaluate(const Iterate& at, const Demand& demand, Term::Scratch& scratch, Sum& sum,

@@ -105,17 +105,17 @@ Magnets::Magnets(const Model& model, const std::vector<std::int64_t>& slots)
   set_shapes(quadratic_.shapes);
   set_shapes(prisms_.shapes);
   const std::vector<Vec3>& remanence = model.magnetism->remanence;
-  const std::size_t tetrahedra = model.tetrahedra.size();
+  const std::size_t tetrahedra = model.elements.tetrahedra.size();
   for (std::size_t e = 0; e < remanence.size(); ++e) {
     if (remanence[e].isZero(0) || model.magnetism->magnetisation[e] != Magnetisation::stretches) continue;
     if (e >= tetrahedra) {
-      add(prisms_, model, model.prisms[e - tetrahedra], remanence[e], slots[e]);
-    } else if (model.edge_nodes.empty()) {
-      add(linear_, model, model.tetrahedra[e], remanence[e], slots[e]);
+      add(prisms_, model, model.elements.prisms[e - tetrahedra], remanence[e], slots[e]);
+    } else if (model.elements.edge_nodes.empty()) {
+      add(linear_, model, model.elements.tetrahedra[e], remanence[e], slots[e]);
     } else {
       std::array<Index, 10> nodes;
-      std::copy(model.tetrahedra[e].begin(), model.tetrahedra[e].end(), nodes.begin());
-      std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
+      std::copy(model.elements.tetrahedra[e].begin(), model.elements.tetrahedra[e].end(), nodes.begin());
+      std::copy(model.elements.edge_nodes[e].begin(), model.elements.edge_nodes[e].end(), nodes.begin() + 4);
       add(quadratic_, model, nodes, remanence[e], slots[e]);
     }
   }

@@ -47,7 +47,7 @@ class Couples {
 }  // namespace
 
 Moments::Moments(const Model& model) : model_(model) {
-  for (const RegionMoment& of : model.moments)
+  for (const RegionMoment& of : model.loads.moments)
     for (int axis = 0; axis < 3; ++axis) components_.push_back({of, axis});
   for (Index a = 0; a < static_cast<Index>(model.actuators.size()); ++a)
     if (const auto* command = model.actuators[a].as<MomentCommand>())
@@ -59,7 +59,7 @@ bool Moments::loads(Index command) const {
 }
 
 bool Moments::grows() const {
-  return std::any_of(model_.moments.begin(), model_.moments.end(),
+  return std::any_of(model_.loads.moments.begin(), model_.loads.moments.end(),
                      [](const RegionMoment& of) { return !of.moment_Nmm.isZero(0); });
 }
 
@@ -72,10 +72,10 @@ double Moments::scale(std::size_t part, const Demand& demand) const {
 void Moments::evaluate(const Iterate& at, const Demand& demand, Term::Scratch& scratch, Sum& sum,
                        Team& /*team*/) const {
   static_cast<Scratch&>(scratch).demand = demand;
-  for (std::size_t r = 0; r < model_.moments.size(); ++r) {
+  for (std::size_t r = 0; r < model_.loads.moments.size(); ++r) {
     const Vec3 moment(scale(3 * r, demand), scale(3 * r + 1, demand), scale(3 * r + 2, demand));
     if (moment.isZero(0)) continue;
-    const std::vector<Index>& vertices = model_.moments[r].vertices;
+    const std::vector<Index>& vertices = model_.loads.moments[r].vertices;
     const Couples couples(vertices, at.positions, moment);
     for (std::size_t i = 0; i < vertices.size(); ++i) {
       sum.gradient.row(vertices[i]) -= couples.force(i).transpose();

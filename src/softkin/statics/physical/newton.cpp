@@ -58,7 +58,7 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
     secants_.clear();
     factor_.looked_at = false;
     const InPrecision scope(work_.saddle, precision);
-    negative = system_.factorise(at, *demand_, *active_, balance_, {kind, shift, true}, work_, team_);
+    negative = system_.factorise(at, *asked_.demand, *asked_.active, balance_, {kind, shift, true}, work_, team_);
     report_.factorisations_in_double += work_.saddle.factor().in_double();
     return negative == 0 ? Advance::made : Advance::none;
   };
@@ -87,10 +87,10 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
 
 /// What a step of Newton's makes less where the stiffness is positive: potential, and constraints that are missed.
 double Newton::merit(const Balance& balance) const {
-  double missed = constraint_weights_.dot(balance.constraint.cwiseAbs());
+  double missed = weights_.constraints.dot(balance.constraint.cwiseAbs());
   const std::vector<Index>& pressures = system_.freedoms().scalar_unknowns();
   for (std::size_t p = 0; p < pressures.size(); ++p)
-    missed += pressure_weights_[p] * std::abs(balance.force[pressures[p]]);
+    missed += weights_.pressures[p] * std::abs(balance.force[pressures[p]]);
   return balance.energy + balance.load_energy + missed;
 }
 
@@ -100,13 +100,13 @@ double Newton::merit(const Balance& balance) const {
 /// source   Nocedal, Wright 2006, Numerical optimization, theorem 18.2
 double Newton::weigh_constraints(const Iterate& at) {
   constexpr double above = 2;  // the multipliers
-  constraint_weights_ = Eigen::VectorXd::Zero(system_.actuators());
+  weights_.constraints = Eigen::VectorXd::Zero(system_.actuators());
   double slope = balance_.force.dot(step_.move);
   for (Index a = 0; a < system_.actuators(); ++a) {
-    if (!(*active_)[a]) continue;
+    if (!(*asked_.active)[a]) continue;
     const double multiplier = at.multipliers[a], missed = balance_.constraint[a];
-    constraint_weights_[a] = above * std::max(std::abs(multiplier), std::abs(multiplier + step_.change[a]));
-    slope += system_.measures().sign(a) * multiplier * missed - constraint_weights_[a] * std::abs(missed);
+    weights_.constraints[a] = above * std::max(std::abs(multiplier), std::abs(multiplier + step_.change[a]));
+    slope += system_.measures().sign(a) * multiplier * missed - weights_.constraints[a] * std::abs(missed);
   }
   return slope + weigh_pressures(at, above);
 }
@@ -120,10 +120,10 @@ double Newton::weigh_pressures(const Iterate& at, double above) {
   Eigen::VectorXd weights = Eigen::VectorXd::Zero(step_.move.size());
   const Points largest = at.positions.cwiseAbs().cwiseMax((at.positions + moves).cwiseAbs());
   system_.freedoms().reduce(largest, at.positions, weights);
-  pressure_weights_.resize(static_cast<Index>(unknowns.size()));
+  weights_.pressures.resize(static_cast<Index>(unknowns.size()));
   double slope = system_.pressure_work(at.positions, balance_.force);
   for (std::size_t p = 0; p < unknowns.size(); ++p) {
-    const double weight = pressure_weights_[p] = above * weights[unknowns[p]];
+    const double weight = weights_.pressures[p] = above * weights[unknowns[p]];
     slope -= weight * std::abs(balance_.force[unknowns[p]]);
   }
   return slope;
@@ -138,14 +138,14 @@ bool Newton::accept(double moved_mm, Iterate& at) {
 
 /// The workspace is back at the iterate, as the next factorisation wants it.
 Newton::Advance Newton::reject(const Iterate& at) {
-  system_.evaluate(at, *demand_, *active_, work_, balance_, team_);
+  system_.evaluate(at, *asked_.demand, *asked_.active, work_, balance_, team_);
   return Advance::made;
 }
 
 /// Does no constraint miss its demand by more than steps that are small enough can close?
 bool Newton::meets_constraints() const {
   for (Index a = 0; a < system_.actuators(); ++a) {
-    if (!(*active_)[a]) continue;
+    if (!(*asked_.active)[a]) continue;
     const double reach = 2 * settings_.tolerance_mm * work_.slopes[a].rowwise().norm().sum();
     if (!(std::abs(balance_.constraint[a]) <= reach + 1e-9 * system_.measures().rest(a))) return false;
   }
@@ -167,7 +167,7 @@ bool Newton::improve_constraints() {
   constexpr double promised = 1e-8;  // of the measure at rest
   double missed = 0;
   for (Index a = 0; a < system_.actuators(); ++a)
-    if ((*active_)[a]) missed = std::max(missed, std::abs(balance_.constraint[a]) / system_.measures().rest(a));
+    if ((*asked_.active)[a]) missed = std::max(missed, std::abs(balance_.constraint[a]) / system_.measures().rest(a));
   return missed > promised && missed < worthwhile_balance * std::exchange(missed_, missed);
 }
 
@@ -176,8 +176,8 @@ bool Newton::improve_constraints() {
 void Newton::settle_gases(Iterate& at) const {
   for (Index a = 0; a < system_.actuators(); ++a) {
     const Filling* filling = system_.measures().filling(a);
-    if (filling && !filling->liquid && (*active_)[a])
-      at.multipliers[a] = filling->pressure(demand_->actuation[a], system_.measures().value(a, at.positions));
+    if (filling && !filling->liquid && (*asked_.active)[a])
+      at.multipliers[a] = filling->pressure(asked_.demand->actuation[a], system_.measures().value(a, at.positions));
   }
 }
 
@@ -188,7 +188,7 @@ bool Newton::doubts_stability(const Iterate& at) {
   const double moved = (at.positions - factor_.shape).rowwise().norm().maxCoeff();
   if (!(moved > near_factor * system_.model().diagonal_mm)) return false;
   if (factor_.negative != 0) return true;
-  const bool as_stiff = as_stiff_as_factorised(system_, at, *demand_, *active_, balance_, work_, team_);
+  const bool as_stiff = as_stiff_as_factorised(system_, at, *asked_.demand, *asked_.active, balance_, work_, team_);
   (void)reject(at);
   return !as_stiff;
 }
@@ -196,7 +196,7 @@ bool Newton::doubts_stability(const Iterate& at) {
 /// The number of negative eigenvalues at an iterate, without a doubt.
 void Newton::make_sure(const Iterate& at) {
   const InPrecision twice(work_.saddle, linear::MixedLdlt::Precision::twice);
-  factor_.negative = system_.factorise(at, *demand_, *active_, balance_, {}, work_, team_);
+  factor_.negative = system_.factorise(at, *asked_.demand, *asked_.active, balance_, {}, work_, team_);
   ++report_.factorisations;
   ++report_.factorisations_in_double;
   factor_.doubtful = false;
@@ -204,16 +204,16 @@ void Newton::make_sure(const Iterate& at) {
 
 Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& active, Policy policy, bool factorised,
                               Iterate& at) {
-  demand_ = &demand;
-  active_ = &active;
+  asked_.demand = &demand;
+  asked_.active = &active;
   const auto in_single = [&] { return report_.factorisations - report_.factorisations_in_double; };
   const int before = in_single();
   start_ = at;
   const Outcome outcome = descend(policy, factorised, at);
   if (outcome != Outcome::stuck) return outcome;
   const bool rounded = in_single() != before && !system_.contact();
-  hurried_ = hurried_ || (brief_ && rounded);
-  if (!rounded || brief_) return outcome;
+  ending_.hurried = ending_.hurried || (ending_.brief && rounded);
+  if (!rounded || ending_.brief) return outcome;
   at = start_;  // rounding may be why
   const InPrecision twice(work_.saddle, linear::MixedLdlt::Precision::twice);
   return descend(policy, false, at);
@@ -230,22 +230,22 @@ bool Newton::rests() {
 
 /// Nothing is known of steps yet.
 void Newton::begin_steps() {
-  why_ = "its iterations were not enough";
+  ending_.why = "its iterations were not enough";
   secants_.clear();
   pace_ = {.slow = system_.limp()};
   factor_.refines = factor_.looked_at = false;
 }
 
 Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
-  system_.evaluate(at, *demand_, *active_, work_, balance_, team_);
-  why_ = "the law has no energy at its begin";
+  system_.evaluate(at, *asked_.demand, *asked_.active, work_, balance_, team_);
+  ending_.why = "the law has no energy at its begin";
   if (balance_.forbidden || !balance_.force.allFinite()) return Outcome::stuck;
   begin_steps();
   Advance advance = Advance::made;
   double damping = 1;
   if (system_.limp() && system_.layers()->flat(at.positions) && rests()) return Outcome::converged;
   imbalance_.residual = missed_ = std::numeric_limits<double>::infinity();
-  const int most = brief_ ? std::min(settings_.max_iterations, most_briefly) : settings_.max_iterations;
+  const int most = ending_.brief ? std::min(settings_.max_iterations, most_briefly) : settings_.max_iterations;
   for (int iteration = 0; advance == Advance::made && iteration < most; ++iteration) {
     if (factorised && iteration == 0) {
       factor_.negative = 0;
@@ -255,7 +255,7 @@ Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
       const Advance ready = factorise(at, policy);
       if (ready == Advance::interrupted) return Outcome::interrupted;
       if (ready == Advance::none) {
-        why_ = "no shift makes the stiffness positive";
+        ending_.why = "no shift makes the stiffness positive";
         return Outcome::stuck;
       }
       advance =
@@ -268,7 +268,7 @@ Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
     }
   }
   if (advance == Advance::interrupted) return Outcome::interrupted;
-  hurried_ = hurried_ || (brief_ && advance == Advance::made);
+  ending_.hurried = ending_.hurried || (ending_.brief && advance == Advance::made);
   if (advance != Advance::arrived) {
     if (!std::isfinite(imbalance_.residual) || report_.step_mm >= settings_.tolerance_mm) return Outcome::stuck;
     (void)reject(at);  // the last step was small enough, and none follows it

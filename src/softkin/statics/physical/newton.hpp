@@ -35,10 +35,10 @@ class Newton {
   class Brief {
    public:
     Brief(Newton& newton, bool brief) : newton_(newton) {
-      newton_.brief_ = brief;
-      newton_.hurried_ = false;
+      newton_.ending_.brief = brief;
+      newton_.ending_.hurried = false;
     }
-    ~Brief() { newton_.brief_ = false; }
+    ~Brief() { newton_.ending_.brief = false; }
     Brief(const Brief&) = delete;
     Brief& operator=(const Brief&) = delete;
 
@@ -46,7 +46,7 @@ class Newton {
     Newton& newton_;
   };
   /// Was a solve that got stuck since the last of these began too brief to tell?
-  [[nodiscard]] bool hurried() const { return hurried_; }
+  [[nodiscard]] bool hurried() const { return ending_.hurried; }
 
   /// Moves `at` to equilibrium. Multipliers that are not active are given. The workspace is left with the last
   /// factorisation. What gets stuck with factors in single precision is tried again with others.
@@ -67,7 +67,7 @@ class Newton {
   [[nodiscard]] const Imbalance& imbalance() const { return imbalance_; }
 
   /// Why the last solve got stuck.
-  [[nodiscard]] const char* why_stuck() const { return why_; }
+  [[nodiscard]] const char* why_stuck() const { return ending_.why; }
 
   /// Is an element of the last shape inverted?
   [[nodiscard]] bool inverted() const { return balance_.inverted; }
@@ -98,6 +98,22 @@ class Newton {
     bool refines = false;    // do these want more than what its precision gives
     double shift = 0;        // the last that made it positive, over three
     Points shape{};          // where it was made
+  };
+  /// What is solved for.
+  struct Asked {
+    const Demand* demand = nullptr;
+    const std::vector<bool>* active = nullptr;
+  };
+  /// In the merit function.
+  struct Weights {
+    Eigen::VectorXd constraints{};  // [N], [MPa]
+    Eigen::VectorXd pressures{};    // [mm]
+  };
+  /// How a solve is to end, and how the last one did.
+  struct Ending {
+    bool brief = false;    // after a few factors
+    bool hurried = false;  // did one end by that
+    const char* why = "";  // did the last one get stuck
   };
 
   void begin_steps();
@@ -139,15 +155,13 @@ class Newton {
   Settings settings_;
   const ProgressCallback& progress_;
   SolveReport& report_;
-  const Demand* demand_ = nullptr;
-  const std::vector<bool>* active_ = nullptr;
+  Asked asked_;
   Balance balance_, trial_balance_;  // at the iterate, at the one being tried
   Step step_, next_;
-  std::vector<Secant> secants_;                            // of the factor at hand
-  Eigen::VectorXd constraint_weights_, pressure_weights_;  // in the merit function: N, MPa; mm
+  std::vector<Secant> secants_;  // of the factor at hand
+  Weights weights_;
   Iterate start_, trial_;
-  const char* why_ = "";
-  bool brief_ = false, hurried_ = false;
+  Ending ending_;
   Pace pace_;
   Factored factor_;
   Imbalance imbalance_;

@@ -10,8 +10,8 @@ namespace softkin::physical {
 Newton::Outcome Newton::settle_pushes(const Demand& demand, const std::vector<bool>& active, Iterate& at) {
   constexpr int most_steps = 20;
   constexpr double near = 0.2;  // of pushes to those of their gaps, over them
-  demand_ = &demand;
-  active_ = &active;
+  asked_.demand = &demand;
+  asked_.active = &active;
   trial_ = at;
   double damping = 0;
   for (int i = 0; i < most_steps; ++i) {

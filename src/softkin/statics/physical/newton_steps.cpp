@@ -48,7 +48,7 @@ bool Newton::attempt(const Step& step, double& damping, const Iterate& from) {
   trial_ = from;
   if (!advance_clear(system_, step.move, damping, work_, trial_.positions, team_)) return false;
   trial_.multipliers += damping * step.change;
-  system_.evaluate(trial_, *demand_, *active_, work_, trial_balance_, team_);
+  system_.evaluate(trial_, *asked_.demand, *asked_.active, work_, trial_balance_, team_);
   return !trial_balance_.forbidden && trial_balance_.force.allFinite();
 }
 
@@ -127,14 +127,14 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
   step_.size = system_.freedoms().size_of(step_.move, at.positions);
   if (factor_.refines && !work_.saddle.factor().in_double()) (void)refine(balance_, at, step_);
   if (!std::isfinite(step_.size.mean)) {
-    why_ = "the stiffness is singular";
+    ending_.why = "the stiffness is singular";
     return Advance::none;
   }
   damping = system_.contact() ? 1 : std::min(1.0, 2 * damping);  // what was in the way may be out of it now
   // where a gap closes the factor at hand knows nothing of what will push there, but the potential does
   // forces that follow their normal forces have none
   // a stiffness that was made positive leads down, if not straight; where little is left it leads to no unstable shape
-  const bool potential = (system_.kinked() || !work_.exact) && system_.conservative() &&
+  const bool potential = (system_.kinked() || !work_.factored.exact) && system_.conservative() &&
                          !(work_.contacts && work_.contacts->friction_follows);
   double slope = potential ? weigh_constraints(at) : 0;
   pace_.steepest = std::min(pace_.steepest, slope);
@@ -162,13 +162,13 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
     }
     damping *= factor;
     if (!(damping >= least_damping)) {
-      why_ = "no length of a step comes nearer";
+      ending_.why = "no length of a step comes nearer";
       return Advance::none;
     }
   }
   note_pace(damping);
   if (labours(damping)) {
-    why_ = "step after step hardly comes nearer";
+    ending_.why = "step after step hardly comes nearer";
     return Advance::none;
   }
   return accept(damping * step_.size.largest, at) ? Advance::made : Advance::interrupted;
@@ -234,7 +234,7 @@ bool Newton::shrink_fast() const {
 
 /// Steps with the factor of a shape close by, as long as they shrink fast enough.
 Newton::Advance Newton::steps_from_nearby(Iterate& at) {
-  if (!as_stiff_as_factorised(system_, at, *demand_, *active_, balance_, work_, team_)) return reject(at);
+  if (!as_stiff_as_factorised(system_, at, *asked_.demand, *asked_.active, balance_, work_, team_)) return reject(at);
   find(balance_, at, step_);
   if (!std::isfinite(step_.size.mean) || !attempt_whole(step_, at)) return reject(at);
   const bool arrives = last(step_, 0);

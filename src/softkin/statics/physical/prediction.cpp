@@ -39,10 +39,11 @@ struct Tangent {
       return;
     }
     Balance balance;
-    const bool of_here = work.exact && work.factorised.rows() == at.positions.rows() && work.factorised == at.positions;
+    const bool of_here =
+        work.factored.exact && work.factored.shape.rows() == at.positions.rows() && work.factored.shape == at.positions;
     // of what rubs the saddle alone knows whether it goes on or back
     const bool refined = (!of_here || !work.saddle.factor().in_double()) && !system.tendons().any();
-    const bool assembled = work.assembled != 0 && work.assembled == work.factorised_by;
+    const bool assembled = work.stiffness.assembled != 0 && work.stiffness.assembled == work.factored.by;
     if (refined || here.fading != there.fading || here.share != there.share ||
         (!assembled && system.placement().changes(here, there))) {
       hold_friction(system, at, work, team);

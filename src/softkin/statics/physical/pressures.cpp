@@ -7,23 +7,24 @@
 namespace softkin::physical {
 
 std::unique_ptr<const Pressures> pressures_of(const Model& model, const Pressures* like) {
-  if (std::none_of(model.materials.begin(), model.materials.end(), [](const Material& m) { return m.mixed; }))
+  if (std::none_of(model.elements.materials.begin(), model.elements.materials.end(),
+                   [](const Material& m) { return m.mixed; }))
     return nullptr;
   constexpr double share = 30;  // of the diagonal, one over it, is a pressure of one shear modulus
   auto pressures = std::make_unique<Pressures>();
   pressures->first = static_cast<Index>(model.rest.rows());
-  pressures->of.assign(model.tetrahedra.size(), {-1, -1, -1, -1});
+  pressures->of.assign(model.elements.tetrahedra.size(), {-1, -1, -1, -1});
   double shear = 0;
   const Growers growers = growers_of(model);
   std::map<std::array<Index, 3>, Index> known;  // by material, what lets it grow, and corner
-  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e) {
-    const Index material = model.tetrahedron_roles[e].material;
-    const Material& of = model.materials[material];
+  for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e) {
+    const Index material = model.elements.tetrahedron_roles[e].material;
+    const Material& of = model.elements.materials[material];
     if (!of.mixed) continue;
     shear = std::max(shear, shear_modulus(of.elastic));
     const Index grower = growers.tetrahedra.empty() ? -1 : growers.tetrahedra[e];
     for (std::size_t i = 0; i < 4; ++i) {
-      const Index corner = model.tetrahedra[e][i];
+      const Index corner = model.elements.tetrahedra[e][i];
       const auto [at, is_new] =
           known.emplace(std::array{material, grower, corner}, pressures->first + pressures->count());
       if (is_new) pressures->corners.push_back(corner);
@@ -45,11 +46,11 @@ std::unique_ptr<const Model> with_vertices(const Model& model, const Pressures& 
     points.bottomRows(pressures.count()).setZero();
   };
   extend(own->rest);
-  extend(own->held);
-  extend(own->dead_load);
-  own->fixed.resize(all, {false, true, true});
-  own->support_of.resize(all, {-1, -1, -1});
-  own->used.resize(all, false);
+  extend(own->held.at);
+  extend(own->loads.dead);
+  own->held.fixed.resize(all, {false, true, true});
+  own->held.support_of.resize(all, {-1, -1, -1});
+  own->elements.used.resize(all, false);
   return own;
 }
 

@@ -103,13 +103,13 @@ void Saddle::solve_without_tendons(Eigen::Ref<Eigen::MatrixXd> right_sides, Team
 
 /// How tensions of tendons follow moves, V^T moves.
 Eigen::MatrixXd Saddle::followed(const Eigen::Ref<const Eigen::MatrixXd>& moves) const {
-  return tendons_.turned(moves) + rates_ * (tendons_.along.transpose() * moves);
+  return tendons_.turned(moves) + rubbing_.rates * (tendons_.along.transpose() * moves);
 }
 
 void Saddle::solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team) {
   solve_without_tendons(right_sides, team);
   if (tendons_.count() == 0) return;
-  right_sides -= along_ * (inverse_ * followed(right_sides));
+  right_sides -= rubbing_.along * (rubbing_.inverse * followed(right_sides));
 }
 
 /// What a factorisation is to solve for: what the active constraints pull with, the segments of tendons that rub, and
@@ -129,9 +129,9 @@ void Saddle::close() {
   if (tendons_.count() == 0) {
     responses_ = solutions_.leftCols(count);
   } else {
-    free_ = solutions_.leftCols(count);
-    along_ = solutions_.middleCols(count, tendons_.count());
-    stretches_ = tendons_.along.transpose() * along_;
+    rubbing_.free = solutions_.leftCols(count);
+    rubbing_.along = solutions_.middleCols(count, tendons_.count());
+    rubbing_.stretches = tendons_.along.transpose() * rubbing_.along;
     const Eigen::MatrixXd rates = tendons_.rates(slips_, Eigen::VectorXd::Zero(tendons_.count()), {});
     spectrum_.unstable = negative_with_tendons(rates);
     set_rates(rates);
@@ -144,9 +144,10 @@ void Saddle::close() {
 /// How tensions of tendons follow their lengths, in what was factorised.
 void Saddle::set_rates(const Eigen::MatrixXd& rates) {
   const Eigen::Index segments = tendons_.count();
-  rates_ = rates;
-  inverse_ = inverse_of(Eigen::MatrixXd::Identity(segments, segments) + tendons_.turned(along_) + rates_ * stretches_);
-  responses_ = free_ - along_ * (inverse_ * followed(free_));
+  rubbing_.rates = rates;
+  rubbing_.inverse = inverse_of(Eigen::MatrixXd::Identity(segments, segments) + tendons_.turned(rubbing_.along) +
+                                rubbing_.rates * rubbing_.stretches);
+  responses_ = rubbing_.free - rubbing_.along * (rubbing_.inverse * followed(rubbing_.free));
 }
 
 /// Negative eigenvalues of the stiffness with what sticking tendons add to it by their lengths, made symmetric: of
@@ -167,7 +168,7 @@ int Saddle::negative_with_tendons(const Eigen::MatrixXd& rates) const {
     vectors.col(i) = eigen.vectors.col(kept[i]);
     inverse[i] = 1 / eigen.values[kept[i]];
   }
-  Eigen::MatrixXd inner = vectors.transpose() * stretches_ * vectors;
+  Eigen::MatrixXd inner = vectors.transpose() * rubbing_.stretches * vectors;
   inner = -0.5 * (inner + inner.transpose()).eval();
   inner.diagonal() -= inverse;
   const auto below = (symmetric_eigenvalues(inner).array() < 0).count();
@@ -206,18 +207,19 @@ void Saddle::rub(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd&
   // of the step without tendons, then of what the constraints pull with: by the few numbers that tendons and
   // constraints know of them
   Eigen::MatrixXd all(step.size(), 1 + count);
-  all << step, free_;
+  all << step, rubbing_.free;
   const Eigen::MatrixXd turned = tendons_.turned(all), stretched = tendons_.along.transpose() * all,
-                        turns = tendons_.turned(along_), met = slopes_.transpose() * all,
-                        held = slopes_.transpose() * along_;
+                        turns = tendons_.turned(rubbing_.along), met = slopes_.transpose() * all,
+                        held = slopes_.transpose() * rubbing_.along;
   const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(tendons_.count(), tendons_.count());
   Eigen::VectorXd lengthening = Eigen::VectorXd::Zero(tendons_.count());
   Eigen::VectorXd growth = balance.growth.size() > 0 ? balance.growth : Eigen::VectorXd::Ones(measures_.count());
   Eigen::MatrixXd rates;
   for (int round = 0; round < most_rounds; ++round) {
     rates = tendons_.rates(slips, lengthening, growth);
-    const Eigen::MatrixXd tensions = inverse_of(one + turns + rates * stretches_) * (turned + rates * stretched);
-    const Eigen::MatrixXd lengths = stretched - stretches_ * tensions;
+    const Eigen::MatrixXd tensions =
+        inverse_of(one + turns + rates * rubbing_.stretches) * (turned + rates * stretched);
+    const Eigen::MatrixXd lengths = stretched - rubbing_.stretches * tensions;
     Eigen::VectorXd now = lengths.col(0);
     if (count > 0) {
       Eigen::MatrixXd left = met - held * tensions;
@@ -232,7 +234,7 @@ void Saddle::rub(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd&
   }
   set_rates(rates);
   close_constraints();
-  step -= along_ * (inverse_ * (turned.col(0) + rates * stretched.col(0)));
+  step -= rubbing_.along * (rubbing_.inverse * (turned.col(0) + rates * stretched.col(0)));
   meet_constraints(balance, step, change);
 }
 

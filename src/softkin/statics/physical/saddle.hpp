@@ -121,11 +121,15 @@ class Saddle {
   Eigen::VectorXd compliance_;
   TendonColumns tendons_;
   Eigen::VectorXd slips_;
-  Eigen::MatrixXd free_;        // K^-1 of the pulls without tendons' columns,
-  Eigen::MatrixXd along_;       // and of their U
-  Eigen::MatrixXd stretches_;   // U^T along
-  Eigen::MatrixXd rates_;       // with which V^T is that by the turns and rates U^T
-  Eigen::MatrixXd inverse_;     // (1 + V^T along)^-1
+  /// What tendons' columns make of the responses.
+  struct Rubbing {
+    Eigen::MatrixXd free{};       // K^-1 of the pulls without these columns,
+    Eigen::MatrixXd along{};      // and of their U
+    Eigen::MatrixXd stretches{};  // U^T along
+    Eigen::MatrixXd rates{};      // with which V^T is that by the turns and rates U^T
+    Eigen::MatrixXd inverse{};    // (1 + V^T along)^-1
+  };
+  Rubbing rubbing_;
   Eigen::MatrixXd solutions_;   // of the last factorisation: responses, then the step without constraints
   Eigen::MatrixXd in_columns_;  // right-hand sides in the order of the layout, where it has its own
   Eigen::VectorXd scale_;

@@ -32,8 +32,8 @@ void Settler::give_loads(const Demand& demand, Iterate& at) const {
 
 /// Do weights come, or dead forces, of which something may bear some?
 bool Settler::weighs(const Demand& here, const Demand& there) const {
-  return system_.contact() && here.share != there.share && system_.model().dead_load.size() > 0 &&
-         !system_.model().dead_load.isZero(0);
+  return system_.contact() && here.share != there.share && system_.model().loads.dead.size() > 0 &&
+         !system_.model().loads.dead.isZero(0);
 }
 
 /// Does anything push in a shape?
@@ -121,8 +121,8 @@ Newton::Outcome Settler::settle(const Demand& demand, Newton::Policy policy, Ite
     outcome = settle_constraints(demand, policy, at, near);
     rounds_ = round;
     if (outcome != Newton::Outcome::converged && outcome != Newton::Outcome::unstable) return outcome;
-    report_.friction_change = renew_anchors(at);
-    if (report_.friction_change <= frictions_agree) break;
+    report_.physical.friction_change = renew_anchors(at);
+    if (report_.physical.friction_change <= frictions_agree) break;
     if (round > 8 || (round & (round - 1)) != 0) continue;  // 1, 2, 4, 8
     const auto followed = settle_following(demand, policy, at, false);
     if (followed != Newton::Outcome::stuck && followed != Newton::Outcome::unmet) return followed;
@@ -147,8 +147,8 @@ Newton::Outcome Settler::settle_following(const Demand& demand, Newton::Policy p
       active = before;
       return outcome;
     }
-    report_.friction_change = renew_anchors(trial);
-    if (report_.friction_change <= frictions_agree) {
+    report_.physical.friction_change = renew_anchors(trial);
+    if (report_.physical.friction_change <= frictions_agree) {
       at = std::move(trial);
       return outcome;
     }
@@ -222,8 +222,8 @@ Judgement Settler::judged() const {
 
 /// Does the workspace hold the stable stiffness of a shape close by?
 bool Settler::factorised_nearby(const Points& shape) const {
-  return work_.exact && work_.saddle.spectrum().unstable == 0 && work_.factorised.rows() == shape.rows() &&
-         system_.largest_move(work_.factorised, shape) <= nearby * system_.model().diagonal_mm;
+  return work_.factored.exact && work_.saddle.spectrum().unstable == 0 && work_.factored.shape.rows() == shape.rows() &&
+         system_.largest_move(work_.factored.shape, shape) <= nearby * system_.model().diagonal_mm;
 }
 
 /// Factorises at an equilibrium, for the predictor. Returns in how many ways it is unstable; -1: it is none.

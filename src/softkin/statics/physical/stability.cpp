@@ -23,7 +23,7 @@ constexpr double difference = 1e-6, as_stiff = 0.25;
 
 bool as_stiff_as_factorised(const System& system, const Iterate& at, const Demand& demand,
                             const std::vector<bool>& active, const Balance& balance, Workspace& work, Team& team) {
-  if (!work.softest) {
+  if (!work.factored.softest) {
     Balance right;
     right.constraint = Eigen::VectorXd::Zero(system.actuators());
     Eigen::VectorXd next, multipliers;
@@ -37,9 +37,9 @@ bool as_stiff_as_factorised(const System& system, const Iterate& at, const Deman
       softest.curvature = softest.direction.dot(moves) / moves.squaredNorm();
       softest.direction = next / moves.norm();
     }
-    work.softest = std::move(softest);
+    work.factored.softest = std::move(softest);
   }
-  const Eigen::VectorXd& direction = work.softest->direction;
+  const Eigen::VectorXd& direction = work.factored.softest->direction;
   Iterate beside = at;
   const double largest = system.freedoms().size_of(direction, at.positions).largest;
   const double reach = difference * system.model().diagonal_mm / largest;
@@ -52,7 +52,7 @@ bool as_stiff_as_factorised(const System& system, const Iterate& at, const Deman
   for (Index a = 0; a < static_cast<Index>(balance.compliance.size()); ++a)  // of what is sealed in chambers
     if (active[a] && balance.compliance[a] > 0)
       curvature += std::pow((there.constraint[a] - balance.constraint[a]) / reach, 2) / balance.compliance[a];
-  const double expected = work.softest->curvature;
+  const double expected = work.factored.softest->curvature;
   return std::abs(curvature - expected) <= as_stiff * expected;
 }
 

@@ -173,7 +173,7 @@ Climb::End Climb::up(Iterate& at) {
   const double up = ascent.up, way = ascent.way, begin = ascent.begin;
   const Measured& low = ascent.low;
   if (!std::isfinite(low.gain)) return End::lost;
-  report_.branch = {};
+  report_.physical.branch = {};
   note_branch(low);
   const bool may_stand_there = at_maximum(low);
   if (low.gain < 0 && !may_stand_there) return End::lost;

@@ -31,18 +31,18 @@ System::System(const Model& given, std::unique_ptr<const Pressures> pressures, c
       surroundings_(model_),
       actuator_loads_(model_) {
   const Model& model = model_;
-  body_.add_cliques(cliques_);
-  actuator_loads_.add_cliques(cliques_);
-  surroundings_.add_cliques(cliques_);
+  body_.add_cliques(coupling_.cliques);
+  actuator_loads_.add_cliques(coupling_.cliques);
+  surroundings_.add_cliques(coupling_.cliques);
   const auto make = [&]<class Part>(std::unique_ptr<Part>& part) {
     part = std::make_unique<Part>(model);
-    part->add_cliques(cliques_);
+    part->add_cliques(coupling_.cliques);
   };
   if (Tractions::act(model)) make(tractions_);
   if (Hydrostatics::acts(model)) make(hydrostatics_);
-  if (!model.moments.empty()) make(moments_);
-  if (!model.fibres.empty()) make(fibres_);
-  if (!model.layers.empty()) make(layers_);
+  if (!model.loads.moments.empty()) make(moments_);
+  if (!model.reinforcement.fibres.empty()) make(fibres_);
+  if (!model.reinforcement.layers.empty()) make(layers_);
   if (FibreFamilies::any(model)) {
     families_ = std::make_unique<const FibreFamilies>(model, body_.element_slots());
     body_.add_stress_of(*families_);
@@ -55,7 +55,7 @@ System::System(const Model& given, std::unique_ptr<const Pressures> pressures, c
   if (model.contact.any())
     contacts_ = std::make_unique<Contacts>(model);
   else
-    cliques_ = {};
+    coupling_.cliques = {};
   placement_ = std::make_unique<const Placement>(model, body_, *freedoms_, like ? like->placement_.get() : nullptr);
   terms_ = {&body_, &dead_loads_, &fading_loads_, &surroundings_};
   for (const Term* term :
@@ -65,24 +65,26 @@ System::System(const Model& given, std::unique_ptr<const Pressures> pressures, c
 }
 
 void System::make_layout() {
-  linear::BlockPattern pattern(static_cast<Index>(model_.rest.rows()), cliques_);
+  linear::BlockPattern pattern(static_cast<Index>(model_.rest.rows()), coupling_.cliques);
   freedoms_ = std::make_unique<const supports::Freedoms>(model_, pattern,
                                                          pressures_ ? pressures_->corners : std::vector<Index>());
   supports::ReducedMatrix reduced(*freedoms_, pattern);
   auto symbolic = std::make_shared<const linear::FrontTree>(linear::make_front_tree(reduced.columns()));
   linear::require_memory(*symbolic, sizeof(float));  // before what takes long
-  layout_ = std::make_shared<const Layout>(Layout{std::move(pattern), std::move(reduced), std::move(symbolic),
-                                                  cliques_.slots.back(), cliques_.fingerprint()});
+  coupling_.layout =
+      std::make_shared<const Layout>(Layout{std::move(pattern), std::move(reduced), std::move(symbolic),
+                                            coupling_.cliques.slots.back(), coupling_.cliques.fingerprint()});
   check_contact_at_rest(model_);
 }
 
 void System::share_layout(const System& like) {
-  if (model_.fixed != like.model_.fixed || model_.rest != like.model_.rest)
+  if (model_.held.fixed != like.model_.held.fixed || model_.rest != like.model_.rest)
     throw InvalidInput("a robot with another number has another mesh or is held otherwise");
-  if (cliques_.fingerprint() != like.layout_->fingerprint)  // as where a cable's point is in another element
+  if (coupling_.cliques.fingerprint() !=
+      like.coupling_.layout->fingerprint)  // as where a cable's point is in another element
     return make_layout();
   freedoms_ = std::make_unique<const supports::Freedoms>(*like.freedoms_, model_);
-  layout_ = like.layout_;
+  coupling_.layout = like.coupling_.layout;
 }
 
 void System::evaluate(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Workspace& work,
@@ -143,40 +145,42 @@ void System::give_slots(const Iterate& at, Workspace& work, Team& team) const {
   bool lacking = false;
   each_term(work, [&](const Term& term, Term::Scratch& scratch) { lacking = lacking || term.lacks_slots(scratch); });
   if (!lacking) return;
-  linear::Cliques cliques = cliques_;
+  linear::Cliques cliques = coupling_.cliques;
   each_term(work, [&](const Term& term, Term::Scratch& scratch) { term.add_cliques_of(at, scratch, cliques, team); });
   linear::BlockPattern pattern(static_cast<Index>(model_.rest.rows()), cliques);
   supports::ReducedMatrix reduced = supports::ReducedMatrix::wider(*freedoms_, pattern);
   auto symbolic = std::make_shared<const linear::FrontTree>(linear::make_front_tree(reduced.columns()));
-  work.layout = std::make_shared<const Layout>(
+  work.stiffness.layout = std::make_shared<const Layout>(
       Layout{std::move(pattern), std::move(reduced), std::move(symbolic), cliques.slots.back()});
-  work.slots.resize(9 * static_cast<std::size_t>(work.layout->slots));
+  work.stiffness.slots.resize(9 * static_cast<std::size_t>(work.stiffness.layout->slots));
 }
 
 void System::assemble(const Iterate& at, const Demand& demand, const Balance& balance, Stiffness kind, Workspace& work,
                       Team& team) const {
   require_last(balance, work);
-  work.assembled = kind == Stiffness::exact ? balance.evaluation : 0;
+  work.stiffness.assembled = kind == Stiffness::exact ? balance.evaluation : 0;
   give_slots(at, work, team);
   each_term(work, [&](const Term& term, Term::Scratch& scratch) {
-    term.stiffness(at, demand, kind == Stiffness::projected, scratch, work.slots, team);
+    term.stiffness(at, demand, kind == Stiffness::projected, scratch, work.stiffness.slots, team);
   });
-  actuator_loads_.stiffness(at, work.slots, team);
+  actuator_loads_.stiffness(at, work.stiffness.slots, team);
 }
 
 int System::factorise(const Iterate& at, const Demand& demand, const std::vector<bool>& active, const Balance& balance,
                       const Factoring& factoring, Workspace& work, Team& team) const {
   assemble(at, demand, balance, factoring.kind, work, team);
-  work.layout->reduced.reduce(work.layout->pattern, work.slots, work.gradient, at.positions, work.values, team);
+  work.stiffness.layout->reduced.reduce(work.stiffness.layout->pattern, work.stiffness.slots, work.gradient,
+                                        at.positions, work.stiffness.values, team);
   ask(at, active, balance, work);
   const bool spares = multiplies_unknowns(work) && !contacts_;  // nothing else is to be multiplied with the slots
-  LargeVector<double>* spare = spares ? &work.slots : nullptr;
-  if (spare) work.assembled = 0;
-  if (!spare && !contacts_) work.layout->pattern.gather(work.slots, work.blocks, team);
-  work.saddle.factorise({work.layout, work.values, factoring.shift, spare}, factoring.step ? &balance : nullptr, team);
-  work.exact = factoring.kind == Stiffness::exact && factoring.shift == 0;
-  work.factorised_by = balance.evaluation;
-  work.factorised = at.positions;
+  LargeVector<double>* spare = spares ? &work.stiffness.slots : nullptr;
+  if (spare) work.stiffness.assembled = 0;
+  if (!spare && !contacts_) work.stiffness.layout->pattern.gather(work.stiffness.slots, work.stiffness.blocks, team);
+  work.saddle.factorise({work.stiffness.layout, work.stiffness.values, factoring.shift, spare},
+                        factoring.step ? &balance : nullptr, team);
+  work.factored.exact = factoring.kind == Stiffness::exact && factoring.shift == 0;
+  work.factored.by = balance.evaluation;
+  work.factored.shape = at.positions;
   return work.saddle.spectrum().unstable;
 }
 
@@ -189,7 +193,7 @@ void System::couple(const Iterate& at, const std::vector<bool>& active, const Ba
 /// Hands the active measures and their slopes to the factorisation.
 void System::ask(const Iterate& at, const std::vector<bool>& active, const Balance& balance, Workspace& work) const {
   work.saddle.activate(active);
-  work.softest.reset();
+  work.factored.softest.reset();
   reduce_slopes(at, balance, work, work.saddle.slopes(), work.saddle.pulls());
   work.saddle.compliance() = compliance(balance, work);
   if (!tendons().any()) return;
@@ -233,8 +237,8 @@ Points System::upset_by_held(const Iterate& at, const Demand& to, const std::vec
   if (moves.isZero(0)) {
     force.setZero(moves.rows(), 3);
   } else {
-    work.layout->pattern.gather(work.slots, work.blocks, team);
-    work.layout->pattern.multiply(work.blocks, moves, force, team);
+    work.stiffness.layout->pattern.gather(work.stiffness.slots, work.stiffness.blocks, team);
+    work.stiffness.layout->pattern.multiply(work.stiffness.blocks, moves, force, team);
     actuator_loads_.add_moves(active, at.positions, moves, work.slopes, balance.constraint);
   }
   return force;
@@ -265,7 +269,7 @@ void System::measure(const Iterate& at, const Demand& demand, Workspace& work, E
   out.reactions = work.gradient;
   for (Index v = 0; v < out.reactions.rows(); ++v)
     for (int axis = 0; axis < 3; ++axis)
-      if (model_.support_of[v][axis] < 0) out.reactions(v, axis) = 0;
+      if (model_.held.support_of[v][axis] < 0) out.reactions(v, axis) = 0;
   each_term(work, [&](const Term& term, Term::Scratch& scratch) { term.tell(at, demand, scratch, out, team); });
   for (Index a = 0; a < actuators(); ++a) {
     if (!tendons().rubs(a)) continue;
@@ -275,30 +279,31 @@ void System::measure(const Iterate& at, const Demand& demand, Workspace& work, E
 }
 
 bool System::multiplies_unknowns(const Workspace& work) const {
-  return reciprocal() && work.layout->reduced.in_order();
+  return reciprocal() && work.stiffness.layout->reduced.in_order();
 }
 
 void System::gather(const Iterate& at, const Balance& balance, Workspace& work, Team& team) const {
   require_last(balance, work);
-  const Layout& layout = *work.layout;
+  const Layout& layout = *work.stiffness.layout;
   if (multiplies_unknowns(work))
-    layout.reduced.reduce(layout.pattern, work.slots, work.gradient, at.positions, work.values, team);
+    layout.reduced.reduce(layout.pattern, work.stiffness.slots, work.gradient, at.positions, work.stiffness.values,
+                          team);
   else
-    layout.pattern.gather(work.slots, work.blocks, team);
+    layout.pattern.gather(work.stiffness.slots, work.stiffness.blocks, team);
 }
 
 void System::multiply(const Iterate& at, const Eigen::MatrixXd& vectors, Workspace& work, Eigen::MatrixXd& product,
                       Team& team) const {
   if (multiplies_unknowns(work)) {
     product.setZero();
-    linear::subtract_product(work.layout->reduced.columns(), work.values, vectors, product, team);
+    linear::subtract_product(work.stiffness.layout->reduced.columns(), work.stiffness.values, vectors, product, team);
     product = -product;
     return;
   }
   Points force;
   for (Index i = 0; i < vectors.cols(); ++i) {
     freedoms_->expand(vectors.col(i), at.positions, work.moves);
-    work.layout->pattern.multiply(work.blocks, work.moves, force, team);
+    work.stiffness.layout->pattern.multiply(work.stiffness.blocks, work.moves, force, team);
     each_term(work,
               [&](const Term& term, Term::Scratch& scratch) { term.add_response(at, work.moves, scratch, force); });
     actuator_loads_.add_response(at, work.moves, force);
@@ -318,10 +323,10 @@ void System::command_force(const Iterate& at, const Demand& demand, Index actuat
 void System::add_pull(const Iterate& at, const Demand& demand, const Balance& balance, const Points& moves,
                       Workspace& work, Points& force, Team& team) const {
   require_last(balance, work);
-  if (work.assembled != balance.evaluation) assemble(at, demand, balance, Stiffness::exact, work, team);
-  work.layout->pattern.gather(work.slots, work.blocks, team);
+  if (work.stiffness.assembled != balance.evaluation) assemble(at, demand, balance, Stiffness::exact, work, team);
+  work.stiffness.layout->pattern.gather(work.stiffness.slots, work.stiffness.blocks, team);
   Points pulled;
-  work.layout->pattern.multiply(work.blocks, moves, pulled, team);
+  work.stiffness.layout->pattern.multiply(work.stiffness.blocks, moves, pulled, team);
   each_term(work, [&](const Term& term, Term::Scratch& scratch) { term.add_response(at, moves, scratch, pulled); });
   actuator_loads_.add_response(at, moves, pulled);
   force += pulled;

@@ -141,7 +141,7 @@ class System {
   }
   /// In the order in which they are added; a workspace has their scratch in the same.
   [[nodiscard]] const std::vector<const Term*>& terms() const { return terms_; }
-  [[nodiscard]] const std::shared_ptr<const Layout>& layout() const { return layout_; }
+  [[nodiscard]] const std::shared_ptr<const Layout>& layout() const { return coupling_.layout; }
   [[nodiscard]] const supports::Freedoms& freedoms() const { return *freedoms_; }
   [[nodiscard]] const Placement& placement() const { return *placement_; }
   [[nodiscard]] const supports::ActuatorMeasures& measures() const { return actuator_loads_.measures(); }
@@ -214,9 +214,13 @@ class System {
   ActuatorLoads actuator_loads_;
   std::unique_ptr<const supports::Freedoms> freedoms_;
   std::unique_ptr<const Placement> placement_;
-  linear::Cliques cliques_;               // of what couples in every shape
-  std::shared_ptr<const Layout> layout_;  // of that alone
-  std::vector<const Term*> terms_;        // contact last: nothing is looked for in a shape that is forbidden
+  /// What couples in every shape.
+  struct Coupling {
+    linear::Cliques cliques;
+    std::shared_ptr<const Layout> layout;  // of these alone
+  };
+  Coupling coupling_;
+  std::vector<const Term*> terms_;  // contact last: nothing is looked for in a shape that is forbidden
 };
 
 }  // namespace softkin::physical

@@ -60,18 +60,18 @@ class Tractions::Load {
 };
 
 bool Tractions::act(const Model& model) {
-  return std::any_of(model.tractions.begin(), model.tractions.end(),
+  return std::any_of(model.loads.tractions.begin(), model.loads.tractions.end(),
                      [](const FollowingTraction& traction) { return traction.deeper_MPa_mm.isZero(0); });
 }
 
 Tractions::Tractions(const Model& model) : model_(model) {
-  std::vector<Index> commands(model.tractions.size(), -1);
+  std::vector<Index> commands(model.loads.tractions.size(), -1);
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     if (const auto* pressure = model.actuators[a].as<PressureCommand>())
       commands[pressure->traction] = static_cast<Index>(a);
   double count = 0;
-  for (std::size_t t = 0; t < model.tractions.size(); ++t) {
-    const FollowingTraction& traction = model.tractions[t];
+  for (std::size_t t = 0; t < model.loads.tractions.size(); ++t) {
+    const FollowingTraction& traction = model.loads.tractions[t];
     if (!traction.deeper_MPa_mm.isZero(0)) continue;  // see Hydrostatics
     grows_ = grows_ || commands[t] < 0;
     for (const LoadedFace& loaded : traction.faces) {

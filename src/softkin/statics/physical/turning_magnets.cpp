@@ -77,7 +77,7 @@ void TurningMagnets::add(Set<K, Q>& set, const Model& model, const Nodes& nodes,
 
 TurningMagnets::TurningMagnets(const Model& model, const std::vector<std::int64_t>& slots) {
   const Magnetism& magnetism = *model.magnetism;
-  const std::size_t tetrahedra = model.tetrahedra.size();
+  const std::size_t tetrahedra = model.elements.tetrahedra.size();
   std::vector<std::size_t> order;
   for (std::size_t e = 0; e < magnetism.remanence.size(); ++e)
     if (magnetism.magnetisation[e] == Magnetisation::turns && !magnetism.remanence[e].isZero(0)) order.push_back(e);
@@ -85,13 +85,13 @@ TurningMagnets::TurningMagnets(const Model& model, const std::vector<std::int64_
   for (const std::size_t e : order) {
     const Vec3& remanence = magnetism.remanence[e];
     if (e >= tetrahedra) {
-      add(prisms_, model, model.prisms[e - tetrahedra], remanence, slots[e]);
-    } else if (model.edge_nodes.empty()) {
-      add(linear_, model, model.tetrahedra[e], remanence, slots[e]);
+      add(prisms_, model, model.elements.prisms[e - tetrahedra], remanence, slots[e]);
+    } else if (model.elements.edge_nodes.empty()) {
+      add(linear_, model, model.elements.tetrahedra[e], remanence, slots[e]);
     } else {
       std::array<Index, 10> nodes;
-      std::copy(model.tetrahedra[e].begin(), model.tetrahedra[e].end(), nodes.begin());
-      std::copy(model.edge_nodes[e].begin(), model.edge_nodes[e].end(), nodes.begin() + 4);
+      std::copy(model.elements.tetrahedra[e].begin(), model.elements.tetrahedra[e].end(), nodes.begin());
+      std::copy(model.elements.edge_nodes[e].begin(), model.elements.edge_nodes[e].end(), nodes.begin() + 4);
       add(quadratic_, model, nodes, remanence, slots[e]);
     }
   }

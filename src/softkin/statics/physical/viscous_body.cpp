@@ -39,15 +39,15 @@ void Body::set_time(std::shared_ptr<const ViscousHistory> history, double elapse
   scratch.rates.resize(branches_);
   scratch.begun.resize(begun_);
   each_set([&]<int K, int Q>(const Set<K, Q>& set) {
-    if (set.branches == 0) return;
+    if (set.viscous.branches == 0) return;
     team.pieces(static_cast<Index>(set.blocks.size()), [&](Index begin, Index end) {
       for (Index b = begin; b < end; ++b) {
-        const auto block = static_cast<std::size_t>(b), first = block * static_cast<std::size_t>(set.branches);
-        for (std::size_t i = first; !same_step && i < first + static_cast<std::size_t>(set.branches); ++i)
-          set_shares(set.times[i], elapsed_s, scratch.shares[set.first_branch + i],
-                     scratch.rates[set.first_branch + i]);
+        const auto block = static_cast<std::size_t>(b), first = block * static_cast<std::size_t>(set.viscous.branches);
+        for (std::size_t i = first; !same_step && i < first + static_cast<std::size_t>(set.viscous.branches); ++i)
+          set_shares(set.viscous.times[i], elapsed_s, scratch.shares[set.viscous.first_branch + i],
+                     scratch.rates[set.viscous.first_branch + i]);
         begin_step<Q>(branches_of(set, block, scratch),
-                      scratch.begun.data() + set.first_begun + set.begun_each() * block);
+                      scratch.begun.data() + set.viscous.first_begun + set.begun_each() * block);
       }
     });
   });
@@ -61,15 +61,16 @@ std::shared_ptr<const ViscousHistory> Body::flow(const Demand& demand, const Poi
   Pack lost{};
   std::vector<Pack> of_blocks;
   each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {
-    if (set.branches == 0) return;
+    if (set.viscous.branches == 0) return;
     of_blocks.resize(blocks.size());
     team.pieces(static_cast<Index>(blocks.size()), [&](Index begin, Index end) {
       Shape<K> shape;
       for (Index b = begin; b < end; ++b) {
         load<K>(positions, set.nodes[b], shape);
         const auto block = static_cast<std::size_t>(b);
-        double* strains = after->strains.data() + set.first_strain + set.strains_each() * block;
-        const Pack* rates = scratch.rates.data() + set.first_branch + block * static_cast<std::size_t>(set.branches);
+        double* strains = after->strains.data() + set.viscous.first_strain + set.strains_each() * block;
+        const Pack* rates =
+            scratch.rates.data() + set.viscous.first_branch + block * static_cast<std::size_t>(set.viscous.branches);
         of_blocks[b] = energy::flow<K, Q>(blocks[b], branches_of(set, block, scratch), rates, shape, strains);
       }
     });

@@ -29,7 +29,8 @@ bool Continuation::change_loads(const Demand& from, const Demand& to) const {
 Index Continuation::only_load(const Demand& from, const Demand& to) const {
   const Model& model = system_.model();
   if (from.fading != to.fading) return -1;
-  if (from.share != to.share && (system_.prestretched() || model.held != model.rest || !model.turns.empty())) return -1;
+  if (from.share != to.share && (system_.prestretched() || model.held.at != model.rest || !model.held.turns.empty()))
+    return -1;
   Index found = -1;
   for (Index a = 0; a < system_.actuators(); ++a) {
     if (from.actuation[a] == to.actuation[a]) continue;
@@ -71,8 +72,8 @@ std::string Continuation::instead_of_loads() const {
 }
 
 void Continuation::tell_balance() {
-  report_.residual_N = settler_.last.forces.residual;
-  report_.pull_N = settler_.last.forces.pull;
+  report_.physical.residual_N = settler_.last.forces.residual;
+  report_.physical.pull_N = settler_.last.forces.pull;
 }
 
 /// at: the last equilibrium
@@ -129,13 +130,13 @@ Status Continuation::arrive(const Demand& demand, Iterate& at) {
   if (options_.stable && !buckle(settler_, demand, at)) return Status::interrupted;
   if (settler_.last.modes > 0) tell_stability(demand, at);
   tell_balance();
-  if (report_.friction_change > Settler::frictions_agree) {
+  if (report_.physical.friction_change > Settler::frictions_agree) {
     report_.remark = "friction and the normal forces that limit it do not agree: it changed by " +
-                     number(100 * report_.friction_change, 2) + " % when they were found anew";
+                     number(100 * report_.physical.friction_change, 2) + " % when they were found anew";
     return Status::not_converged;
   }
   if (settler_.last.balanced) {
-    if (report_.snapped_mm > 0) work_.trail.clear();
+    if (report_.physical.snapped_mm > 0) work_.trail.clear();
     work_.trail.add(demand, settler_.active, at);
     return Status::converged;
   }
@@ -147,10 +148,11 @@ Status Continuation::arrive(const Demand& demand, Iterate& at) {
 
 /// Counts the ways in which the last shape itself is unstable.
 void Continuation::tell_stability(const Demand& demand, const Iterate& at) {
-  report_.unstable_modes = std::max(0, settler_.prepare(demand, at));
-  if (report_.unstable_modes > 0)
-    report_.remark = "this equilibrium is unstable in " + std::to_string(report_.unstable_modes) +
-                     (report_.unstable_modes == 1 ? " way" : " ways") + ": the robot would buckle or snap away from it";
+  report_.physical.unstable_modes = std::max(0, settler_.prepare(demand, at));
+  if (report_.physical.unstable_modes > 0)
+    report_.remark = "this equilibrium is unstable in " + std::to_string(report_.physical.unstable_modes) +
+                     (report_.physical.unstable_modes == 1 ? " way" : " ways") +
+                     ": the robot would buckle or snap away from it";
 }
 
 /// Where loads change beside weights, prestretch and supports: these first, so that the loads alone are left, of which

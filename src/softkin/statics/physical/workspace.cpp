@@ -30,9 +30,9 @@ Workspace::Workspace(const System& system)
       fading(static_cast<FadingLoads::Scratch&>(*terms[2])),
       contacts(system.contacts() ? &static_cast<Contacts::Scratch&>(*terms.back()) : nullptr),
       layers(scratch_of_layers(system, terms)),
-      layout(system.layout()),
-      slots(9 * static_cast<std::size_t>(layout->slots)),
+      stiffness{.layout = system.layout(),
+                .slots = LargeVector<double>(9 * static_cast<std::size_t>(system.layout()->slots))},
       slopes(system.model().actuators.size()),
-      saddle(system.measures(), layout, usual_precision(system)) {}
+      saddle(system.measures(), stiffness.layout, usual_precision(system)) {}
 
 }  // namespace softkin::physical

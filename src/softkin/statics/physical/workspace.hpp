@@ -23,26 +23,34 @@ struct Workspace {
   Contacts::Scratch* contacts;  // where there is contact
   Layers::Scratch* layers;      // where there are some
 
-  bool left_field = false;               // was a shape where a field is not known, as outside a grid
-  std::uint64_t evaluated = 0;           // times
-  std::uint64_t assembled = 0;           // by which the exact stiffness in the slots is; 0: none is there
-  std::shared_ptr<const Layout> layout;  // of the slots
-  LargeVector<double> slots, blocks, values;
+  bool left_field = false;      // was a shape where a field is not known, as outside a grid
+  std::uint64_t evaluated = 0;  // times
+  /// The stiffness.
+  struct Assembled {
+    std::uint64_t assembled = 0;             // by which evaluation it is the exact one in the slots; 0: by none
+    std::shared_ptr<const Layout> layout{};  // of the slots
+    LargeVector<double> slots{}, blocks{}, values{};
+  };
+  Assembled stiffness;
   Points gradient;             // of the Lagrangian in x
   Points moves;                // of multiply()
   Placement::Scratch placing;  // of advance()
   std::vector<Points> slopes;  // of each active measure
 
-  Saddle saddle;                    // the last factorisation,
-  std::uint64_t factorised_by = 0;  // of which evaluation,
-  Points factorised;                // in which shape,
-  bool exact = false;               // of the stiffness neither made positive nor shifted,
   /// Nearly its softest change of shape that the constraints leave, of length 1, and its curvature.
   struct Softest {
     Eigen::VectorXd direction;
     double curvature;
   };
-  std::optional<Softest> softest;  // of the factorisation, where it was asked for
+  /// Of what the last factorisation is.
+  struct Factored {
+    std::uint64_t by = 0;            // of which evaluation,
+    Points shape;                    // in which shape,
+    bool exact = false;              // of the stiffness neither made positive nor shifted
+    std::optional<Softest> softest;  // where it was asked for
+  };
+  Saddle saddle;  // the last factorisation
+  Factored factored;
 
   Points home;                    // equilibrium at which the last solve ended, and near which it factorised
   Trail trail;                    // that led there

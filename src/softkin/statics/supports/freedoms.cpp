@@ -8,8 +8,8 @@ namespace softkin::supports {
 
 Freedoms::Freedoms(const Model& model, const linear::BlockPattern& pattern, std::vector<Index> scalars)
     : rest_(model.rest),
-      held_(model.held),
-      fixed_(model.fixed),
+      held_(model.held.at),
+      fixed_(model.held.fixed),
       scalars_(std::move(scalars)),
       region_of_(model.rest.rows(), -1) {
   find_regions(model);
@@ -17,8 +17,8 @@ Freedoms::Freedoms(const Model& model, const linear::BlockPattern& pattern, std:
 }
 
 Freedoms::Freedoms(const Freedoms& like, const Model& model) : Freedoms(like) {
-  held_ = model.held;
-  std::vector<std::array<bool, 3>> fixed = model.fixed;
+  held_ = model.held.at;
+  std::vector<std::array<bool, 3>> fixed = model.held.fixed;
   std::vector<RigidBody> bodies = movable_bodies(model, fixed, held_);
   for (std::size_t i = 0; i < bodies.size(); ++i) static_cast<RigidBody&>(regions_[i]) = std::move(bodies[i]);
 }
@@ -43,11 +43,12 @@ void Freedoms::find_regions(const Model& model) {
 std::vector<std::array<Index, 2>> Freedoms::ends_of(const Model& model) const {
   const Index count = 1 + *std::max_element(node_of_.begin(), node_of_.end());
   std::vector<std::array<Index, 2>> ends(static_cast<std::size_t>(count), {-1, -1});
-  for (std::size_t t = 0; t < model.edge_nodes.size(); ++t)
+  for (std::size_t t = 0; t < model.elements.edge_nodes.size(); ++t)
     for (int e = 0; e < 6; ++e) {
-      const Index middle = model.edge_nodes[t][e];
+      const Index middle = model.elements.edge_nodes[t][e];
       if (node_of_[middle] < 0 || region_of_[middle] >= 0) continue;
-      for (int i = 0; i < 2; ++i) ends[node_of_[middle]][i] = node_of_[model.tetrahedra[t][tetrahedron_edges[e][i]]];
+      for (int i = 0; i < 2; ++i)
+        ends[node_of_[middle]][i] = node_of_[model.elements.tetrahedra[t][tetrahedron_edges[e][i]]];
     }
   return ends;
 }

@@ -9,7 +9,11 @@ namespace softkin::supports {
 using namespace energy;
 
 GlobalStep::GlobalStep(const Model& model, const Eigen::SparseMatrix<double>& matrix, const std::vector<Index>& order)
-    : region_of_(model.rest.rows(), -1), fixed_(model.fixed), rest_(model.rest), held_(model.held), turning_(model) {
+    : region_of_(model.rest.rows(), -1),
+      fixed_(model.held.fixed),
+      rest_(model.rest),
+      held_(model.held.at),
+      turning_(model) {
   add_regions(model);
   for (int axis = 0; axis < 3; ++axis) {
     std::vector<Index> free;

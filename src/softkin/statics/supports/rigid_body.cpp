@@ -21,9 +21,9 @@ std::vector<RigidBody> movable_bodies(const Model& model, std::vector<std::array
     body.vertices = rigid.vertices;
     for (const Index v : rigid.vertices)
       for (int axis = 0; axis < 3; ++axis)
-        if (model.fixed[v][axis]) {
+        if (model.held.fixed[v][axis]) {
           body.slides[axis] = false;
-          body.displacement[axis] = model.held(v, axis) - model.rest(v, axis);
+          body.displacement[axis] = model.held.at(v, axis) - model.rest(v, axis);
           for (int other = 0; other < 3; ++other) body.turns[other] = body.turns[other] && other == axis;
         }
     if (!body.slides[0] && !body.slides[1] && !body.slides[2]) {

@@ -52,7 +52,7 @@ std::vector<Index> last_links(const Graph& graph, const Others& others, const st
 /// (they are why Taylor's and Hood's elements are stable), and no pivot is small. Of linear elements, which smooth it,
 /// right behind its corner. Where the corner has no unknowns, behind all that it pushes.
 linear::Ordering Freedoms::ordering_of(const Model& model, const Graph& graph) const {
-  const bool quadratic = !model.edge_nodes.empty();
+  const bool quadratic = !model.elements.edge_nodes.empty();
   if (scalars_.empty())
     return quadratic ? linear::nested_dissection(graph, ends_of(model)) : linear::nested_dissection(graph);
   const auto count = static_cast<Index>(scalars_.size());
@@ -78,11 +78,11 @@ linear::Ordering Freedoms::ordering_of(const Model& model, const Graph& graph) c
     const Index node = node_of_[vertex];
     return node < 0 || region_of_[vertex] >= 0 ? -1 : place[others.place(node)];
   };
-  for (std::size_t t = 0; t < model.edge_nodes.size(); ++t)
+  for (std::size_t t = 0; t < model.elements.edge_nodes.size(); ++t)
     for (std::size_t e = 0; e < 6; ++e)
       for (const int i : tetrahedron_edges[e]) {
-        Index& last = behind_edges[model.tetrahedra[t][i]];
-        last = std::max(last, own_place(model.edge_nodes[t][e]));
+        Index& last = behind_edges[model.elements.tetrahedra[t][i]];
+        last = std::max(last, own_place(model.elements.edge_nodes[t][e]));
       }
   const std::vector<Index> behind_all = last_links(graph, others, place);
   std::vector<std::vector<Index>> behind(place.size() + 1);  // what stands behind each place, from -1 on

@@ -20,7 +20,7 @@ Mat3 rotation_by(const SupportTurn& turn, double degrees) {
 
 const SupportTurn* Turning::turn_of(Index actuator) const {
   const auto* command = model_.actuators[actuator].as<TurnCommand>();
-  return command ? &model_.turns[command->turn] : nullptr;
+  return command ? &model_.held.turns[command->turn] : nullptr;
 }
 
 void Turning::place(const Eigen::VectorXd& actuation, double share, Points& positions) const {

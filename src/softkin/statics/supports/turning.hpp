@@ -11,7 +11,7 @@ class Turning {
   /// model must outlive the object.
   explicit Turning(const Model& model) : model_(model) {}
 
-  [[nodiscard]] bool any() const { return !model_.turns.empty(); }
+  [[nodiscard]] bool any() const { return !model_.held.turns.empty(); }
 
   /// Puts their vertices where the actuation's angles [degrees] and the share have them.
   void place(const Eigen::VectorXd& actuation, double share, Points& positions) const;

@@ -105,8 +105,8 @@ double mean_volume(const Model& model) {
     for (std::size_t e = 0; e < roles.size(); ++e)
       if (roles[e].material >= 0) sum += volumes[e], ++count;
   };
-  add(model.tetrahedron_roles, model.tetrahedron_volumes);
-  add(model.prism_roles, model.prism_volumes);
+  add(model.elements.tetrahedron_roles, model.elements.tetrahedron_volumes);
+  add(model.elements.prism_roles, model.elements.prism_volumes);
   return count > 0 ? sum / count : 1;
 }
 
@@ -144,12 +144,14 @@ ActuationSet<3> cable_set(const Model& model, const CableDrive& cable, double we
 
 ElementSets make_element_sets(const Model& model) {
   ElementSets sets;
-  for (std::size_t e = 0; e < model.tetrahedra.size(); ++e)
-    if (const Index m = model.tetrahedron_roles[e].material; m >= 0)
-      add_body<4>(sets.tetrahedra, model, model.tetrahedra[e], model.tetrahedron_volumes[e], model.materials[m]);
-  for (std::size_t e = 0; e < model.prisms.size(); ++e)
-    if (const Index m = model.prism_roles[e].material; m >= 0)
-      add_body<6>(sets.prisms, model, model.prisms[e], model.prism_volumes[e], model.materials[m]);
+  for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e)
+    if (const Index m = model.elements.tetrahedron_roles[e].material; m >= 0)
+      add_body<4>(sets.tetrahedra, model, model.elements.tetrahedra[e], model.elements.tetrahedron_volumes[e],
+                  model.elements.materials[m]);
+  for (std::size_t e = 0; e < model.elements.prisms.size(); ++e)
+    if (const Index m = model.elements.prism_roles[e].material; m >= 0)
+      add_body<6>(sets.prisms, model, model.elements.prisms[e], model.elements.prism_volumes[e],
+                  model.elements.materials[m]);
 
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const Actuator& actuator = model.actuators[a];
@@ -161,18 +163,18 @@ ElementSets make_element_sets(const Model& model) {
       ActuationSet<4>& set = sets.pneumatic.emplace_back();
       set.actuator = index;
       for (const Index e : chamber->tetrahedra) {
-        const double volume = model.tetrahedron_volumes[e];
-        const RestShape<4> rest = rest_shape<4>(model.rest, model.tetrahedra[e]);
-        add_actuation<4>(model, set, model.tetrahedra[e], split_pneumatic(rest), volume,
+        const double volume = model.elements.tetrahedron_volumes[e];
+        const RestShape<4> rest = rest_shape<4>(model.rest, model.elements.tetrahedra[e]);
+        add_actuation<4>(model, set, model.elements.tetrahedra[e], split_pneumatic(rest), volume,
                          element_weight<4>(model, actuator.weight, volume, rest));
       }
     } else if (const auto* dea = actuator.as<DeaDrive>()) {
       ActuationSet<6>& set = sets.dea.emplace_back();
       set.actuator = index;
       for (const Index e : dea->prisms) {
-        const RestShape<6> rest = rest_shape<6>(model.rest, model.prisms[e]);
-        add_actuation<6>(model, set, model.prisms[e], split_dea(rest), mean_area(rest),
-                         element_weight<6>(model, actuator.weight, model.prism_volumes[e], rest));
+        const RestShape<6> rest = rest_shape<6>(model.rest, model.elements.prisms[e]);
+        add_actuation<6>(model, set, model.elements.prisms[e], split_dea(rest), mean_area(rest),
+                         element_weight<6>(model, actuator.weight, model.elements.prism_volumes[e], rest));
       }
     }
   }

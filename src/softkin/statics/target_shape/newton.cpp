@@ -29,8 +29,8 @@ double rounding_energy(const Model& model, const ElementSets& sets) {
     for (const auto& block : set.blocks) weight += energy::sum(block.weight);
   };
   if (model.weights == ElementWeights::printed) {
-    for (const double v : model.tetrahedron_volumes) weight += v;
-    for (const double v : model.prism_volumes) weight += v;
+    for (const double v : model.elements.tetrahedron_volumes) weight += v;
+    for (const double v : model.elements.prism_volumes) weight += v;
   } else {
     add(sets.tetrahedra);
     add(sets.prisms);
@@ -87,78 +87,75 @@ NewtonSearch::NewtonSearch(const Unknowns& unknowns, const supports::GlobalStep&
       progress_(progress),
       team_(team),
       report_(report),
-      tangent_(workspace.tangent),
-      local_(workspace.local),
-      start_(workspace.start),
-      work_(workspace.work) {
+      workspace_(workspace) {
   // rotations are searched for from the last ones: those of an earlier search would show in the last digits
-  for (auto& rotations : local_.rotations) std::fill(rotations.begin(), rotations.end(), PackRotation{});
+  for (auto& rotations : workspace_.local.rotations) std::fill(rotations.begin(), rotations.end(), PackRotation{});
 }
 
 /// Local step at positions, which supports put right before.
 void NewtonSearch::evaluate(const Actuation& actuation, Points& positions) {
   poses_ = global_.project(actuation, positions);
-  energy_ = unknowns_.system.local_step(actuation, positions, local_, team_);
+  energy_ = unknowns_.system.local_step(actuation, positions, workspace_.local, team_);
 }
 
 /// The exact step; false where none comes of it.
 bool NewtonSearch::exact_direction(const Points& positions) {
-  if (!keep_factor_) {
-    if (!tangent_.factorise(local_, positions, false, team_, report_)) return false;
+  if (!direction_.keep_factor) {
+    if (!workspace_.tangent.factorise(workspace_.local, positions, false, team_, report_)) return false;
     (void)natural_norm(positions);
   }
-  keep_factor_ = false;
+  direction_.keep_factor = false;
   // Eisenstat and Walker 1996, choice 2: as accurate as the last steps were successful, and as is needed at last
   const double norm = moves_.norm(), ratio = natural_start_ > 0 ? norm / natural_start_ : 1;
   const double enough = 0.1 * report_.tolerance_mm / std::max(norm, report_.tolerance_mm);
   tolerance_ = std::clamp(0.9 * ratio * ratio, std::clamp(enough, tightest, loosest), loosest);
   natural_start_ = norm;
-  exact_ = !tangent_.symmetric() || !tangent_.shifted();
-  return tangent_.solve(local_, positions, natural_, tolerance_, team_, step_) && step_.allFinite();
+  direction_.exact = !workspace_.tangent.symmetric() || !workspace_.tangent.shifted();
+  return workspace_.tangent.solve(workspace_.local, positions, natural_, tolerance_, team_, step_) && step_.allFinite();
 }
 
 /// The step with the positive semidefinite matrices near the exact ones: it goes down in the energy at fixed targets.
 bool NewtonSearch::projected_direction(const Points& positions) {
-  if (!tangent_.factorise(local_, positions, true, team_, report_)) return false;
+  if (!workspace_.tangent.factorise(workspace_.local, positions, true, team_, report_)) return false;
   natural_start_ = 0;
-  exact_ = false;
+  direction_.exact = false;
   step_ = residual_;
-  tangent_.precondition(step_, team_);
+  workspace_.tangent.precondition(step_, team_);
   return step_.allFinite() && step_.dot(residual_) > 0;
 }
 
 /// The residual seen through the preconditioner: natural_ over the unknowns, moves_ over the vertices, whose Euclidean
 /// norm it returns [mm].
 double NewtonSearch::natural_norm(const Points& positions) {
-  tangent_.reduce(local_.residual, positions, natural_);
-  tangent_.precondition(natural_, team_);
-  tangent_.freedoms().expand(natural_, positions, moves_);
+  workspace_.tangent.reduce(workspace_.local.residual, positions, natural_);
+  workspace_.tangent.precondition(natural_, team_);
+  workspace_.tangent.freedoms().expand(natural_, positions, moves_);
   return moves_.norm();
 }
 
 /// A whole, exact step that ends the search: what it does to energy or residual may be rounding.
 bool NewtonSearch::negligible(int halvings, const Points& positions) const {
-  return halvings == 0 && exact_ && largest_move(before_, positions) < report_.tolerance_mm;
+  return halvings == 0 && direction_.exact && largest_move(before_, positions) < report_.tolerance_mm;
 }
 
 /// Does Algorithm 1 agree? Where best rotations are about to turn over it moves on by many small steps of Newton's.
 bool NewtonSearch::at_fixed_point(const Points& positions) {
   Points next = positions;
   std::vector<supports::Pose> poses = poses_;
-  global_.step(local_.residual, next, poses, team_);
+  global_.step(workspace_.local.residual, next, poses, team_);
   return largest_move(positions, next) < report_.tolerance_mm;
 }
 
 /// The step that the last factor asks for from here on, taken if it ends the search.
 bool NewtonSearch::close(const Actuation& actuation, Points& positions, double& step_mm) {
   constexpr double safely = 0.1;
-  if (tangent_.shifted()) return false;
-  if (tangent_.symmetric()) (void)natural_norm(positions);  // else search_residual did it
+  if (workspace_.tangent.shifted()) return false;
+  if (workspace_.tangent.symmetric()) (void)natural_norm(positions);  // else search_residual did it
   step_mm = moves_.rowwise().norm().maxCoeff();
   if (!(step_mm < safely * report_.tolerance_mm)) return false;
-  tangent_.freedoms().move(natural_, 1, positions);
+  workspace_.tangent.freedoms().move(natural_, 1, positions);
   evaluate(actuation, positions);
-  keep_factor_ = false;
+  direction_.keep_factor = false;
   return at_fixed_point(positions);
 }
 
@@ -167,7 +164,7 @@ NewtonSearch::Step NewtonSearch::search_energy(const Actuation& actuation, Point
   constexpr double sufficient = 1e-4, rounding = 1e-12;
   const double start = energy_, slope = -2 * residual_.dot(step_);
   double scale = 1;
-  const int halvings = tangent_.symmetric() ? most_halvings : few_halvings;
+  const int halvings = workspace_.tangent.symmetric() ? most_halvings : few_halvings;
   for (int i = 0; i <= halvings; ++i, scale /= 2) {
     move(scale, positions);
     evaluate(actuation, positions);
@@ -187,7 +184,7 @@ NewtonSearch::Step NewtonSearch::search_residual(const Actuation& actuation, Poi
     evaluate(actuation, positions);
     const double norm = natural_norm(positions);
     if (negligible(i, positions) || norm <= (1 - scale / 4) * natural_start_ || energy_ < well_below * least_energy_) {
-      keep_factor_ = i == 0 && norm < still_near * natural_start_;
+      direction_.keep_factor = i == 0 && norm < still_near * natural_start_;
       return i == 0 ? Step::full : Step::shortened;
     }
   }
@@ -198,11 +195,11 @@ NewtonSearch::Step NewtonSearch::search_residual(const Actuation& actuation, Poi
 /// instead of growing along the tangents.
 void NewtonSearch::move(double scale, Points& positions) {
   scaled_ = scale * step_;
-  tangent_.freedoms().expand(scaled_, before_, moves_);
-  unknowns_.system.turned_move(start_, moves_, work_, team_);
+  workspace_.tangent.freedoms().expand(scaled_, before_, moves_);
+  unknowns_.system.turned_move(workspace_.start, moves_, workspace_.work, team_);
   positions = before_;
   poses_ = poses_before_;
-  global_.step(work_.residual, positions, poses_, team_);
+  global_.step(workspace_.work.residual, positions, poses_, team_);
 }
 
 void NewtonSearch::take_back(const Actuation& actuation, Points& positions) {
@@ -213,12 +210,12 @@ void NewtonSearch::take_back(const Actuation& actuation, Points& positions) {
 NewtonSearch::Step NewtonSearch::newton_step(const Actuation& actuation, Points& positions) {
   before_ = positions;
   poses_before_ = poses_;
-  start_ = local_;
+  workspace_.start = workspace_.local;
   Step step = Step::none;
-  tangent_.reduce(local_.residual, positions, residual_);
+  workspace_.tangent.reduce(workspace_.local.residual, positions, residual_);
   if (!residual_.allFinite()) return Step::none;
-  if (!std::exchange(projected_next_, false) && exact_direction(positions)) {
-    step = tangent_.symmetric() ? search_energy(actuation, positions) : search_residual(actuation, positions);
+  if (!std::exchange(direction_.projected_next, false) && exact_direction(positions)) {
+    step = workspace_.tangent.symmetric() ? search_energy(actuation, positions) : search_residual(actuation, positions);
     if (step == Step::none) take_back(actuation, positions);
   }
   if (step == Step::none && projected_direction(positions)) {
@@ -242,12 +239,12 @@ NewtonSearch::End NewtonSearch::local_global(const Actuation& actuation, int cou
   for (int i = 0; i < count && end == End::stuck; ++i) {
     if (i > 0) iteration.extrapolate();
     IterationRecord record;
-    if (!iteration.iterate(local_, team_, record)) return End::astray;
+    if (!iteration.iterate(workspace_.local, team_, record)) return End::astray;
     end = enter(record);
   }
   evaluate(actuation, positions);
   natural_start_ = 0;
-  keep_factor_ = false;
+  direction_.keep_factor = false;
   return end;
 }
 
@@ -255,15 +252,15 @@ NewtonSearch::End NewtonSearch::local_global(const Actuation& actuation, int cou
 IterationRecord NewtonSearch::here() const {
   IterationRecord record;
   record.energy = energy_;
-  record.gradient_norm = 2 * global_.free_norm(local_.residual, poses_);
+  record.gradient_norm = 2 * global_.free_norm(workspace_.local.residual, poses_);
   return record;
 }
 
 NewtonSearch::End NewtonSearch::run(const Actuation& actuation, int left, Points& positions) {
   evaluate(actuation, positions);
   natural_start_ = 0;
-  keep_factor_ = false;
-  projected_next_ = !tangent_.symmetric();
+  direction_.keep_factor = false;
+  direction_.projected_next = !workspace_.tangent.symmetric();
   least_energy_ = energy_;
   if (energy_ <= rounding_energy(unknowns_.model, unknowns_.system.sets())) {  // every element has its target shape
     (void)enter(here());
@@ -281,7 +278,7 @@ NewtonSearch::End NewtonSearch::run(const Actuation& actuation, int left, Points
     }
     record.step_mm = largest_move(before_, positions);
     const End end = enter(record);
-    const bool whole = step == Step::full && exact_;
+    const bool whole = step == Step::full && direction_.exact;
     if (whole && record.step_mm < report_.tolerance_mm && at_fixed_point(positions)) return End::converged;
     if (end != End::stuck) return end;
     idle = record.step_mm < report_.tolerance_mm ? idle + 1 : 0;

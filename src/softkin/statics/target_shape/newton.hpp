@@ -58,15 +58,18 @@ class NewtonSearch {
   const ProgressCallback& progress_;
   Team& team_;
   SolveReport& report_;
-  Tangent& tangent_;
-  System::Scratch &local_, &start_, &work_;
+  Workspace& workspace_;
   std::vector<supports::Pose> poses_, poses_before_;
   Points before_, moves_;
   Eigen::VectorXd residual_, step_, scaled_, natural_;
   double energy_ = 0, least_energy_ = 0, natural_start_ = 0, tolerance_ = 0;
-  bool exact_ = false;           // is step_ that of the exact derivative
-  bool projected_next_ = false;  // far from equilibria the exact derivative tells little
-  bool keep_factor_ = false;     // the last one is still good
+  /// How the next step is to be found.
+  struct Direction {
+    bool exact = false;           // is step_ that of the exact derivative
+    bool projected_next = false;  // far from equilibria the exact derivative tells little
+    bool keep_factor = false;     // the last one is still good
+  };
+  Direction direction_;
 };
 
 /// Newton's method for the fixed point of Algorithm 1: residual(x) = 0 with the same local step. Pattern, ordering and
