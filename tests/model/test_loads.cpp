@@ -24,6 +24,17 @@ Mat3 moments(const Model& model) {
   return model.rest.transpose() * model.loads.dead;
 }
 
+TEST(Loads, AreAnyOfThoseThatActUncommanded) {
+  const std::array<Vec3, 2> range{Vec3(-1, -1, -1), Vec3(1, 1, 1)};
+  EXPECT_FALSE(LoadsSpec{}.any());
+  EXPECT_FALSE((LoadsSpec{.forces = {{"commanded", {}, {0, 0, 0}, range, {0, 0, 0}, range}}}.any()));
+  EXPECT_TRUE((LoadsSpec{.gravity = {0, -1, 0}}.any()));
+  EXPECT_TRUE((LoadsSpec{.forces = {{"push", {}, {0, 0, 2}}}}.any()));
+  EXPECT_TRUE((LoadsSpec{.forces = {{"turn", {}, {0, 0, 0}, {}, {0, 3, 0}}}}.any()));
+  EXPECT_TRUE((LoadsSpec{.tractions = {{}}}.any()));
+  EXPECT_TRUE((LoadsSpec{.liquid_around = LiquidAroundSpec{}}.any()));
+}
+
 TEST(DeadLoad, WeighsABlock) {
   for (const Split split : {Split::five, Split::six, Split::prisms}) {
     const RobotSpec spec = heavy_block(split);

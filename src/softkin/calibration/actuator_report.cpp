@@ -131,9 +131,7 @@ std::string suggestions(double factor, const RobotSpec& spec) {
     else
       text += "its moduli times " + number(factor, 4) + " (loading)\n";
   }
-  const bool pushed = std::any_of(spec.loads.forces.begin(), spec.loads.forces.end(),
-                                  [](const ForceSpec& force) { return force.force != Vec3(0, 0, 0); });
-  if (pushed || !spec.loads.tractions.empty() || spec.loads.gravity != Vec3(0, 0, 0))
+  if (spec.loads.any())
     text += "note: weight and forces act too, which do not grow with the moduli: repeat this with the new ones\n";
   return text;
 }

@@ -80,7 +80,7 @@ void check_fields(const Model& model) {
 }
 
 void check_loads(const Model& model, const Vec3& direction) {
-  if (!model.loads.tractions.empty() || !model.loads.moments.empty())
+  if (model.loads.any_by_shape())
     throw InvalidInput({.file = model.name},
                        "a pressure, traction or moment may push along the direction "
                        "of travel as the robot bends: a walk has none");

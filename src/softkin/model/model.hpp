@@ -178,8 +178,10 @@ struct Loads {
   std::vector<FollowingTraction> tractions;  // that turn with the surface, and liquids around
   std::vector<RegionMoment> moments;         // on rigid regions
 
+  /// Is there one that changes as the robot bends?
+  [[nodiscard]] bool any_by_shape() const { return !tractions.empty() || !moments.empty(); }
   /// Is there any?
-  [[nodiscard]] bool any() const { return !dead.isZero(0) || !tractions.empty() || !moments.empty(); }
+  [[nodiscard]] bool any() const { return !dead.isZero(0) || any_by_shape(); }
 };
 
 /// What stiffens a robot, in the order of the description; physical.

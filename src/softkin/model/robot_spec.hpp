@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <softkin/core/elastic_law.hpp>
@@ -174,11 +175,18 @@ struct MeshOptions {
 
 /// What loads a robot beside its actuators; physical.
 struct LoadsSpec {
-  Vec3 gravity{0, 0, 0};                          // [m/s^2]
-  Origin gravity_origin;                          // no file: none is given
-  std::vector<ForceSpec> forces;                  // on points
-  std::vector<TractionSpec> tractions;            // on faces
-  std::optional<LiquidAroundSpec> liquid_around;  // none: nothing but the atmosphere
+  Vec3 gravity{0, 0, 0};                            // [m/s^2]
+  Origin gravity_origin{};                          // no file: none is given
+  std::vector<ForceSpec> forces{};                  // on points
+  std::vector<TractionSpec> tractions{};            // on faces
+  std::optional<LiquidAroundSpec> liquid_around{};  // none: nothing but the atmosphere
+
+  /// Does any act before it is commanded?
+  [[nodiscard]] bool any() const {
+    const auto acts = [](const ForceSpec& f) { return f.force != Vec3(0, 0, 0) || f.moment != Vec3(0, 0, 0); };
+    return gravity != Vec3(0, 0, 0) || !tractions.empty() || liquid_around ||
+           std::any_of(forces.begin(), forces.end(), acts);
+  }
 };
 
 /// A robot as the user describes it: plain data, lengths in mm. compile() turns it into a Model.
