@@ -76,8 +76,8 @@ function(softkin_precompile target)
 endfunction()
 
 # softkin_compile_together(TARGET): its files in groups, for half the work; not kernels. Groups of 20 take a fifth less of
-# the compiler's time than those of 10, and up to 2 GiB each in place of 1.2.
-math(EXPR softkin_large_groups_MiB "2500 * (${softkin_cores} + 2)")
+# the compiler's time than those of 10, and up to 2.8 GiB each in place of 1.6.
+math(EXPR softkin_large_groups_MiB "3000 * (${softkin_cores} + 2)")
 set(softkin_names_repeat softkin_io softkin_calibration softkin_vision softkin_random)  # what files have for themselves
 function(softkin_compile_together target)
   set(files 20)
