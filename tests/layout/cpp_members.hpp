@@ -96,9 +96,7 @@ class MemberCounter {
     }
     return data && !function && named ? count : 0;
   }
-  static bool is_word(const std::string& text) {
-    return !text.empty() && (std::isalnum(static_cast<unsigned char>(text[0])) || text[0] == '_');
-  }
+  static bool is_word(const std::string& text) { return !text.empty() && Tokenizer::is_word(text[0]); }
   /// From the opening sign to the closing one.
   void skip_pair(const std::string& open, const std::string& close) {
     for (int depth = 0; at_ < tokens_.size(); ++at_) {

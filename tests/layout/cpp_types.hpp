@@ -23,13 +23,12 @@ class Tokenizer {
     while (at_ < text_.size()) step();
     return std::move(tokens_);
   }
+  static bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
 
  private:
   [[nodiscard]] char look(std::size_t ahead = 0) const {
     return at_ + ahead < text_.size() ? text_[at_ + ahead] : '\0';
   }
-  static bool is_word(char c) { return std::isalnum(static_cast<unsigned char>(c)) || c == '_'; }
-
   void step() {
     const char c = look();
     if (c == '\n') fresh_line_ = true;

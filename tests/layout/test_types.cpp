@@ -25,20 +25,28 @@ std::vector<std::string> names_in(const std::string& text) {
   return names;
 }
 
-Places types_below(const fs::path& folder) {
-  Places places;
+/// visit(path, text) of every C++ file.
+template <class Visit>
+void each_source(const fs::path& folder, const Visit& visit) {
   for (const auto& entry : fs::recursive_directory_iterator(folder)) {
     const fs::path& file = entry.path();
     if (file.extension() != ".hpp" && file.extension() != ".cpp") continue;
     std::ostringstream text;
     text << std::ifstream(file).rdbuf();
+    visit(file, text.str());
+  }
+}
+
+Places types_below(const fs::path& folder) {
+  Places places;
+  each_source(folder, [&](const fs::path& file, const std::string& text) {
     try {
-      for (const TypeDefinition& type : TypeFinder(text.str()).types())
+      for (const TypeDefinition& type : TypeFinder(text).types())
         places[type.name].try_emplace(file.lexically_relative(folder.parent_path()).string(), type.line);
     } catch (const std::runtime_error& error) {
       ADD_FAILURE() << file << ": " << error.what();
     }
-  }
+  });
   return places;
 }
 
@@ -97,12 +105,9 @@ TEST(Types, ThoseOfTheSampleDefinedTwiceAreFound) {
 
 TEST(Types, HaveAtMostTwentyMembers) {
   for (const char* folder : {"src", "apps", "python/src", "bench"})
-    for (const auto& entry : fs::recursive_directory_iterator(source_folder / folder)) {
-      if (entry.path().extension() != ".hpp" && entry.path().extension() != ".cpp") continue;
-      std::ostringstream text;
-      text << std::ifstream(entry.path()).rdbuf();
-      for (const std::string& type : larger_than(20, text.str())) ADD_FAILURE() << entry.path() << ": " << type;
-    }
+    each_source(source_folder / folder, [](const fs::path& file, const std::string& text) {
+      for (const std::string& type : larger_than(20, text)) ADD_FAILURE() << file << ": " << type;
+    });
 }
 
 TEST(Types, MembersAreCounted) {

@@ -69,16 +69,16 @@ WorstPlace worst_of(const Json& json) {
 }
 
 /// What the physical formulation knows of forces and of stability.
-template <class Record, class Visit>
-void forces(Record& record, const Visit& visit) {
-  visit("residual_N", record.physical.residual_N);
-  visit("pull_N", record.physical.pull_N);
-  visit("unstable_modes", record.physical.unstable_modes);
-  visit("buckled", record.physical.buckled);
-  visit("buckled_mm", record.physical.buckled_mm);
-  visit("snapped_mm", record.physical.snapped_mm);
-  visit("snapped_from", record.physical.snapped_from);
-  visit("unstable_from", record.physical.unstable_from);
+template <class Report, class Visit>
+void forces(Report& physical, const Visit& visit) {
+  visit("residual_N", physical.residual_N);
+  visit("pull_N", physical.pull_N);
+  visit("unstable_modes", physical.unstable_modes);
+  visit("buckled", physical.buckled);
+  visit("buckled_mm", physical.buckled_mm);
+  visit("snapped_mm", physical.snapped_mm);
+  visit("snapped_from", physical.snapped_from);
+  visit("unstable_from", physical.unstable_from);
 }
 
 Json branch_json(const Model& model, const LoadBranch& branch) {
@@ -106,7 +106,7 @@ LoadBranch branch_of(const Model& model, const Json& json) {
 
 Json physical_json(const Model& model, const StepRecord& record) {
   Json json = {{"shape_load_share", record.shape_load_share}};
-  forces(record, [&json](const char* key, const auto& value) { write_number(value, json[key]); });
+  forces(record.physical, [&json](const char* key, const auto& value) { write_number(value, json[key]); });
   json["stress"] = record.forces.stress ? stress_json(*record.forces.stress) : Json();
   if (!record.physical.branch.points.empty()) json["branch"] = branch_json(model, record.physical.branch);
   json["limit"] = record.worst ? worst_json(*record.worst) : Json();
@@ -125,7 +125,7 @@ Json physical_json(const Model& model, const StepRecord& record) {
 
 void read_physical(const Model& model, const Json& json, StepRecord& record) {
   record.shape_load_share = json.at("shape_load_share").get<double>();
-  forces(record, [&json](const char* key, auto& value) { read_number(json.at(key), value); });
+  forces(record.physical, [&json](const char* key, auto& value) { read_number(json.at(key), value); });
   if (const Json& stress = json.at("stress"); !stress.is_null()) record.forces.stress = stress_of(stress);
   if (json.contains("branch")) record.physical.branch = branch_of(model, json.at("branch"));
   if (const Json& worst = json.at("limit"); !worst.is_null()) record.worst = worst_of(worst);
