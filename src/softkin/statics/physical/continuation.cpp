@@ -32,7 +32,7 @@ constexpr double most_turn = 30;
 constexpr double before_fold = 0.8;
 /// Share of a step that is not worth another one at the end of a way.
 constexpr double least_left = 0.1;
-/// In steps shorter than this an equilibrium is followed where it is unstable.
+/// In steps shorter than this an equilibrium is followed where it is unstable; and few factors tell where it ends.
 constexpr double follow_below = 0.05;
 /// Under a growing load an equilibrium this many times as far from the predicted shape as that is from the last one
 /// lies beyond a snap, if that is more than this share of the robot's diagonal.
@@ -302,7 +302,7 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   step_.tangent_mm = 0;
   step_.unforetold = false;
   const auto outcome = [&] {
-    const Newton::Brief scope(settler_.newton(), !way_.thorough && may_turn_back());
+    const Newton::Brief scope(settler_.newton(), ends_early(length < follow_below));
     return step(way_.here, there, length, at, trial);
   }();
   settler_.free_way = {};

@@ -112,6 +112,7 @@ class Continuation {
   [[nodiscard]] double lengthened(int iterations) const;
   std::optional<Status> shorten(double length, bool hurried, Iterate& at);
   [[nodiscard]] bool may_turn_back() const;
+  [[nodiscard]] bool ends_early(bool short_step) const;
   [[nodiscard]] double left_to_fold() const;
   [[nodiscard]] bool leads_over_fold(double length) const;
 
