@@ -23,7 +23,7 @@ sanitized := core model io statics kinematics drive runs view
 empty :=
 sanitized_pattern = ^($(subst $(empty) $(empty),|,$(strip $(sanitized))))(_deep)?$$
 
-.PHONY: help setup build run python docs bench paper random fuzz format format-check clean
+.PHONY: help setup build run python docs bench paper random fuzz format format-check tidy clean
 .PHONY: test setup-tests test-release test-page test-python
 .PHONY: test-deep test-release-deep test-page-deep test-sanitize test-threads test-fuzz test-python-deep test-arm
 # one after the other: each of them uses every core
@@ -42,6 +42,7 @@ help:
 	@echo 'make random        solve 20,000 random robots and check every answer; RUNS=1000 fewer of them'
 	@echo 'make paper         the tables and figures of the paper beside what softkin gives, out/paper/index.html; PART="fig9 fig13"'
 	@echo 'make format        format the sources; make format-check only looks'
+	@echo 'make tidy          read all sources for defects and needless work (clang-tidy, .clang-tidy); a quarter of an hour'
 	@echo 'make clean         remove the build folders'
 
 setup:
@@ -198,6 +199,12 @@ format:
 format-check:
 	@echo 'format-check: $(words $(sources)) files'
 	@$(CLANG_FORMAT) --dry-run --Werror $(sources)
+
+# many files at once, as they are compiled: what they include is read once
+tidy:
+	@$(SETUP) --tidy
+	cmake --preset tidy
+	run-clang-tidy-14 -quiet -p build-tidy -j $(cores) '^(?!.*/page/)'
 
 clean:
 	rm -rf build build-arm build-debug build-docs build-sanitize build-threads

@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Installs what softkin needs to build (with --tests: also what its tests need; with --python: what its Python package
-# needs of PYTHON, python3 if not said; with --arm: what building for aarch64 and running it here needs), and only what
-# is missing.
+# needs of PYTHON, python3 if not said; with --arm: what building for aarch64 and running it here needs; with --tidy: what
+# `make tidy` reads the sources with), and only what is missing.
 # Exit codes: 0 everything is there, 2 it is not and could not be installed.
 set -euo pipefail
 
@@ -21,7 +21,8 @@ case "${1:-}" in
     "$python" -c 'import os, sysconfig; os.stat(sysconfig.get_path("include") + "/Python.h")' 2>/dev/null || packages+=(python3-dev)
     ;;
   --arm) packages+=(g++-aarch64-linux-gnu qemu-user) ;;
-  *) echo "usage: scripts/setup.sh [--tests | --python | --arm]" >&2; exit 2 ;;
+  --tidy) packages+=(clang clang-tidy-14 libopencv-dev) ;;
+  *) echo "usage: scripts/setup.sh [--tests | --python | --arm | --tidy]" >&2; exit 2 ;;
 esac
 
 fail() {

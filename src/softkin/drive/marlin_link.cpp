@@ -99,7 +99,7 @@ class Session {
       log('<', line_);
       MarlinAnswer answer = parse_answer(line_);
       if (answer.kind == Kind::started) booted();
-      if (answer.kind == Kind::error) return what_follows(line_);
+      if (answer.kind == Kind::error) return what_follows();
       if (answer.kind == Kind::halted) halted(line_);
       if (!answer.position.empty()) position_ = answer.position;
       return answer;
@@ -111,7 +111,8 @@ class Session {
   }
 
   /// An error in words that Marlin does not use is one of the line where the board asks for it again.
-  MarlinAnswer what_follows(const std::string error) {
+  MarlinAnswer what_follows() {
+    const std::string error = line_;  // reading on replaces it
     const double deadline = seconds_now() + options_.timeout_s;
     while (auto answer = read(deadline)) {
       if (answer->kind == Kind::resend) return *answer;

@@ -58,7 +58,7 @@ struct Estimator::Parts {
   Actuation last_commands{};
   Estimate estimate{};
 
-  Parts(const Model& robot, const std::vector<EstimatedUnknown>& unknowns, std::vector<PoseColumn> columns,
+  Parts(const Model& robot, const std::vector<EstimatedUnknown>& unknowns, const std::vector<PoseColumn>& columns,
         Eigen::VectorXd given, EstimatorOptions asked)
       : model(robot),
         options(std::move(asked)),
@@ -187,14 +187,14 @@ void Estimator::Parts::tell(const Fit& found, const Readings& read, const Actuat
   estimate.moves = problem.moves(*found.nearby, found.told);
 }
 
-Estimator::Estimator(const Model& model, const std::vector<EstimatedUnknown>& unknowns, std::vector<PoseColumn> columns,
-                     Eigen::VectorXd deviations, EstimatorOptions options) {
+Estimator::Estimator(const Model& model, const std::vector<EstimatedUnknown>& unknowns,
+                     const std::vector<PoseColumn>& columns, Eigen::VectorXd deviations, EstimatorOptions options) {
   if (columns.empty()) throw InvalidInput("there is no reading");
   if (deviations.size() != static_cast<Index>(columns.size())) throw InvalidInput("each reading needs a deviation");
   for (std::size_t r = 0; r < columns.size(); ++r)
     if (const double d = deviations[r]; !(d > 0 && std::isfinite(d)))
       throw InvalidInput("reading '" + columns[r].name + "' needs a deviation above 0, not " + number(d));
-  parts_ = std::make_unique<Parts>(model, unknowns, std::move(columns), std::move(deviations), std::move(options));
+  parts_ = std::make_unique<Parts>(model, unknowns, columns, std::move(deviations), std::move(options));
 }
 Estimator::~Estimator() = default;
 Estimator::Estimator(Estimator&&) noexcept = default;

@@ -99,7 +99,7 @@ class Estimator {
   /// deviations  of each, > 0, in its unit
   /// throws      InvalidInput: target shapes, friction, unknowns that the robot does not have or that are given twice,
   ///             deviations that are not above 0
-  Estimator(const Model& model, const std::vector<EstimatedUnknown>& unknowns, std::vector<PoseColumn> columns,
+  Estimator(const Model& model, const std::vector<EstimatedUnknown>& unknowns, const std::vector<PoseColumn>& columns,
             Eigen::VectorXd deviations, EstimatorOptions options = {});
   ~Estimator();
   Estimator(Estimator&&) noexcept;

@@ -31,7 +31,7 @@ struct RecordLog::Parts {
   [[nodiscard]] fs::path journal() const { return files.report.empty() ? fs::path() : journal_of(files.report); }
 };
 
-RecordLog::RecordLog(const Model& model, RunFiles files, std::string head, std::vector<std::string> same)
+RecordLog::RecordLog(const Model& model, RunFiles files, const std::string& head, std::vector<std::string> same)
     : parts_(new Parts{model, std::move(files), Json::parse(head), std::move(same), {}, 0}) {}
 
 RecordLog::~RecordLog() {

@@ -37,7 +37,7 @@ class RecordLog {
  public:
   /// head  what the report says before its steps: a JSON object on one line
   /// same  keys of the head that a run to be resumed must have had alike, beside version, robot and solver
-  RecordLog(const Model& model, RunFiles files, std::string head, std::vector<std::string> same);
+  RecordLog(const Model& model, RunFiles files, const std::string& head, std::vector<std::string> same);
   ~RecordLog();
   RecordLog(RecordLog&&) noexcept;
 
@@ -85,8 +85,9 @@ template <class Record>
 class TypedLog : public RecordLog {
  public:
   /// As RecordLog; codec: how its records are written.
-  TypedLog(const Model& model, RunFiles files, std::string head, std::vector<std::string> same, Codec<Record> codec)
-      : RecordLog(model, std::move(files), std::move(head), std::move(same)), codec_(std::move(codec)) {}
+  TypedLog(const Model& model, RunFiles files, const std::string& head, std::vector<std::string> same,
+           Codec<Record> codec)
+      : RecordLog(model, std::move(files), head, std::move(same)), codec_(std::move(codec)) {}
 
   /// check: why a record is not what is asked for now; empty: it is
   void resume(const std::function<std::string(std::size_t number, const Record&)>& check, std::string& remark) {

@@ -255,7 +255,8 @@ std::vector<PlanePoint> checker_corners(const RgbImage& picture, const BoardSpec
                        " squares; all of it must be in the picture");
   std::vector<PlanePoint> points;
   for (int i = 0; i < rows * columns; ++i) {
-    const Vec2 place((i % columns + 1) * board.square, board.height() - (i / columns + 1) * board.square);
+    const int row = i / columns, column = i % columns;
+    const Vec2 place((column + 1) * board.square, board.height() - (row + 1) * board.square);
     points.push_back(point_of((*corners)[std::size_t(i)], place, camera));
   }
   return points;

@@ -266,12 +266,12 @@ Camera read_camera(const std::filesystem::path& path) {
   return camera;
 }
 
-PlaneView::PlaneView(std::optional<Camera> camera, double mm_per_pixel) : camera_(std::move(camera)) {
+PlaneView::PlaneView(std::optional<Camera> camera, double mm_per_pixel) : camera_(camera) {
   to_plane_ = Eigen::Vector3d(mm_per_pixel, -mm_per_pixel, 1).asDiagonal();
   fitted_ = to_picture_ = to_plane_.inverse();
 }
 
-PlaneView::PlaneView(std::optional<Camera> camera, const std::vector<PlanePoint>& points) : camera_(std::move(camera)) {
+PlaneView::PlaneView(std::optional<Camera> camera, const std::vector<PlanePoint>& points) : camera_(camera) {
   if (points.size() < 4) throw InvalidInput("a plane is found from four points or more");
   fitted_ = first_guess(points);
   const Eigen::Index n = static_cast<Eigen::Index>(2 * points.size());
@@ -294,9 +294,9 @@ PlaneView::PlaneView(std::optional<Camera> camera, const std::vector<PlanePoint>
       covariance_ = variance * size.asDiagonal() * inverse_of(rows.transpose() * rows) * size.asDiagonal();
       break;
     }
-    Eigen::Matrix<double, 9, 1> step = Eigen::Matrix<double, 9, 1>::Zero();
-    step.head<8>() = size.cwiseProduct(solver.solve(miss));
-    fitted_ += step.reshaped<Eigen::RowMajor>(3, 3);
+    Eigen::Matrix<double, 9, 1> change = Eigen::Matrix<double, 9, 1>::Zero();
+    change.head<8>() = size.cwiseProduct(solver.solve(miss));
+    fitted_ += change.reshaped<Eigen::RowMajor>(3, 3);
   }
   residual_ = std::sqrt(miss.squaredNorm() / static_cast<double>(points.size()));
   to_picture_ = fitted_;

@@ -26,7 +26,7 @@ std::string name_of_item(const Node& list, const Node& item) {
 /// Follows a path and copies what is on it: all else is shared with the scene as it was.
 class Change {
  public:
-  Change(std::string option, std::string text) : told_(std::move(option) + " " + excerpt(text)) {
+  Change(const std::string& option, const std::string& text) : told_(option + " " + excerpt(text)) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0) refuse("expected PATH=VALUE");
     path_ = trimmed(std::string_view(text).substr(0, equals));

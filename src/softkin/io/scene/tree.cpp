@@ -70,7 +70,7 @@ class TreeBuilder : public YAML::EventHandler {
     auto node = std::make_shared<Node>();
     node->kind = kind;
     node->origin = origin(mark);
-    if (tag != "" && tag != "?" && tag != "!")
+    if (!tag.empty() && tag != "?" && tag != "!")
       throw InvalidInput(node->origin, "the YAML tag " + excerpt(tag) + " is not supported");
     if (anchor != 0) anchors_[anchor] = node;
     return node;

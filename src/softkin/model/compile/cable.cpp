@@ -80,7 +80,8 @@ double height_over(const Vec3& start, const Vec3& end, const Vec3& point) {
 /// From the middle of the segment straight towards the body's centroid: the first point of the body's boundary.
 Vec3 find_apex(const Compilation& c, const ActuatorSpec& spec, const SurfaceTree& boundary, const Vec3& centroid,
                const std::vector<Vec3>& points, Index segment) {
-  const Vec3 start = points[segment], end = points[segment + 1], middle = 0.5 * (start + end);
+  const Vec3 &start = points[segment], &end = points[segment + 1];
+  const Vec3 middle = 0.5 * (start + end);
   const Vec3 along = (end - start).normalized();
   const Vec3 offset = centroid - middle;
   const Vec3 across = offset - offset.dot(along) * along;
@@ -111,7 +112,7 @@ void take_apexes(Compilation& c, const ActuatorSpec& spec, const CableSpec& give
     CableGap& gap = cable.gaps[i];
     const std::string what = "apexes[" + std::to_string(i) + "] of actuator '" + spec.name + "'";
     gap.apex = embed_point(c, given.apexes[i], what);
-    const Vec3 start = points[gap.segment], end = points[gap.segment + 1];
+    const Vec3 &start = points[gap.segment], &end = points[gap.segment + 1];
     if (height_over(start, end, gap.apex.at(c.model.rest)) < least_height * (end - start).norm())
       throw InvalidInput(given.apexes[i].origin, what + " lies on the line of the cable: move it into the body");
   }

@@ -113,8 +113,8 @@ bool FibreFamilies::any(const Model& model) {
 }
 
 template <int K, int Q, class Nodes>
-void FibreFamilies::add(Elements<K, Q>& elements, const Model& model, const Nodes& nodes, std::vector<Family> families,
-                        Index number, std::int64_t slot) {
+void FibreFamilies::add(Elements<K, Q>& elements, const Model& model, const Nodes& nodes,
+                        std::vector<Family>&& families, Index number, std::int64_t slot) {
   places_[number] = static_cast<Index>(elements.size());
   Element<K, Q>& element = elements.emplace_back();
   std::copy(nodes.begin(), nodes.end(), element.nodes.begin());

@@ -49,8 +49,8 @@ class FibreFamilies : public Term {
   using Elements = std::vector<Element<K, Q>>;
 
   template <int K, int Q, class Nodes>
-  void add(Elements<K, Q>& elements, const Model& model, const Nodes& nodes, std::vector<Family> families, Index number,
-           std::int64_t slot);
+  void add(Elements<K, Q>& elements, const Model& model, const Nodes& nodes, std::vector<Family>&& families,
+           Index number, std::int64_t slot);
   /// visit(elements, the first number of their pulls)
   template <class Visit>
   void each(const Visit& visit) const {

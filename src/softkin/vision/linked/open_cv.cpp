@@ -32,7 +32,7 @@ Vec2 vec(const cv::Point2f& point) {
 
 class LinkedVideo : public Video {
  public:
-  explicit LinkedVideo(cv::VideoCapture capture) : capture_(std::move(capture)) {
+  explicit LinkedVideo(const cv::VideoCapture& capture) : capture_(capture) {
     rate_ = capture_.get(cv::CAP_PROP_FPS);
     frames_ = capture_.get(cv::CAP_PROP_FRAME_COUNT);
   }
@@ -74,7 +74,7 @@ std::unique_ptr<Video> open_video(const std::string& file) {
   } catch (const cv::Exception&) {
     return nullptr;
   }
-  return capture.isOpened() ? std::make_unique<LinkedVideo>(std::move(capture)) : nullptr;
+  return capture.isOpened() ? std::make_unique<LinkedVideo>(capture) : nullptr;
 }
 
 Dictionary dictionary(int number) {
