@@ -142,6 +142,17 @@ TEST(PhysicalSolve, StopsWhenTheCallbackSaysSo) {
   EXPECT_EQ(statics.solve(values({3.0}), found.state, tight()).report.status, Status::converged);
 }
 
+/// Of a large robot a factor takes as long as many iterations.
+TEST(PhysicalSolve, AsksBeforeItsFirstFactor) {
+  const Model model = compile(bending_finger());
+  const Statics statics(model);
+  const Equilibrium found =
+      statics.solve(values({3.0}), statics.rest(), tight(), [](const Progress&) { return false; });
+  EXPECT_EQ(found.report.status, Status::interrupted);
+  EXPECT_EQ(found.report.factorisations, 0);
+  EXPECT_TRUE(found.state.positions == model.rest);
+}
+
 /// Newton converges quadratically: near the end every step is far shorter than the one before.
 TEST(PhysicalSolve, ConvergesFastAtTheEnd) {
   const Model model = compile(bending_finger());

@@ -247,6 +247,7 @@ double Continuation::next_share() {
 /// Makes ready for a step; a status where the way ends without one.
 std::optional<Status> Continuation::start_step(const Demand& there, Iterate& at) {
   if (settler_.release(there, at, false)) way_.factorised = false;
+  if (!way_.factorised && !settler_.newton().goes_on()) return Status::interrupted;
   const int modes = way_.factorised ? settler_.last.modes : settler_.prepare(way_.here, at);
   if (modes < 0) return limit(way_.done, "the stiffness at the start is not stable", at);
   way_.factorised = true;

@@ -47,6 +47,8 @@ class Newton {
   };
   /// Was a solve that got stuck since the last of these began too brief to tell?
   [[nodiscard]] bool hurried() const { return ending_.hurried; }
+  /// Does who asked for the solve let it go on? Asked before what takes as long as many iterations.
+  [[nodiscard]] bool goes_on() const;
 
   /// Moves `at` to equilibrium. Multipliers that are not active are given. The workspace is left with the last
   /// factorisation. What gets stuck with factors in single precision is tried again with others.
@@ -118,7 +120,6 @@ class Newton {
 
   void begin_steps();
   Outcome descend(Policy policy, bool factorised, Iterate& at);
-  [[nodiscard]] bool goes_on() const;
   bool rests();
   Advance factorise(const Iterate& at, Policy policy);
   void find(const Balance& balance, const Iterate& at, Step& step);
