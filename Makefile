@@ -207,4 +207,4 @@ tidy:
 	run-clang-tidy-14 -quiet -p build-tidy -j $(cores) '^(?!.*/page/)'
 
 clean:
-	rm -rf build build-arm build-debug build-docs build-sanitize build-threads
+	rm -rf build build-arm build-debug build-docs build-sanitize build-threads build-tidy

@@ -96,7 +96,7 @@ bool Continuation::may_turn_back() const {
 
 /// Does a step that comes no nearer end after a few factors? Where ratios alone change, many may bring a long one on.
 bool Continuation::ends_early(bool short_step) const {
-  return !way_.thorough && (may_turn_back() || (short_step && !system_.contact() && !system_.limp()));
+  return !way_.thorough && (way_.loads_change || short_step) && !system_.contact() && !system_.limp();
 }
 
 /// Share of the way that is left to where it turns back: towards a fold the inverse square of the tangent falls
