@@ -12,6 +12,8 @@ namespace {
 
 /// By which a stiffness that is hardly unstable is made positive, over its mean diagonal.
 constexpr double slight_shift = 1e-7, clear_shift = 1;
+/// From one that is not enough to the next, and from the last of a shape to the first of the next one: a factor each.
+constexpr double stiffer = 30, softer = 10;
 /// Where steps are small but forces are not in balance, each iteration must bring them so much nearer to it.
 constexpr double worthwhile_balance = 0.7;
 /// Of the diagonal, that the last steps may lead away from the factor whose negative pivots are told.
@@ -69,11 +71,11 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
   const Precision closer = factor_.doubtful ? Precision::good : usual;
   if (end == Advance::made || policy != Policy::descend) return Advance::made;
   for (double shift = std::max(slight_shift, factor_.shift); pace_.slow && end == Advance::none && shift < clear_shift;
-       shift *= 8) {
+       shift *= stiffer) {
     ++report_.shifts;
     // pressed sheets buckle in many ways, of which none leads to where they wrinkle
     end = attempted(system_.limp() ? Stiffness::projected : Stiffness::exact, shift, closer);
-    factor_.shift = shift / 3;
+    factor_.shift = shift / softer;
   }
   if (end != Advance::none) return end;
   ++report_.projections;
@@ -85,47 +87,52 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
   return end;
 }
 
-/// What a step of Newton's makes less where the stiffness is positive: potential, and constraints that are missed.
+/// What a step of Newton's makes less where the stiffness is positive: the Lagrangian by the multipliers before it, and
+/// what constraints are missed by. Weights above the multipliers in place of the Lagrangian would forbid steps along
+/// constraints that are curved.
+///
+/// source  Nocedal, Wright 2006, Numerical optimization, 15.5 (the Maratos effect), with 17.4 as the function of merit
 double Newton::merit(const Balance& balance) const {
-  double missed = weights_.constraints.dot(balance.constraint.cwiseAbs());
-  const std::vector<Index>& pressures = system_.freedoms().scalar_unknowns();
-  for (std::size_t p = 0; p < pressures.size(); ++p)
-    missed += weights_.pressures[p] * std::abs(balance.force[pressures[p]]);
-  return balance.energy + balance.load_energy + missed;
+  const auto missed = [](const Weights& weights, const auto& by) {
+    return weights.multipliers.dot(by) + weights.above.dot(by.cwiseAbs());
+  };
+  return balance.energy + balance.load_energy + missed(of_constraints_, balance.constraint) +
+         missed(of_volumes_, balance.force(system_.freedoms().scalar_unknowns()));
 }
 
-/// Chooses the weights of missed constraints, larger than the multipliers, for the step at hand.
+/// Of constraints that are missed, with their multipliers and what a step changes these by. It adds what they have of
+/// the merit function's slope along the step, which meets them.
+void Newton::Weights::set(const Eigen::VectorXd& multipliers_before, const Eigen::VectorXd& changes,
+                          const Eigen::VectorXd& missed, double& slope) {
+  constexpr double beyond = 2;    // what multipliers change by
+  constexpr double least = 0.01;  // of the multipliers
+  multipliers = multipliers_before;
+  above = beyond * changes.cwiseAbs() + least * multipliers.cwiseAbs();
+  slope -= above.dot(missed.cwiseAbs());
+}
+
+/// Chooses the weights of missed constraints for the step at hand.
 ///
 /// returns  the slope of the merit function along the step, which is to be negative
 /// source   Nocedal, Wright 2006, Numerical optimization, theorem 18.2
 double Newton::weigh_constraints(const Iterate& at) {
-  constexpr double above = 2;  // the multipliers
-  weights_.constraints = Eigen::VectorXd::Zero(system_.actuators());
   double slope = balance_.force.dot(step_.move);
+  Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(system_.actuators()), changes = multipliers;
   for (Index a = 0; a < system_.actuators(); ++a) {
     if (!(*asked_.active)[a]) continue;
-    const double multiplier = at.multipliers[a], missed = balance_.constraint[a];
-    weights_.constraints[a] = above * std::max(std::abs(multiplier), std::abs(multiplier + step_.change[a]));
-    slope += system_.measures().sign(a) * multiplier * missed - weights_.constraints[a] * std::abs(missed);
+    multipliers[a] = system_.measures().sign(a) * at.multipliers[a];
+    changes[a] = step_.change[a];
   }
-  return slope + weigh_pressures(at, above);
-}
-
-/// The same of pressures, which are multipliers of volumes that are kept: what their part of the slope lacks.
-double Newton::weigh_pressures(const Iterate& at, double above) {
-  if (!system_.pressures()) return 0;
+  of_constraints_.set(multipliers, changes, balance_.constraint, slope);
+  if (!system_.pressures()) return slope;
+  // pressures are multipliers of volumes that are kept
   const std::vector<Index>& unknowns = system_.freedoms().scalar_unknowns();
   Points moves;
   system_.freedoms().expand(step_.move, at.positions, moves);
-  Eigen::VectorXd weights = Eigen::VectorXd::Zero(step_.move.size());
-  const Points largest = at.positions.cwiseAbs().cwiseMax((at.positions + moves).cwiseAbs());
-  system_.freedoms().reduce(largest, at.positions, weights);
-  weights_.pressures.resize(static_cast<Index>(unknowns.size()));
-  double slope = system_.pressure_work(at.positions, balance_.force);
-  for (std::size_t p = 0; p < unknowns.size(); ++p) {
-    const double weight = weights_.pressures[p] = above * weights[unknowns[p]];
-    slope -= weight * std::abs(balance_.force[unknowns[p]]);
-  }
+  Eigen::VectorXd pressures = Eigen::VectorXd::Zero(step_.move.size()), more = pressures;
+  system_.freedoms().reduce(at.positions, at.positions, pressures);
+  system_.freedoms().reduce(moves, at.positions, more);
+  of_volumes_.set(pressures(unknowns), more(unknowns), balance_.force(unknowns), slope);
   return slope;
 }
 

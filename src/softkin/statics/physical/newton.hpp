@@ -98,7 +98,7 @@ class Newton {
     bool doubtful = false;   // is there a doubt about these
     bool looked_at = false;  // is it known how rounding shows in its steps
     bool refines = false;    // do these want more than what its precision gives
-    double shift = 0;        // the last that made it positive, over three
+    double shift = 0;        // the first to try
     Points shape{};          // where it was made
   };
   /// What is solved for.
@@ -106,10 +106,13 @@ class Newton {
     const Demand* demand = nullptr;
     const std::vector<bool>* active = nullptr;
   };
-  /// In the merit function.
+  /// Of missed constraints in the merit function [N], [MPa].
   struct Weights {
-    Eigen::VectorXd constraints{};  // [N], [MPa]
-    Eigen::VectorXd pressures{};    // [mm]
+    Eigen::VectorXd multipliers{};  // before the step
+    Eigen::VectorXd above{};        // of what is missed, whatever its sign
+
+    void set(const Eigen::VectorXd& multipliers_before, const Eigen::VectorXd& changes, const Eigen::VectorXd& missed,
+             double& slope);
   };
   /// How a solve is to end, and how the last one did.
   struct Ending {
@@ -132,9 +135,9 @@ class Newton {
   void note_pace(double damping);
   [[nodiscard]] double merit(const Balance& balance) const;
   [[nodiscard]] double weigh_constraints(const Iterate& at);
-  [[nodiscard]] double weigh_pressures(const Iterate& at, double above);
   bool accept(double moved_mm, Iterate& at);
   Advance damped_step(Iterate& at, double& damping);
+  void lengthen(double& damping, const Iterate& at);
   bool update_next();
   [[nodiscard]] bool shrink_fast() const;
   Advance quasi_newton_steps(Iterate& at);
@@ -160,7 +163,7 @@ class Newton {
   Balance balance_, trial_balance_;  // at the iterate, at the one being tried
   Step step_, next_;
   std::vector<Secant> secants_;  // of the factor at hand
-  Weights weights_;
+  Weights of_constraints_, of_volumes_;
   Iterate start_, trial_;
   Ending ending_;
   Pace pace_;

@@ -144,20 +144,24 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
     double factor = 0.5;
     if (attempt(step_, damping, at)) {
       if (last(step_, 0)) return accept(damping * step_.size.largest, at) ? Advance::made : Advance::interrupted;
-      find(trial_balance_, trial_, next_);
-      if (refine_first(at)) continue;
       const double rise = slope < 0 ? merit(trial_balance_) - before : 0;
-      // near a singular stiffness the next step may be long although little is left
-      const bool nearer =
-          next_.size.mean < step_.size.mean || trial_balance_.force.norm() < 0.5 * balance_.force.norm();
       const bool lower = rise < worthwhile_descent * damping * slope;
-      pace_.downhill = nearer ? 0 : pace_.downhill + lower;
       // up to rounding: what is nearer by its steps and yet costs more goes round in circles where things touch
-      if (lower || (nearer && !(system_.contact() && rise > most_rise * std::abs(before)))) break;
-      if (!system_.contact() && !system_.limp() &&
-          std::isfinite(next_.size.mean)) {  // the length at which a quadratic model is just good enough
-        const double residue = (next_.move - (1 - damping) * step_.move).norm() / step_.move.norm();
-        factor = std::min(0.5, damping / (2 * residue));
+      const bool forbidden = system_.contact() && rise > most_rise * std::abs(before);
+      if (lower && system_.contact() && damping < 1) break;
+      if (!forbidden) {
+        find(trial_balance_, trial_, next_);
+        if (refine_first(at)) continue;
+        // near a singular stiffness the next step may be long although little is left
+        const bool nearer =
+            next_.size.mean < step_.size.mean || trial_balance_.force.norm() < 0.5 * balance_.force.norm();
+        pace_.downhill = nearer ? 0 : pace_.downhill + lower;
+        if (lower || nearer) break;
+        if (!system_.contact() && !system_.limp() &&
+            std::isfinite(next_.size.mean)) {  // the length at which a quadratic model is just good enough
+          const double residue = (next_.move - (1 - damping) * step_.move).norm() / step_.move.norm();
+          factor = std::min(0.5, damping / (2 * residue));
+        }
       }
     }
     damping *= factor;
@@ -171,7 +175,29 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
     ending_.why = "step after step hardly comes nearer";
     return Advance::none;
   }
+  if (slope < 0 && damping == 1 && !work_.factored.exact && (system_.contact() || system_.limp())) lengthen(damping, at);
   return accept(damping * step_.size.largest, at) ? Advance::made : Advance::interrupted;
+}
+
+/// Away from a saddle a stiffness that was made positive leaves nearly as much to go along its step as that was long:
+/// goes on along it, twice as far as long as that leads down.
+void Newton::lengthen(double& damping, const Iterate& at) {
+  constexpr double longest = 64;
+  if (!(step_.move.dot(next_.move) > most_along * step_.move.squaredNorm())) return;
+  double lowest = merit(trial_balance_);
+  while (damping < longest) {
+    Iterate nearer = trial_;
+    double longer = 2 * damping;
+    const bool lower = attempt(step_, longer, at) && longer == 2 * damping && merit(trial_balance_) < lowest;
+    if (!lower) {
+      trial_ = std::move(nearer);
+      system_.evaluate(trial_, *asked_.demand, *asked_.active, work_, trial_balance_, team_);
+      return;
+    }
+    trial_.multipliers = nearer.multipliers;
+    lowest = merit(trial_balance_);
+    damping = longer;
+  }
 }
 
 /// Turns the simplified step next_ that follows a whole step into Broyden's. False where it does not fit.
@@ -211,7 +237,7 @@ Newton::Advance Newton::quasi_newton_steps(Iterate& at) {
 /// Steps with the factor of the iterate.
 Newton::Advance Newton::steps_from_here(Iterate& at, double& damping) {
   const Advance advance = damped_step(at, damping);
-  if (advance != Advance::made || damping < 1) return advance;
+  if (advance != Advance::made || damping != 1) return advance;
   if (last(step_, 0)) return Advance::arrived;
   return quasi_newton_steps(at);
 }
