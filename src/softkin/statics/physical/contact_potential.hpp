@@ -115,6 +115,9 @@ class ContactPotential {
   /// May a vertex come to feel a triangle; may two edges?
   [[nodiscard]] bool felt(Index vertex, Index triangle) const;
   [[nodiscard]] bool edges_felt(const contact::Pair& edges) const;
+  /// How near they come to do so, as contact is felt for a while [mm].
+  [[nodiscard]] double reach_of(Index vertex, Index triangle, const ContactFirmness& firmness) const;
+  [[nodiscard]] double reach_of_edges(const contact::Pair& edges, const ContactFirmness& firmness) const;
 
  private:
   struct Feature;
@@ -122,8 +125,6 @@ class ContactPotential {
                   const ContactFirmness& firmness, std::vector<Term>& terms) const;
   void count(Index triangle, const contact::Separation& separation, Index count, Index pair, double reach,
              std::vector<Feature>& features) const;
-  [[nodiscard]] double reach_of(Index vertex, Index triangle, const ContactFirmness& firmness) const;
-  [[nodiscard]] double reach_of_edges(const contact::Pair& edges, const ContactFirmness& firmness) const;
   [[nodiscard]] ContactPush push_of(const Term& term) const;
   [[nodiscard]] Index count_at(Index vertex, Index corner) const;
   [[nodiscard]] Index felt_at(Index vertex, Index edge) const;

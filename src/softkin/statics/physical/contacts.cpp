@@ -137,15 +137,17 @@ std::unique_ptr<Contacts::Scratch> Contacts::make_scratch() const {
   return std::make_unique<Scratch>(*broad_);
 }
 
-/// Of candidates those that are so close and feel each other; sorted.
-void Contacts::keep_close(const Points& positions, double reach, Candidates& pairs) const {
+/// Of candidates those that are within each other's reach and feel each other; sorted.
+void Contacts::keep_close(const Points& positions, const ContactFirmness& firmness, Candidates& pairs) const {
   const contact::Surface& surface = surfaces_.surface;
   std::erase_if(pairs.vertex_triangle, [&](const Pair& pair) {
     const contact::FourPoints x = contact::points_of(positions, nodes_of_vertex_triangle(surface, pair));
+    const double reach = firmness.foresight * potential_->reach_of(pair.first, pair.second, firmness);
     return !potential_->felt(pair.first, pair.second) || contact::vertex_triangle(x).squared > reach * reach;
   });
   std::erase_if(pairs.edge_edge, [&](const Pair& pair) {
     const contact::FourPoints x = contact::points_of(positions, nodes_of_edge_edge(surface, pair));
+    const double reach = firmness.foresight * potential_->reach_of_edges(pair, firmness);
     return !potential_->edges_felt(pair) || contact::edge_edge(x).squared > reach * reach;
   });
   sort_candidates(pairs);
@@ -178,7 +180,7 @@ void Contacts::find(const Points& positions, Scratch& scratch, Team& team) const
       search(points, points, scratch, team);
   }
   scratch.close = scratch.around.pairs;
-  keep_close(points, reach, scratch.close);
+  keep_close(points, scratch.firmness, scratch.close);
   potential_->find(points, scratch.close, scratch.terms, scratch.firmness);
   if (scratch.straight) potential_->straighten(scratch.terms, scratch.pushes);
 }
@@ -302,9 +304,10 @@ bool Contacts::holds(const Candidates& pairs, const Scratch& scratch) {
 void Contacts::find_pairs(const Points& positions, Scratch& scratch, Team& team, Candidates& pairs) const {
   Points room;
   const Points& points = points_.of(positions, room);
-  const double reach = foresight * reach_mm(scratch);
-  scratch.broad.find(points, reach, team, pairs);
-  keep_close(points, reach, pairs);
+  ContactFirmness wide = scratch.firmness;
+  wide.foresight *= foresight;
+  scratch.broad.find(points, foresight * reach_mm(scratch), team, pairs);
+  keep_close(points, wide, pairs);
   for (const Friction::Hold& hold : scratch.holds) pairs.vertex_triangle.push_back(hold.pair);
   sort_candidates(pairs);
   pairs.vertex_triangle.erase(std::unique(pairs.vertex_triangle.begin(), pairs.vertex_triangle.end()),

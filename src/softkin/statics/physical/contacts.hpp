@@ -125,7 +125,7 @@ class Contacts : public Term {
     return surfaces_.reach_mm * std::max(1.0, scratch.firmness.reach) * scratch.firmness.foresight;
   }
   [[nodiscard]] static double moved(const Points& from, const Points& to);
-  void keep_close(const Points& positions, double reach, contact::Candidates& pairs) const;
+  void keep_close(const Points& positions, const ContactFirmness& firmness, contact::Candidates& pairs) const;
   void find_parts();
   [[nodiscard]] double share_of_edge(std::size_t edge, double mean_area) const;
   void choose_areas();
