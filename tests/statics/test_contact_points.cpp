@@ -65,6 +65,27 @@ struct NearBlocks {
   Team alone{1};
 };
 
+/// A floor that is felt from afar for a while changes nothing between faces of one block: the pattern of the stiffness
+/// has no pair of them.
+TEST(ContactPoints, WiderReachIsOfDifferentSolidsAlone) {
+  const auto pairs_of = [](const RobotSpec& spec) {
+    const Model model = compile(spec);
+    const physical::Contacts contacts(model);
+    const auto scratch = contacts.make_scratch();
+    scratch->firmness.reach = 2 * 10 / *spec.contact->distance_mm;  // all of the block
+    Team alone(1);
+    contact::Candidates pairs;
+    contacts.find_pairs(model.rest, *scratch, alone, pairs);
+    return pairs.vertex_triangle.size() + pairs.edge_edge.size();
+  };
+  for (const bool quadratic : {false, true}) {
+    RobotSpec spec = block_on_rough_floor(0, Vec3::Zero(), 3, quadratic);
+    EXPECT_GT(pairs_of(spec), 16u);
+    spec.contact->obstacles.clear();
+    EXPECT_EQ(pairs_of(spec), 0u);
+  }
+}
+
 TEST(ContactPoints, GradientAndStiffnessAreDerivatives) {
   for (const bool quadratic : {false, true})
     for (const double friction : {0.0, 0.6}) {
