@@ -93,17 +93,17 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
 ///
 /// source  Nocedal, Wright 2006, Numerical optimization, 15.5 (the Maratos effect), with 17.4 as the function of merit
 double Newton::merit(const Balance& balance) const {
-  const auto missed = [](const Weights& weights, const auto& by) {
-    return weights.multipliers.dot(by) + weights.above.dot(by.cwiseAbs());
+  const auto missed = [](const Price& price, const auto& by) {
+    return price.multipliers.dot(by) + price.above.dot(by.cwiseAbs());
   };
-  return balance.energy + balance.load_energy + missed(of_constraints_, balance.constraint) +
-         missed(of_volumes_, balance.force(system_.freedoms().scalar_unknowns()));
+  return balance.energy + balance.load_energy + missed(prices_.constraints, balance.constraint) +
+         missed(prices_.volumes, balance.force(system_.freedoms().scalar_unknowns()));
 }
 
 /// Of constraints that are missed, with their multipliers and what a step changes these by. It adds what they have of
 /// the merit function's slope along the step, which meets them.
-void Newton::Weights::set(const Eigen::VectorXd& multipliers_before, const Eigen::VectorXd& changes,
-                          const Eigen::VectorXd& missed, double& slope) {
+void Newton::Price::set(const Eigen::VectorXd& multipliers_before, const Eigen::VectorXd& changes,
+                        const Eigen::VectorXd& missed, double& slope) {
   constexpr double beyond = 2;    // what multipliers change by
   constexpr double least = 0.01;  // of the multipliers
   multipliers = multipliers_before;
@@ -111,7 +111,7 @@ void Newton::Weights::set(const Eigen::VectorXd& multipliers_before, const Eigen
   slope -= above.dot(missed.cwiseAbs());
 }
 
-/// Chooses the weights of missed constraints for the step at hand.
+/// Chooses the prices of missed constraints for the step at hand.
 ///
 /// returns  the slope of the merit function along the step, which is to be negative
 /// source   Nocedal, Wright 2006, Numerical optimization, theorem 18.2
@@ -123,7 +123,7 @@ double Newton::weigh_constraints(const Iterate& at) {
     multipliers[a] = system_.measures().sign(a) * at.multipliers[a];
     changes[a] = step_.change[a];
   }
-  of_constraints_.set(multipliers, changes, balance_.constraint, slope);
+  prices_.constraints.set(multipliers, changes, balance_.constraint, slope);
   if (!system_.pressures()) return slope;
   // pressures are multipliers of volumes that are kept
   const std::vector<Index>& unknowns = system_.freedoms().scalar_unknowns();
@@ -132,7 +132,7 @@ double Newton::weigh_constraints(const Iterate& at) {
   Eigen::VectorXd pressures = Eigen::VectorXd::Zero(step_.move.size()), more = pressures;
   system_.freedoms().reduce(at.positions, at.positions, pressures);
   system_.freedoms().reduce(moves, at.positions, more);
-  of_volumes_.set(pressures(unknowns), more(unknowns), balance_.force(unknowns), slope);
+  prices_.volumes.set(pressures(unknowns), more(unknowns), balance_.force(unknowns), slope);
   return slope;
 }
 

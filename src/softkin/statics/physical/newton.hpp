@@ -106,13 +106,17 @@ class Newton {
     const Demand* demand = nullptr;
     const std::vector<bool>* active = nullptr;
   };
-  /// Of missed constraints in the merit function [N], [MPa].
-  struct Weights {
+  /// What it costs in the merit function to miss constraints [N], [MPa].
+  struct Price {
     Eigen::VectorXd multipliers{};  // before the step
     Eigen::VectorXd above{};        // of what is missed, whatever its sign
 
     void set(const Eigen::VectorXd& multipliers_before, const Eigen::VectorXd& changes, const Eigen::VectorXd& missed,
              double& slope);
+  };
+  /// Of actuators' constraints, and of volumes that are kept.
+  struct Prices {
+    Price constraints{}, volumes{};
   };
   /// How a solve is to end, and how the last one did.
   struct Ending {
@@ -163,7 +167,7 @@ class Newton {
   Balance balance_, trial_balance_;  // at the iterate, at the one being tried
   Step step_, next_;
   std::vector<Secant> secants_;  // of the factor at hand
-  Weights of_constraints_, of_volumes_;
+  Prices prices_;
   Iterate start_, trial_;
   Ending ending_;
   Pace pace_;

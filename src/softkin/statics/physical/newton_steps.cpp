@@ -175,7 +175,8 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
     ending_.why = "step after step hardly comes nearer";
     return Advance::none;
   }
-  if (slope < 0 && damping == 1 && !work_.factored.exact && (system_.contact() || system_.limp())) lengthen(damping, at);
+  if (slope < 0 && damping == 1 && !work_.factored.exact && (system_.contact() || system_.limp()))
+    lengthen(damping, at);
   return accept(damping * step_.size.largest, at) ? Advance::made : Advance::interrupted;
 }
 
