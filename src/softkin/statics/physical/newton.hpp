@@ -141,7 +141,7 @@ class Newton {
   [[nodiscard]] double weigh_constraints(const Iterate& at);
   bool accept(double moved_mm, Iterate& at);
   Advance damped_step(Iterate& at, double& damping);
-  void lengthen(double& damping, const Iterate& at);
+  void lengthen(double& damping);
   bool update_next();
   [[nodiscard]] bool shrink_fast() const;
   Advance quasi_newton_steps(Iterate& at);

@@ -175,29 +175,29 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
     ending_.why = "step after step hardly comes nearer";
     return Advance::none;
   }
-  if (slope < 0 && damping == 1 && !work_.factored.exact && (system_.contact() || system_.limp()))
-    lengthen(damping, at);
+  if (slope < 0 && damping == 1 && !work_.factored.exact && (system_.contact() || system_.limp())) lengthen(damping);
   return accept(damping * step_.size.largest, at) ? Advance::made : Advance::interrupted;
 }
 
 /// Away from a saddle a stiffness that was made positive leaves nearly as much to go along its step as that was long:
-/// goes on along it, twice as far as long as that leads down.
-void Newton::lengthen(double& damping, const Iterate& at) {
+/// goes on along it, twice as far as long as that leads down. Multipliers are those of the step.
+void Newton::lengthen(double& damping) {
   constexpr double longest = 64;
   if (!(step_.move.dot(next_.move) > most_along * step_.move.squaredNorm())) return;
+  Step on = step_;
+  on.change.setZero();
   double lowest = merit(trial_balance_);
   while (damping < longest) {
     Iterate nearer = trial_;
-    double longer = 2 * damping;
-    const bool lower = attempt(step_, longer, at) && longer == 2 * damping && merit(trial_balance_) < lowest;
+    double more = damping;
+    const bool lower = attempt(on, more, nearer) && more == damping && merit(trial_balance_) < lowest;
     if (!lower) {
       trial_ = std::move(nearer);
       system_.evaluate(trial_, *asked_.demand, *asked_.active, work_, trial_balance_, team_);
       return;
     }
-    trial_.multipliers = nearer.multipliers;
     lowest = merit(trial_balance_);
-    damping = longer;
+    damping *= 2;
   }
 }
 
