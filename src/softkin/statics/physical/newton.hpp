@@ -141,6 +141,7 @@ class Newton {
   [[nodiscard]] double weigh_constraints(const Iterate& at);
   bool accept(double moved_mm, Iterate& at);
   Advance damped_step(Iterate& at, double& damping);
+  [[nodiscard]] double shorter(double damping) const;
   void lengthen(double& damping);
   bool update_next();
   [[nodiscard]] bool shrink_fast() const;

@@ -121,6 +121,13 @@ void Newton::note_pace(double damping) {
     pace_.slow |= next_.size.mean > slow * step_.size.mean;
 }
 
+/// How much of a length that was too long to try next: that at which a quadratic model is just good enough.
+double Newton::shorter(double damping) const {
+  if (system_.contact() || system_.limp() || !std::isfinite(next_.size.mean)) return 0.5;
+  const double residue = (next_.move - (1 - damping) * step_.move).norm() / step_.move.norm();
+  return std::min(0.5, damping / (2 * residue));
+}
+
 /// Newton step, as long as the simplified step that follows it is shorter. next_ is that step.
 Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
   work_.saddle.first_step(balance_, step_.move, step_.change);
@@ -146,10 +153,10 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
       if (last(step_, 0)) return accept(damping * step_.size.largest, at) ? Advance::made : Advance::interrupted;
       const double rise = slope < 0 ? merit(trial_balance_) - before : 0;
       const bool lower = rise < worthwhile_descent * damping * slope;
-      // up to rounding: what is nearer by its steps and yet costs more goes round in circles where things touch
-      const bool forbidden = system_.contact() && rise > most_rise * std::abs(before);
+      // the step that follows a shortened one tells nothing that is asked for
       if (lower && system_.contact() && damping < 1) break;
-      if (!forbidden) {
+      // up to rounding: what is nearer by its steps and yet costs more goes round in circles where things touch
+      if (!(system_.contact() && rise > most_rise * std::abs(before))) {
         find(trial_balance_, trial_, next_);
         if (refine_first(at)) continue;
         // near a singular stiffness the next step may be long although little is left
@@ -157,11 +164,7 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
             next_.size.mean < step_.size.mean || trial_balance_.force.norm() < 0.5 * balance_.force.norm();
         pace_.downhill = nearer ? 0 : pace_.downhill + lower;
         if (lower || nearer) break;
-        if (!system_.contact() && !system_.limp() &&
-            std::isfinite(next_.size.mean)) {  // the length at which a quadratic model is just good enough
-          const double residue = (next_.move - (1 - damping) * step_.move).norm() / step_.move.norm();
-          factor = std::min(0.5, damping / (2 * residue));
-        }
+        factor = shorter(damping);
       }
     }
     damping *= factor;
