@@ -158,5 +158,17 @@ TEST(ContactSolve, Hertz) {
   }
 }
 
+TEST(ContactSolve, ThreadsChangeNoBit) {
+  StaticsOptions options;
+  options.threads = 1;
+  const PressedBalls balls{.approach = 0.02 * PressedBalls::radius, .distance = 0.05};
+  const Equilibrium alone = pressed(balls, options).found;
+  options.threads = 2;
+  const Equilibrium shared = pressed(balls, options).found;
+  EXPECT_EQ(shared.report.iterations, alone.report.iterations);
+  EXPECT_EQ(shared.report.factorisations, alone.report.factorisations);
+  EXPECT_EQ(shared.state.positions, alone.state.positions);
+}
+
 }  // namespace
 }  // namespace softkin

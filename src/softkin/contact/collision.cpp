@@ -83,7 +83,7 @@ double safe_share(const FourPoints& from, const FourPoints& to, double keep, dou
     if (!(distance > floor)) break;
     double step = std::max((distance - floor) / speed, time_apart(x, motion, pairs, between.vector / distance, floor));
     if (advance >= patience && between.free == 2)
-      step = std::max(step, time_of_planes(x, motion, between, pairs[0], floor, until - share));
+      step = std::max(step, time_of_planes(x, motion, between, pairs[0], floor, 1 - share));
     if (!(share + step < until)) return until;
     share += step;
     if (step < small_advance * share) break;
