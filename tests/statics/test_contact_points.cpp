@@ -86,6 +86,37 @@ TEST(ContactPoints, WiderReachIsOfDifferentSolidsAlone) {
   }
 }
 
+/// A block that is pushed onto another one again and again, here and there: what is remembered of the ways before
+/// changes neither how far it may go nor what is near there.
+TEST(ContactPoints, WaysBeforeChangeNothing) {
+  for (const bool quadratic : {false, true}) {
+    NearBlocks blocks(quadratic);
+    Points at = blocks.model.rest;
+    int cut = 0, short_ways = 0;
+    for (int i = 0; i < 150; ++i) {
+      const double length = std::pow(10.0, -2 + 0.7 * (i % 6));  // [mm]
+      const Points chance = noise(3, 1, 100 + i);
+      Points to = at;
+      for (Index v = 0; v < to.rows(); ++v)
+        if (blocks.model.rest(v, 2) > StackedBlocks::size + 1)
+          to.row(v) += length * (chance.row(0) - Eigen::RowVector3d(0, 0, 0.5)) +
+                       0.02 * length * (at.row(v) - at.row(0)).cross(chance.row(1));
+      to += noise(to.rows(), 0.02 * length, 300 + i);
+      const auto fresh = blocks.contacts.make_scratch();
+      const double share = blocks.contacts.longest_step(at, to, *blocks.scratch, blocks.alone);
+      EXPECT_NEAR(share, blocks.contacts.longest_step(at, to, *fresh, blocks.alone), 0.01 * share) << i;
+      cut += share < 1;
+      short_ways += share == 1;
+      at += (i % 2 ? 0.95 : 0.5) * share * (to - at);
+      const auto another = blocks.contacts.make_scratch();
+      blocks.contacts.find(at, *another, blocks.alone);
+      EXPECT_EQ(blocks.energy(at), blocks.contacts.energy(at, *another)) << i;
+    }
+    EXPECT_GT(cut, 10);
+    EXPECT_GT(short_ways, 50);
+  }
+}
+
 TEST(ContactPoints, GradientAndStiffnessAreDerivatives) {
   for (const bool quadratic : {false, true})
     for (const double friction : {0.0, 0.6}) {

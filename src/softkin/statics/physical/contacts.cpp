@@ -1,7 +1,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <softkin/contact/collision.hpp>
 #include <softkin/statics/physical/contact_measure.hpp>
 #include <softkin/statics/physical/contacts.hpp>
 
@@ -19,8 +18,6 @@ constexpr double guard_share = 0.01;
 constexpr double least_spacing = 1e-4;
 /// Edges whose triangles' normals are so close have this share of what sharp ones have.
 constexpr double smooth_cosine = 0.87, smooth_share = 0.01;
-/// A motion may shrink gaps to this share.
-constexpr double kept_gap = 0.1;
 /// Pairs within so many reaches stand in the pattern.
 constexpr double foresight = 2;
 /// Pairs are looked for in a margin of so many reaches, so that small motions need no new search.
@@ -151,38 +148,6 @@ void Contacts::keep_close(const Points& positions, const ContactFirmness& firmne
     return !potential_->edges_felt(pair) || contact::edge_edge(x).squared > reach * reach;
   });
   sort_candidates(pairs);
-}
-
-/// The longest way of a vertex [mm].
-double Contacts::moved(const Points& from, const Points& to) {
-  return from.rows() == to.rows() ? std::sqrt((to - from).rowwise().squaredNorm().maxCoeff()) : HUGE_VAL;
-}
-
-void Contacts::search(const Points& from, const Points& to, Scratch& scratch, Team& team) const {
-  std::swap(scratch.around, scratch.before);
-  scratch.around.reach = reach_mm(scratch);
-  scratch.broad.find(from, to, scratch.around.reach + margin_mm_, team, scratch.around.pairs);
-  scratch.around.center = to;
-  scratch.around.least = -1;
-}
-
-void Contacts::find(const Points& positions, Scratch& scratch, Team& team) const {
-  Points room;
-  const Points& points = points_.of(positions, room);
-  const double reach = reach_mm(scratch);
-  const auto close_to = [&](const Scratch::Around& around) {
-    return around.reach >= reach && 2 * moved(around.center, points) <= margin_mm_;
-  };
-  if (!close_to(scratch.around)) {
-    if (close_to(scratch.before))
-      std::swap(scratch.around, scratch.before);
-    else
-      search(points, points, scratch, team);
-  }
-  scratch.close = scratch.around.pairs;
-  keep_close(points, scratch.firmness, scratch.close);
-  potential_->find(points, scratch.close, scratch.terms, scratch.firmness);
-  if (scratch.straight) potential_->straighten(scratch.terms, scratch.pushes);
 }
 
 /// Adds the gradient in the points that add(out) adds to out.
@@ -396,36 +361,6 @@ void Contacts::stiffness(const Points& positions, bool projected, const Scratch&
     friction_.stiffness(points, hold, block);
     add(hold.pair, false);
   }
-}
-
-double Contacts::largest_turn(const Points& from, const Points& to) const {
-  Points room, room_of_end;
-  const Points &start = points_.of(from, room), &end = points_.of(to, room_of_end);
-  double most = 0;
-  for (const auto& [a, b] : surfaces_.surface.edges) {
-    const auto before = start.row(b) - start.row(a), after = end.row(b) - end.row(a);
-    most = std::max(most, (after - before).squaredNorm() / before.squaredNorm());
-  }
-  return std::sqrt(most);
-}
-
-double Contacts::longest_step(const Points& from, const Points& to, Term::Scratch& scratch, Team& team) const {
-  Points room, room_of_end;
-  return longest_step_of_points(points_.of(from, room), points_.of(to, room_of_end), static_cast<Scratch&>(scratch),
-                                team);
-}
-
-double Contacts::longest_step_of_points(const Points& from, const Points& to, Scratch& scratch, Team& team) const {
-  Scratch::Around& around = scratch.around;
-  const double way = std::max(moved(around.center, from), moved(around.center, to));
-  if (!(2 * way <= margin_mm_)) {
-    search(from, to, scratch, team);
-  } else {
-    if (around.least < 0)
-      around.least = std::sqrt(contact::least_squared_distance(surfaces_.surface, around.pairs, around.center, team));
-    if (2 * way < (1 - kept_gap) * around.least) return 1;
-  }
-  return contact::safe_motion(surfaces_.surface, around.pairs, from, to, kept_gap, team);
 }
 
 }  // namespace softkin::physical

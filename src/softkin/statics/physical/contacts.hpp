@@ -22,12 +22,13 @@ class Contacts : public Term {
   struct Scratch : Term::Scratch {
     explicit Scratch(const contact::BroadPhase& all) : broad(all) {}
 
-    /// What is within reach on the way to a shape, or after any motion around it of at most half the margin.
+    /// What is within reach on a way, every point on a straight one, and at most half the margin beside it.
     struct Around {
       contact::Candidates pairs;
-      Points center;      // the points of that shape
+      Points begin, end;  // of the points
       double reach = 0;   // for which it was looked for [mm]
-      double least = -1;  // distance of those pairs there [mm]; negative: not known
+      double least = -1;  // distance of those pairs at the end [mm]; negative: not known
+      [[nodiscard]] double beside(const Points& points) const;
     };
     contact::BroadPhase broad;
     Around around, before;                      // and the last but one, as steps that are not taken lead back to it
@@ -124,7 +125,6 @@ class Contacts : public Term {
   [[nodiscard]] double reach_mm(const Scratch& scratch) const {
     return surfaces_.reach_mm * std::max(1.0, scratch.firmness.reach) * scratch.firmness.foresight;
   }
-  [[nodiscard]] static double moved(const Points& from, const Points& to);
   void keep_close(const Points& positions, const ContactFirmness& firmness, contact::Candidates& pairs) const;
   void find_parts();
   [[nodiscard]] double share_of_edge(std::size_t edge, double mean_area) const;
