@@ -28,6 +28,7 @@ class Equilibria::Lease {
     work_->tangents.at.resize(0, 3);
     work_->foretold.reset();
     work_->saddle.factor().forget();
+    if (work_->contacts) work_->contacts->around = work_->contacts->before = {};  // what is in the way of others
   }
   /// What an exception left half done is not used again.
   ~Lease() {
