@@ -24,10 +24,9 @@ namespace softkin::python {
 
 namespace {
 
-Statics statics_by(const Robot& robot, const Map* map, bool polish) {
-  if (map == nullptr) return Statics(robot.model());
-  runs::check_robot(map->map.data(), robot.model(), map->name);
-  return {robot.model(), shapes_of(robot.model(), map->map), polish ? Given::starts : Given::answers};
+Statics statics_of(const Robot& robot, const Map* map, bool polish) {
+  if (map) runs::check_robot(map->map.data(), robot.model(), map->name);
+  return statics_by(robot.model(), map ? &map->map : nullptr, polish);
 }
 
 /// Told of equilibria and checks that were solved, how far off predictions are, and what is done.
@@ -246,7 +245,7 @@ CheckOut check_of(const Map& map) {
 }  // namespace
 
 Session::Session(RobotPtr of, MapPtr by, bool polish)
-    : robot(std::move(of)), map(std::move(by)), polishes(polish), statics(statics_by(*robot, map.get(), polish)) {}
+    : robot(std::move(of)), map(std::move(by)), polishes(polish), statics(statics_of(*robot, map.get(), polish)) {}
 
 void bind_map(nb::module_& module) {
   nb::class_<MapOptions>(module, "MapOptions", "How a map is made.")

@@ -117,7 +117,7 @@ class OfMap : public GivenEquilibria {
 };
 
 /// No elements, and nothing that is held.
-Model seen_by(const Model& model, const MapData& data) {
+Model markers_alone(const Model& model, const MapData& data) {
   Model seen;
   seen.name = model.name;
   seen.formulation = model.formulation;
@@ -222,10 +222,11 @@ class ShapesOfMap : public OfMap {
 }  // namespace
 
 MapRobot::MapRobot(const Model& model, const KinematicMap& map)
-    : model_(seen_by(model, map.data())), statics_(model_, std::make_unique<MarkersOfMap>(model_, map)) {}
+    : model_(markers_alone(model, map.data())), statics_(model_, std::make_unique<MarkersOfMap>(model_, map)) {}
 
-std::unique_ptr<const GivenEquilibria> shapes_of(const Model& model, const KinematicMap& map) {
-  return std::make_unique<ShapesOfMap>(model, map);
+Statics statics_by(const Model& model, const KinematicMap* map, bool polish) {
+  if (!map) return Statics(model);
+  return {model, std::make_unique<ShapesOfMap>(model, *map), polish ? Given::starts : Given::answers};
 }
 
 InverseResult solve_inverse_by_map(const Model& model, const KinematicMap& map, const Statics& statics,

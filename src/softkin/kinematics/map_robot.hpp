@@ -8,7 +8,7 @@
 
 namespace softkin {
 
-/// A robot as its map knows it: its vertices are its markers, and two per cable that are as far apart as its path is
+/// A robot as its map knows it, with a shape or without: its vertices are its markers, and two per cable that are as far apart as its path is
 /// long. What needs markers, loads and commands alone works with it as with the robot: solve_inverse, follow_path.
 class MapRobot {
  public:
@@ -27,17 +27,17 @@ class MapRobot {
   Statics statics_;
 };
 
-/// Whole shapes of the robot as its map has them, for Statics. The vertices around a marker are moved by what its own,
-/// more accurate polynomials say.
+/// Equilibria of a robot by its solver; by its map alone; or by the solver begun at those of the map (polish). A map gives
+/// whole shapes, in which the vertices around a marker are moved by what its own, more accurate polynomials say.
 ///
-/// model, map  must outlive the object, and belong together (runs::check_robot)
+/// model, map  must outlive the object, and belong together (runs::check_robot); map may be null: there is none
 /// throws      InvalidInput on a map without shape
-[[nodiscard]] std::unique_ptr<const GivenEquilibria> shapes_of(const Model& model, const KinematicMap& map);
+[[nodiscard]] Statics statics_by(const Model& model, const KinematicMap* map, bool polish);
 
 /// solve_inverse_from() by the map alone, and again by the solver from what that found: a few equilibria. Where the map
 /// has no equilibrium at the start, by the solver alone.
 ///
-/// statics  of the model, whose solves begin at the map's equilibria: shapes_of(), Given::starts
+/// statics  of the model, whose solves begin at the map's equilibria: statics_by(), polish
 /// returns  counts and history are those of the solver
 [[nodiscard]] InverseResult solve_inverse_by_map(const Model& model, const KinematicMap& map, const Statics& statics,
                                                  const std::vector<Goal>& goals, const Actuation& start,

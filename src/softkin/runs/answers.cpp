@@ -4,15 +4,6 @@
 
 namespace softkin::runs {
 
-namespace {
-
-Statics statics_by(const Model& model, const std::optional<KinematicMap>& map, bool polish) {
-  if (!map) return Statics(model);
-  return {model, shapes_of(model, *map), polish ? Given::starts : Given::answers};
-}
-
-}  // namespace
-
 KinematicMap read_map_of(const Model& model, const std::string& file) {
   MapData data = read_map(file);
   check_robot(data, model, file);
@@ -22,7 +13,7 @@ KinematicMap read_map_of(const Model& model, const std::string& file) {
 Answers::Answers(const Model& model, const std::string& map, bool polish)
     : model_(model),
       map_(map.empty() ? std::nullopt : std::optional(read_map_of(model, map))),
-      statics_(statics_by(model, map_, polish)) {
+      statics_(statics_by(model, map_ ? &*map_ : nullptr, polish)) {
   if (map_) used_.emplace(UsedMap{map, map_->data(), polish});
 }
 

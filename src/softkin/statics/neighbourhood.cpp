@@ -22,13 +22,13 @@ Neighbourhood::Neighbourhood(const Statics& statics, const State& at, int thread
   check_start(model, at, options);
   if (!at.knows(static_cast<Index>(model.actuators.size())))
     throw InvalidInput("predictions around a shape need the actuation of which it is the equilibrium");
-  parts_ = std::make_unique<Parts>(model, at, statics.parts_->team(options));
-  if (!statics.parts_->physical || at.multipliers.size() == 0) return;
-  const physical::Equilibria& physical = *statics.parts_->physical;
-  parts_->equilibria = &physical;
-  const physical::Equilibria::Inside inside(physical, at, *parts_->team);
-  parts_->lease.emplace(physical, inside->positions, false);
-  parts_->physical.emplace(physical.system(), parts_->lease->work(), *inside, *parts_->team);
+  parts_ = std::make_unique<Parts>(model, at, statics.parts_->lender.lend(options));
+  const physical::Equilibria* physical = statics.parts_->equilibria();
+  if (!physical || at.multipliers.size() == 0) return;
+  parts_->equilibria = physical;
+  const physical::Equilibria::Inside inside(*physical, at, *parts_->team);
+  parts_->lease.emplace(*physical, inside->positions, false);
+  parts_->physical.emplace(physical->system(), parts_->lease->work(), *inside, *parts_->team);
 }
 
 Neighbourhood::~Neighbourhood() = default;

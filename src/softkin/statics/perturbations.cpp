@@ -22,12 +22,12 @@ struct Perturbations::Parts {
 
 Perturbations::Perturbations(const Statics& statics, const std::vector<Perturbed>& perturbed)
     : parts_(std::make_unique<Parts>(Parts{statics})) {
-  if (!statics.parts_->physical)
-    throw InvalidInput("derivatives by numbers of the robot are for the physical formulation");
+  const physical::Equilibria& equilibria =
+      statics.parts_->need_equilibria("derivatives by numbers of the robot are for the physical formulation");
   for (const Perturbed& each : perturbed) {
     if (!(each.difference != 0 && std::isfinite(each.difference)))
       throw InvalidInput("a number is not perturbed, or by a difference that is not finite");
-    parts_->perturbations.emplace_back(each, statics.parts_->physical->system());
+    parts_->perturbations.emplace_back(each, equilibria.system());
   }
 }
 
@@ -39,8 +39,8 @@ ParameterSensitivity Perturbations::at(const State& at, const StaticsOptions& op
                                        bool reactions) const {
   Statics::Parts& statics = *parts_->statics.parts_;
   statics.check_known(at, options, "the sensitivity of a shape");
-  const TeamPool::Lent team = statics.team(options);
-  return statics.physical->sensitivity(at, parts_->perturbations, options.reuse_factor, accuracy, reactions, *team);
+  const TeamPool::Lent team = statics.lender.lend(options);
+  return statics.equilibria()->sensitivity(at, parts_->perturbations, options.reuse_factor, accuracy, reactions, *team);
 }
 
 Eigen::MatrixXd Perturbations::gradients(const State& at, const std::vector<ShapeGradient>& told,
@@ -55,9 +55,9 @@ Eigen::MatrixXd Perturbations::gradients(const State& at, const std::vector<Shap
           "a gradient must be of three finite values for each of the robot's vertices, and of one for "
           "each of its actuators");
   }
-  if (statics.physical->system().reciprocal()) {
-    const TeamPool::Lent team = statics.team(options);
-    return statics.physical->gradients(at, parts_->perturbations, told, options.reuse_factor, accuracy, *team);
+  if (statics.equilibria()->system().reciprocal()) {
+    const TeamPool::Lent team = statics.lender.lend(options);
+    return statics.equilibria()->gradients(at, parts_->perturbations, told, options.reuse_factor, accuracy, *team);
   }
   const ParameterSensitivity found = this->at(at, options, accuracy);
   if (!found.regular) return {};

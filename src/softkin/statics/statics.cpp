@@ -4,8 +4,8 @@
 #include <softkin/core/text.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/statics/deformation.hpp>
-#include <softkin/statics/physical/lease.hpp>
 #include <softkin/statics/statics_parts.hpp>
+#include <softkin/statics/target_shape_solver.hpp>
 
 namespace softkin {
 
@@ -15,16 +15,26 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-void check_formulation(const StaticsOptions& options, Formulation formulation) {
-  if (formulation == Formulation::physical) {
-    if (options.solver == Solver::local_global)
-      throw InvalidInput("solver local-global is for the target-shape formulation; the physical one has newton");
-    return;
+/// A robot of which nothing has to be solved.
+class GivenSolver : public FormulationSolver {
+ public:
+  explicit GivenSolver(std::unique_ptr<const GivenEquilibria> given) : given_(std::move(given)) {}
+
+  [[nodiscard]] Equilibrium solve(const Actuation& actuation, const State& start, const StaticsOptions&,
+                                  const ProgressCallback&) override {
+    return given_->at(actuation, start);
   }
-  if (options.beyond > 0)
-    throw InvalidInput("beyond is for the physical formulation: target shapes have no pressures and tensions");
-  if (options.stable)
-    throw InvalidInput("stable is for the physical formulation: target shapes have no stiffness that buckles");
+  [[nodiscard]] Sensitivity sensitivity(const State& at, const StaticsOptions&, double) const override {
+    return given_->sensitivity(at);
+  }
+
+ private:
+  std::unique_ptr<const GivenEquilibria> given_;
+};
+
+std::unique_ptr<FormulationSolver> solver_of(const Model& model, Lender& lender) {
+  if (model.formulation == Formulation::physical) return std::make_unique<PhysicalSolver>(model, lender);
+  return std::make_unique<TargetShapeSolver>(model, lender);
 }
 
 }  // namespace
@@ -48,18 +58,23 @@ void check_actuation(const Model& model, const Actuation& actuation) {
 }
 
 Statics::Statics(const Model& model) : parts_(std::make_unique<Parts>(model)) {
-  parts_->assemble(model);
+  parts_->solver = solver_of(model, parts_->lender);
 }
 Statics::Statics(const Model& model, const Statics& like) : parts_(std::make_unique<Parts>(model)) {
-  if (model.formulation == Formulation::physical && like.parts_->physical)
-    parts_->physical.emplace(model, *like.parts_->physical);
+  const PhysicalSolver* of_like = like.parts_->solver->physical();
+  if (model.formulation == Formulation::physical && of_like)
+    parts_->solver = std::make_unique<PhysicalSolver>(model, *of_like, parts_->lender);
   else
-    parts_->assemble(model);
+    parts_->solver = solver_of(model, parts_->lender);
 }
 Statics::Statics(const Model& model, std::unique_ptr<const GivenEquilibria> given, Given use)
     : parts_(std::make_unique<Parts>(model)) {
-  parts_->given = std::move(given);
-  if (use == Given::starts) parts_->assemble(model);
+  if (use == Given::answers) {
+    parts_->solver = std::make_unique<GivenSolver>(std::move(given));
+    return;
+  }
+  parts_->solver = solver_of(model, parts_->lender);
+  parts_->starts = std::move(given);
 }
 Statics::~Statics() = default;
 Statics::Statics(Statics&&) noexcept = default;
@@ -89,31 +104,12 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   check_start(model, start, options);
   if (!(options.beyond >= 0 && std::isfinite(options.beyond)))
     throw InvalidInput("beyond must be a volume or length over that at rest, above 0, not " + number(options.beyond));
-  if (parts_->given && !parts_->assembled()) {
-    Equilibrium given = parts_->given->at(actuation, start);
-    given.report.seconds = seconds_since(begin);
-    return given;
-  }
   State near;
-  if (parts_->given && !model.contact.any()) {
-    Equilibrium given = parts_->given->at(actuation, start);
+  if (parts_->starts && !model.contact.any()) {
+    Equilibrium given = parts_->starts->at(actuation, start);
     if (given.report.status == Status::converged) near = std::move(given.state);
   }
-  const State& begun = near.positions.rows() > 0 ? near : start;
-  const TeamPool::Lent team = parts_->team(options);
-  Equilibrium result;
-  parts_->check_history(options.history.get(), options.elapsed_s);
-  check_formulation(options, parts_->physical ? Formulation::physical : Formulation::target_shape);
-  if (parts_->physical) {
-    result = parts_->solve(actuation, begun, options, progress, *team);
-  } else {
-    result.actuation = actuation;
-    result.state.positions = begun.positions;
-    result.report.tolerance_mm = parts_->tolerance(options);
-    parts_->solve_target_shape(begun.actuation, options, progress, *team, result);
-    if (result.report.status == Status::converged) result.state.actuation = actuation;
-    result.state.multipliers = Eigen::VectorXd::Zero(actuation.size());
-  }
+  Equilibrium result = parts_->solver->solve(actuation, near.positions.rows() > 0 ? near : start, options, progress);
   SolveReport& report = result.report;
   report.stopped = report.status == Status::interrupted;
   if (report.stopped && late) {
@@ -126,21 +122,19 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
 
 Sensitivity Statics::sensitivity(const State& at, const StaticsOptions& options, double accuracy) const {
   parts_->check_known(at, options, "the sensitivity of a shape");
-  if (parts_->given && !parts_->assembled()) return parts_->given->sensitivity(at);
-  const TeamPool::Lent team = parts_->team(options);
-  if (parts_->physical) return parts_->physical->sensitivity(at, options.reuse_factor, accuracy, *team);
-  return parts_->target_shape->newton.sensitivity(at, options.reuse_factor, accuracy, *team);
+  return parts_->solver->sensitivity(at, options, accuracy);
 }
 
 ParameterSensitivity Statics::sensitivity_along(const State& at, const std::vector<Actuation>& changes,
                                                 const StaticsOptions& options, double accuracy, bool reactions) const {
   parts_->check_known(at, options, "the sensitivity of a shape");
-  if (!parts_->physical) throw InvalidInput("sensitivities along changes are for the physical formulation");
+  const physical::Equilibria& equilibria =
+      parts_->need_equilibria("sensitivities along changes are for the physical formulation");
   for (const Actuation& change : changes)
     if (change.size() != at.actuation.size() || !change.allFinite())
       throw InvalidInput("a change of the actuation must be of a finite value for each of the robot's actuators");
-  const TeamPool::Lent team = parts_->team(options);
-  return parts_->physical->sensitivity(at, changes, options.reuse_factor, accuracy, reactions, *team);
+  const TeamPool::Lent team = parts_->lender.lend(options);
+  return equilibria.sensitivity(at, changes, options.reuse_factor, accuracy, reactions, *team);
 }
 
 std::vector<Points> Statics::reciprocal_moves(const State& at, const std::vector<Points>& forces,
@@ -149,8 +143,9 @@ std::vector<Points> Statics::reciprocal_moves(const State& at, const std::vector
   for (const Points& force : forces)
     if (force.rows() != at.positions.rows() || !force.allFinite())
       throw InvalidInput("forces must be of three finite values for each of the robot's vertices");
-  if (!parts_->physical || !parts_->physical->system().reciprocal()) return {};
-  return parts_->physical->moves_under(at, forces, options.reuse_factor, accuracy, *parts_->team(options));
+  const physical::Equilibria* equilibria = parts_->equilibria();
+  if (!equilibria || !equilibria->system().reciprocal()) return {};
+  return equilibria->moves_under(at, forces, options.reuse_factor, accuracy, *parts_->lender.lend(options));
 }
 
 bool Statics::foresee(const Actuation& actuation, const State& at, const StaticsOptions& options,
@@ -158,61 +153,55 @@ bool Statics::foresee(const Actuation& actuation, const State& at, const Statics
   check_actuation(parts_->model, actuation);
   parts_->check_known(at, options, "what is foreseen from a shape");
   if (!foresees() || !options.reuse_factor) return false;
-  return parts_->physical->foresee(actuation, at, positions, *parts_->team(options));
+  return parts_->equilibria()->foresee(actuation, at, positions, *parts_->lender.lend(options));
 }
 
 bool Statics::foretell(const State& at, State there, const StaticsOptions& options) const {
   check_actuation(parts_->model, there.actuation);
   parts_->check_known(there, options, "what is foretold");
   if (!foresees() || !options.reuse_factor) return false;
-  return parts_->physical->foretell(at, std::move(there));
+  return parts_->equilibria()->foretell(at, std::move(there));
 }
 
 bool Statics::foresees() const {
-  return parts_->physical && !parts_->model.contact.any();
+  return parts_->equilibria() && !parts_->model.contact.any();
 }
 
 ElementDeformation Statics::measured(const State& at) const {
   ElementDeformation deformation = deformation_of(parts_->model, at.positions);
   const bool unknown = at.share < 0 || (at.actuation.size() == 0 && !parts_->model.actuators.empty());
-  if (!parts_->physical || unknown) return deformation;
+  const physical::Equilibria* equilibria = parts_->equilibria();
+  if (!equilibria || unknown) return deformation;
   const StaticsOptions options;
   parts_->check_known(at, options, "the stress in a shape");
-  parts_->physical->measure(at, deformation, *parts_->team(options));
+  equilibria->measure(at, deformation, *parts_->lender.lend(options));
   return deformation;
 }
 
 std::vector<std::vector<Vec3>> Statics::pressing_changes(const State& at, const std::vector<Points>& moves) const {
   const StaticsOptions options;
   parts_->check_known(at, options, "what presses in a shape");
-  if (!parts_->physical) throw InvalidInput("what presses on obstacles is known in the physical formulation alone");
+  const physical::Equilibria& equilibria =
+      parts_->need_equilibria("what presses on obstacles is known in the physical formulation alone");
   for (const Points& move : moves)
     if (move.rows() != at.positions.rows() || !move.allFinite())
       throw InvalidInput("moves must be of three finite values for each of the robot's vertices");
-  return parts_->physical->pressing_changes(at, moves, *parts_->team(options));
+  return equilibria.pressing_changes(at, moves, *parts_->lender.lend(options));
 }
 
 bool Statics::viscous() const {
-  return parts_->physical && parts_->physical->system().viscous();
+  return parts_->equilibria() && parts_->equilibria()->system().viscous();
 }
 
 ViscousFlow Statics::flow(const State& at) const {
   const StaticsOptions options;
   parts_->check_actuation(at, options, "what is remembered of a shape");
   if (!viscous()) return {};
-  parts_->check_history(at.history.get(), at.elapsed_s);
-  const TeamPool::Lent team = parts_->team(options);
-  if (at.history || std::isinf(at.elapsed_s)) return parts_->physical->flow(at, *team);
-  if (parts_->long_rest(options, {}, *team).report.status != Status::converged)
-    throw InvalidInput("the robot has no equilibrium at rest, where its times begin");
-  State begun = at;
-  begun.history = parts_->remembered;
-  return parts_->physical->flow(begun, *team);
+  return parts_->solver->physical()->flow(at);
 }
 
 void Statics::forget() const {
-  if (parts_->physical) parts_->physical->forget();
-  if (parts_->target_shape) parts_->target_shape->newton.forget();
+  parts_->solver->forget();
 }
 
 }  // namespace softkin

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
 #include <softkin/statics/statics_parts.hpp>
@@ -53,23 +52,24 @@ void check_start(const Model& model, const State& start, const StaticsOptions& o
     throw InvalidInput("to stop as published watches the robot's markers, and it has none");
 }
 
-Statics::Parts::Parts(const Model& robot) : model(robot), worthwhile(worthwhile_threads(robot)) {}
+Lender::Lender(const Model& model) : worthwhile_(worthwhile_threads(model)) {}
 
-void Statics::Parts::assemble(const Model& robot) {
-  if (robot.formulation == Formulation::physical)
-    physical.emplace(robot);
-  else
-    target_shape.emplace(robot);
+TeamPool::Lent Lender::lend(const StaticsOptions& options) {
+  if (options.threads > 0) return teams_.lend(options.threads);
+  try {
+    return teams_.lend(worthwhile_);
+  } catch (const InvalidInput&) {  // nobody asked for so many; the result is the same
+    worthwhile_ = 1;
+    return teams_.lend(1);
+  }
 }
 
-TeamPool::Lent Statics::Parts::team(const StaticsOptions& options) {
-  if (options.threads > 0) return teams.lend(options.threads);
-  try {
-    return teams.lend(worthwhile);
-  } catch (const InvalidInput&) {  // nobody asked for so many; the result is the same
-    worthwhile = 1;
-    return teams.lend(1);
-  }
+double step_tolerance_mm(const Model& model, const StaticsOptions& options) {
+  return options.step_tolerance_mm > 0 ? options.step_tolerance_mm : 8e-8 * model.diagonal_mm;
+}
+
+void check_elapsed(double elapsed_s) {
+  if (!(elapsed_s >= 0)) throw InvalidInput("the time of a step must be 0 s or more, not " + number(elapsed_s) + " s");
 }
 
 void Statics::Parts::check_actuation(const State& at, const StaticsOptions& options, const std::string& of) const {
@@ -81,88 +81,19 @@ void Statics::Parts::check_actuation(const State& at, const StaticsOptions& opti
 
 void Statics::Parts::check_known(const State& at, const StaticsOptions& options, const std::string& of) const {
   check_actuation(at, options, of);
-  if (physical && at.multipliers.size() != at.actuation.size())
+  if (solver->physical() && at.multipliers.size() != at.actuation.size())
     throw InvalidInput(of + " needs the tensions and pressures of its equilibrium");
 }
 
-void Statics::Parts::check_history(const ViscousHistory* history, double elapsed_s) const {
-  if (!(elapsed_s >= 0)) throw InvalidInput("the time of a step must be 0 s or more, not " + number(elapsed_s) + " s");
-  if (history && (!physical || history->strains.size() != physical->system().remembered()))
-    throw InvalidInput("the history of the material is of another robot");
+const physical::Equilibria* Statics::Parts::equilibria() const {
+  const PhysicalSolver* physical = solver->physical();
+  return physical ? &physical->equilibria() : nullptr;
 }
 
-physical::Equilibria::Options Statics::Parts::physical_options(const StaticsOptions& options) const {
-  const double longest = tolerance(options), blur = 1e-6 * std::max(1.0, longest / paper_tolerance());
-  return {longest,
-          options.max_iterations,
-          options.keep_history,
-          options.trace,
-          options.reuse_factor,
-          options.stable,
-          options.beyond,
-          blur,
-          options.history,
-          options.elapsed_s};
-}
-
-Equilibrium Statics::Parts::long_rest(StaticsOptions options, const ProgressCallback& progress, Team& team) {
-  const std::lock_guard lock(rested_mutex);
-  if (rested) return *rested;
-  options.history = nullptr;
-  options.elapsed_s = std::numeric_limits<double>::infinity();
-  State start;
-  start.positions = model.rest;
-  Equilibrium found = physical->solve(model.rest_actuation(), start, physical_options(options), progress, team);
-  if (found.report.status == Status::converged) {
-    rested = found;
-    remembered = physical->flow(found.state, team).history;
-  }
-  return found;
-}
-
-Equilibrium Statics::Parts::solve(const Actuation& actuation, const State& start, const StaticsOptions& options,
-                                  const ProgressCallback& progress, Team& team) {
-  const bool begins = physical->system().viscous() && std::isfinite(options.elapsed_s) && !options.history;
-  if (!begins) return physical->solve(actuation, start, physical_options(options), progress, team);
-  Equilibrium rest = long_rest(options, progress, team);
-  if (rest.report.status != Status::converged) {
-    rest.actuation = actuation;
-    rest.state.actuation.resize(0);
-    rest.state.share = -1;
-    rest.report.reached = 0;
-    rest.report.remark = "where the robot rests before times begin: " + rest.report.remark;
-    return rest;
-  }
-  physical::Equilibria::Options begun = physical_options(options);
-  begun.history = remembered;
-  const bool from_rest = start.actuation.size() == 0 && start.positions == model.rest;
-  return physical->solve(actuation, from_rest ? rest.state : start, begun, progress, team);
-}
-
-void Statics::Parts::solve_target_shape(const Actuation& start, const StaticsOptions& options,
-                                        const ProgressCallback& progress, Team& team, Equilibrium& result) {
-  constexpr double most_turn = 10;  // at once [degrees]
-  const TargetShape& parts = *target_shape;
-  const Actuation asked = result.actuation;
-  Actuation from = start.size() > 0 ? start : asked;
-  for (Index a = 0; start.size() == 0 && a < asked.size(); ++a)
-    if (model.actuators[a].is<TurnCommand>()) from[a] = parts.turning.angle(a, result.state.positions);
-  const int steps = std::max(1, static_cast<int>(std::ceil(parts.turning.largest_turn(from, 1, asked, 1) / most_turn)));
-  Actuation last = steps > 1 ? from : start;
-  int on_the_way = 0;
-  for (int step = 1; step <= steps; ++step) {
-    result.actuation = step == steps ? asked : Actuation(from + (asked - from) * step / steps);
-    result.report.status = Status::not_converged;
-    if (options.solver == Solver::newton)
-      parts.newton.solve(last, options, progress, team, result);
-    else
-      target_shape::solve_local_global(model, parts.system, parts.global, options, progress, team, result);
-    on_the_way += result.report.continuation_steps;
-    if (result.report.status != Status::converged) break;
-    last = result.actuation;
-  }
-  if (options.solver == Solver::newton) result.report.continuation_steps = on_the_way;
-  result.actuation = asked;
+const physical::Equilibria& Statics::Parts::need_equilibria(const std::string& what) const {
+  const physical::Equilibria* found = equilibria();
+  if (!found) throw InvalidInput(what);
+  return *found;
 }
 
 }  // namespace softkin

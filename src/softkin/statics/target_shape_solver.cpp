@@ -1,0 +1,75 @@
+#include <algorithm>
+#include <cmath>
+#include <softkin/core/error.hpp>
+#include <softkin/statics/target_shape_solver.hpp>
+
+namespace softkin {
+
+namespace {
+
+void check_target_shape(const StaticsOptions& options) {
+  if (options.beyond > 0)
+    throw InvalidInput("beyond is for the physical formulation: target shapes have no pressures and tensions");
+  if (options.stable)
+    throw InvalidInput("stable is for the physical formulation: target shapes have no stiffness that buckles");
+}
+
+}  // namespace
+
+TargetShapeSolver::TargetShapeSolver(const Model& model, Lender& lender)
+    : model_(model),
+      lender_(lender),
+      system_(model),
+      turning_(model),
+      unknowns_(model, system_),
+      global_(model, system_.global_matrix(), unknowns_.freedoms.vertex_order()),
+      newton_(unknowns_, global_) {}
+
+Equilibrium TargetShapeSolver::solve(const Actuation& actuation, const State& start, const StaticsOptions& options,
+                                     const ProgressCallback& progress) {
+  const TeamPool::Lent team = lender_.lend(options);
+  check_elapsed(options.elapsed_s);
+  if (options.history) throw InvalidInput("the history of the material is of another robot");
+  check_target_shape(options);
+  Equilibrium result;
+  result.actuation = actuation;
+  result.state.positions = start.positions;
+  result.report.tolerance_mm = step_tolerance_mm(model_, options);
+  follow_turns(start.actuation, options, progress, *team, result);
+  if (result.report.status == Status::converged) result.state.actuation = actuation;
+  result.state.multipliers = Eigen::VectorXd::Zero(actuation.size());
+  return result;
+}
+
+/// From result.state.positions; where supports turn far by equilibria on the way: what is held is put in its place at
+/// once, and elements that it turns over would stay so.
+void TargetShapeSolver::follow_turns(const Actuation& start, const StaticsOptions& options,
+                                     const ProgressCallback& progress, Team& team, Equilibrium& result) const {
+  constexpr double most_turn = 10;  // at once [degrees]
+  const Actuation asked = result.actuation;
+  Actuation from = start.size() > 0 ? start : asked;
+  for (Index a = 0; start.size() == 0 && a < asked.size(); ++a)
+    if (model_.actuators[a].is<TurnCommand>()) from[a] = turning_.angle(a, result.state.positions);
+  const int steps = std::max(1, static_cast<int>(std::ceil(turning_.largest_turn(from, 1, asked, 1) / most_turn)));
+  Actuation last = steps > 1 ? from : start;
+  int on_the_way = 0;
+  for (int step = 1; step <= steps; ++step) {
+    result.actuation = step == steps ? asked : Actuation(from + (asked - from) * step / steps);
+    result.report.status = Status::not_converged;
+    if (options.solver == Solver::newton)
+      newton_.solve(last, options, progress, team, result);
+    else
+      target_shape::solve_local_global(model_, system_, global_, options, progress, team, result);
+    on_the_way += result.report.continuation_steps;
+    if (result.report.status != Status::converged) break;
+    last = result.actuation;
+  }
+  if (options.solver == Solver::newton) result.report.continuation_steps = on_the_way;
+  result.actuation = asked;
+}
+
+Sensitivity TargetShapeSolver::sensitivity(const State& at, const StaticsOptions& options, double accuracy) const {
+  return newton_.sensitivity(at, options.reuse_factor, accuracy, *lender_.lend(options));
+}
+
+}  // namespace softkin
