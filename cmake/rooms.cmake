@@ -75,13 +75,13 @@ function(softkin_precompile target)
   endif()
 endfunction()
 
-# softkin_compile_together(TARGET): its files in groups, for half the work; not kernels. Groups of 20 take a fifth less of
-# the compiler's time than those of 10, and up to 2.8 GiB each in place of 1.6.
+# softkin_compile_together(TARGET): its files in groups, for half the work; not kernels. So what a file has for itself has
+# a name that no other file of its room gives to something else. Groups of 20 take up to a fifth less of the compiler's
+# time than those of 10, and up to 2.8 GiB each in place of 1.6.
 math(EXPR softkin_large_groups_MiB "3000 * (${softkin_cores} + 2)")
-set(softkin_names_repeat softkin_io softkin_calibration softkin_vision softkin_random)  # what files have for themselves
 function(softkin_compile_together target)
   set(files 20)
-  if(softkin_memory_MiB LESS softkin_large_groups_MiB OR target IN_LIST softkin_names_repeat)
+  if(softkin_memory_MiB LESS softkin_large_groups_MiB)
     set(files 10)
   endif()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${SOFTKIN_UNITY} UNITY_BUILD_BATCH_SIZE ${files})

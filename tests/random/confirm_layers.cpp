@@ -8,7 +8,7 @@ namespace softkin::random_robots {
 
 namespace {
 
-using Sheet = Eigen::Matrix<Real, 3, 2>;
+using SheetGradient = Eigen::Matrix<Real, 3, 2>;
 using Plane = Eigen::Matrix<Real, 2, 2>;
 
 /// A stress that pulls along one direction t only, as the wrinkles across it leave no shear: of the angles at which s M
@@ -91,7 +91,7 @@ RealVec3 sheet_stress(const SheetLaw& law, const RealVec3& strain) {
 
 void add_membrane(const Layer& layer, const State& state, Forces& forces) {
   for (const LayerPlace& place : layer.places) {
-    Sheet f = Sheet::Zero();
+    SheetGradient f = SheetGradient::Zero();
     Real shares = 0;
     for (std::size_t i = 0; i < place.vertices.size(); ++i) {
       const RealVec3 x = state.positions.row(place.vertices[i]).transpose().cast<Real>();

@@ -170,5 +170,33 @@ TEST(ContactSolve, ThreadsChangeNoBit) {
   EXPECT_EQ(shared.state.positions, alone.state.positions);
 }
 
+/// A beam between a floor and a ceiling: whatever was solved before, a solve is that of a new object.
+TEST(ContactSolve, SolvesBeforeChangeNoBit) {
+  constexpr double gap = 0.5, distance = 0.2;
+  RobotSpec spec = cable_beam();
+  spec.contact = contact_below(distance);
+  spec.contact->obstacles = {{"floor", Halfspace{{0, 0, -gap}, {0, 0, 1}}, std::nullopt, {}},
+                             {"ceiling", Halfspace{{0, 0, 10 + gap}, {0, 0, -1}}, std::nullopt, {}}};
+  const Model model = compile(spec);
+  StaticsOptions options;
+  options.threads = 1;
+  options.reuse_factor = false;
+  const auto pulled = [](double top, double bottom) { return Actuation(Eigen::Vector2d(top, bottom)); };
+  const Statics used(model);
+  State start = used.rest();
+  for (const Actuation& asked : {pulled(0.97, 1), pulled(1, 0.99), pulled(0.96, 1), pulled(1, 0.96)}) {
+    const Statics fresh(model);
+    const Equilibrium expected = fresh.solve(asked, start, options);
+    ASSERT_EQ(expected.report.status, Status::converged) << expected.report.remark;
+    const double low = expected.state.positions.col(2).minCoeff(), high = expected.state.positions.col(2).maxCoeff();
+    EXPECT_LT(std::min(low + gap, 10 + gap - high), distance) << "it touches";
+    const Equilibrium found = used.solve(asked, start, options);
+    EXPECT_EQ(found.report.iterations, expected.report.iterations);
+    EXPECT_EQ(found.report.factorisations, expected.report.factorisations);
+    EXPECT_EQ(found.state.positions, expected.state.positions);
+    start = expected.state;
+  }
+}
+
 }  // namespace
 }  // namespace softkin

@@ -59,13 +59,13 @@ double absolute(const SyringeSetup& setup, PressureScale scale, double pressure)
 }
 
 /// How a run may have been written down instead.
-struct Reading {
+struct Reinterpretation {
   PressureScale scale;
   double volume_factor = 1;
 };
 
 /// All ratios plausible, and those of the lowest and highest pressure in order.
-bool makes_sense(const SyringeSetup& setup, const SyringeRun& run, const Reading& reading) {
+bool makes_sense(const SyringeSetup& setup, const SyringeRun& run, const Reinterpretation& reading) {
   const auto ratio = [&](const SyringeRow& row) {
     return chamber_ratio(setup, absolute(setup, reading.scale, row.pressure_kPa),
                          reading.volume_factor * row.syringe_mm3);

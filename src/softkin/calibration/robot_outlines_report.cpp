@@ -1,5 +1,6 @@
 #include <cmath>
 #include <softkin/calibration/robot_outlines_report.hpp>
+#include <softkin/runs/records_json.hpp>
 
 namespace softkin::calibration {
 
@@ -36,10 +37,6 @@ std::string misfit_text(const char* what, const Misfit& misfit) {
 
 Json misfit_of_outlines(const Misfit& misfit) {
   return {{"rms_mm", misfit.rms}, {"largest_mm", misfit.largest}, {"points", misfit.readings}};
-}
-
-Json known(double value) {
-  return std::isfinite(value) ? Json(value) : Json();
 }
 
 }  // namespace
@@ -81,7 +78,7 @@ Json outline_json(const RobotFitReport& r, std::size_t pose) {
   const OutlineCounts counts = counted_points(r, pose);
   if (counts.points == 0) return {};
   return {{"picture", r.poses.pictures[pose]},
-          {"rms_mm", known(outline_error(r, pose))},
+          {"rms_mm", runs::known(outline_error(r, pose))},
           {"points", counts.points},
           {"counting", counts.counting}};
 }

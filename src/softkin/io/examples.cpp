@@ -108,7 +108,7 @@ std::vector<std::string> neighbours_of(const fs::path& folder, const std::string
   return neighbours;
 }
 
-Json json_of(const Example& example) {
+Json json_of_example(const Example& example) {
   Json actuators = Json::array();
   for (const ExampleActuator& each : example.actuators)
     actuators.push_back(
@@ -195,12 +195,12 @@ CopiedExample copy_example(const fs::path& folder, const std::string& name, cons
 
 std::string to_json(const std::vector<Example>& examples) {
   Json json = Json::array();
-  for (const Example& example : examples) json.push_back(json_of(example));
+  for (const Example& example : examples) json.push_back(json_of_example(example));
   return json_text(json);
 }
 
 std::string to_json(const CopiedExample& copied) {
-  Json json = json_of(copied.example);
+  Json json = json_of_example(copied.example);
   json.erase("actuators");
   for (const fs::path& file : copied.files) json["files"].push_back(file.string());
   return json_text(json);

@@ -8,8 +8,9 @@
 
 namespace softkin {
 
-/// A robot as its map knows it, with a shape or without: its vertices are its markers, and two per cable that are as far apart as its path is
-/// long. What needs markers, loads and commands alone works with it as with the robot: solve_inverse, follow_path.
+/// A robot as its map knows it, with a shape or without: its vertices are its markers, and two per cable that are as
+/// far apart as its path is long. What needs markers, loads and commands alone works with it as with the robot:
+/// solve_inverse, follow_path.
 class MapRobot {
  public:
   /// map must be of the model (runs::check_robot), and outlive the object.
@@ -27,8 +28,8 @@ class MapRobot {
   Statics statics_;
 };
 
-/// Equilibria of a robot by its solver; by its map alone; or by the solver begun at those of the map (polish). A map gives
-/// whole shapes, in which the vertices around a marker are moved by what its own, more accurate polynomials say.
+/// Equilibria of a robot by its solver; by its map alone; or by the solver begun at those of the map (polish). A map
+/// gives whole shapes, in which the vertices around a marker are moved by what its own, more accurate polynomials say.
 ///
 /// model, map  must outlive the object, and belong together (runs::check_robot); map may be null: there is none
 /// throws      InvalidInput on a map without shape

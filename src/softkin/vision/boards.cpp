@@ -16,10 +16,10 @@ namespace softkin::vision {
 
 namespace {
 
-constexpr double step = 0.5;           // along a profile [px]
-constexpr double least_contrast = 25;  // of 255
-constexpr double far_off = 0.5;        // of a line: on something else [px]
-constexpr double end_share = 0.12;     // of an edge: left out at both ends, where blur rounds the corner
+constexpr double step = 0.5;                 // along a profile [px]
+constexpr double least_board_contrast = 25;  // of 255
+constexpr double far_off = 0.5;              // of a line: on something else [px]
+constexpr double end_share = 0.12;           // of an edge: left out at both ends, where blur rounds the corner
 
 using Line = Eigen::Hyperplane<double, 2>;
 
@@ -73,7 +73,7 @@ std::optional<Line> edge_line(const GrayImage& gray, const Vec2& from, const Vec
   // are hardly wider than the blur
   const Eigen::ArrayXd mean = profiles.rowwise().mean();
   const double dark = mean.head((columns + 1) / 2).minCoeff(), light = mean.tail(columns / 2).maxCoeff();
-  if (!(light - dark > least_contrast)) return std::nullopt;
+  if (!(light - dark > least_board_contrast)) return std::nullopt;
   std::vector<Vec2> points;
   for (int i = 0; i < rows; ++i)
     if (const auto s = passage(profiles.col(i), reach, (dark + light) / 2)) {

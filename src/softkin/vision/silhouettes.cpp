@@ -120,8 +120,8 @@ Silhouette silhouette_of(const Blob& blob, const RgbImage& picture, const PlaneV
   silhouette.length = length_of(places);
   silhouette.area = moments_of(places).area;
   silhouette.cut = blob.touches_frame(picture, frame_margin);
-  const std::size_t step = (places.size() + most_outline - 1) / most_outline;
-  for (std::size_t i = 0; i < places.size(); i += step) {
+  const std::size_t each = (places.size() + most_outline - 1) / most_outline;
+  for (std::size_t i = 0; i < places.size(); i += each) {
     const Vec2& at = border[i];
     const double nearest = std::min({at.x(), at.y(), picture.width - 1 - at.x(), picture.height - 1 - at.y()});
     if (nearest >= frame_margin) silhouette.points.push_back(places[i]);

@@ -53,9 +53,9 @@ class SetTable {
   std::map<std::string, std::size_t> by_name_;
 };
 
-class MeshBuilder {
+class AbaqusMeshBuilder {
  public:
-  explicit MeshBuilder(const AbaqusCards& cards) : cards_(cards) {}
+  explicit AbaqusMeshBuilder(const AbaqusCards& cards) : cards_(cards) {}
 
   Mesh build() {
     add_nodes();
@@ -309,7 +309,7 @@ class MeshBuilder {
 
 Mesh read_abaqus(const std::filesystem::path& path) {
   const AbaqusCards cards = read_abaqus_cards(path);
-  return MeshBuilder(cards).build();
+  return AbaqusMeshBuilder(cards).build();
 }
 
 }  // namespace softkin

@@ -26,8 +26,8 @@ constexpr std::size_t kHeaderBytes = 84;  // 80 of text, the number of facets
 constexpr std::size_t kFacetBytes = 50;   // normal, three vertices, two bytes of attribute
 constexpr bool kSwap = std::endian::native == std::endian::big;
 
-using Coordinates = std::array<double, 3>;
-using Corners = std::array<Coordinates, 3>;
+using Corner = std::array<double, 3>;
+using Corners = std::array<Corner, 3>;
 
 bool is_token(std::string_view text, std::string_view word) {
   return std::equal(text.begin(), text.end(), word.begin(), word.end(),
@@ -47,7 +47,7 @@ class Welder {
  public:
   void add(const Corners& corners) {
     Triangle triangle;
-    std::transform(corners.begin(), corners.end(), triangle.begin(), [&](const Coordinates& c) { return vertex(c); });
+    std::transform(corners.begin(), corners.end(), triangle.begin(), [&](const Corner& c) { return vertex(c); });
     triangles_.push_back(triangle);
   }
 
@@ -60,21 +60,21 @@ class Welder {
 
  private:
   struct Hash {
-    std::size_t operator()(const Coordinates& point) const {
+    std::size_t operator()(const Corner& point) const {
       std::size_t hash = 0;
       for (const double x : point) hash = hash * 0x9E3779B97F4A7C15u + std::hash<double>{}(x);
       return hash;
     }
   };
 
-  Index vertex(Coordinates point) {
+  Index vertex(Corner point) {
     for (double& x : point) x += 0.0;  // -0 becomes 0
     const auto [found, is_new] = known_.try_emplace(point, static_cast<Index>(known_.size()));
     if (is_new) coordinates_.insert(coordinates_.end(), point.begin(), point.end());
     return found->second;
   }
 
-  std::unordered_map<Coordinates, Index, Hash> known_;
+  std::unordered_map<Corner, Index, Hash> known_;
   std::vector<double> coordinates_;
   std::vector<Triangle> triangles_;
 };
@@ -115,7 +115,7 @@ TriangleSurface read_binary(Scanner& scanner) {
   for (std::size_t facet = 0; facet < facets; ++facet) {
     Corners corners;
     for (int i = 0; i < 3; ++i) coordinate("normal of a facet");
-    for (Coordinates& corner : corners)
+    for (Corner& corner : corners)
       for (double& x : corner) x = coordinate("coordinate");
     check_area(scanner, facet, corners);
     scanner.take(2, "a facet");
@@ -141,7 +141,7 @@ Corners read_ascii_facet(Scanner& scanner) {
   for (int i = 0; i < 3; ++i) scanner.real("normal of a facet");
   expect(scanner, "outer");
   expect(scanner, "loop");
-  for (Coordinates& corner : corners) {
+  for (Corner& corner : corners) {
     expect(scanner, "vertex");
     for (double& x : corner) x = scanner.real("coordinate");
   }

@@ -93,9 +93,9 @@ bool has_few_values(const CellLabels& labels) {
 }
 
 /// Turns a grid into a mesh: places every cell in the mesh's arrays, then collects the regions.
-class MeshBuilder {
+class GridMeshBuilder {
  public:
-  explicit MeshBuilder(const CellGrid& grid) : grid_(grid), place_(grid.types.size(), -1) {}
+  explicit GridMeshBuilder(const CellGrid& grid) : grid_(grid), place_(grid.types.size(), -1) {}
 
   Mesh build(const Origin& origin) {
     select_labels();
@@ -283,7 +283,7 @@ std::string cell_refusal(std::size_t cell, std::int64_t type, std::size_t vertic
 }
 
 Mesh mesh_of(const CellGrid& grid, const Origin& origin) {
-  return MeshBuilder(grid).build(origin);
+  return GridMeshBuilder(grid).build(origin);
 }
 
 }  // namespace softkin

@@ -13,7 +13,7 @@ namespace {
 // deflate cannot shrink data by more than this
 constexpr std::uint64_t kMostCompression = 1032;
 
-bool is_blank(char c) {
+bool is_xml_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\n';
 }
 
@@ -102,7 +102,7 @@ class VtuBytes {
   }
 
   void skip_blanks() {
-    while (cursor_ < place_.end && is_blank(content_[cursor_])) ++cursor_;
+    while (cursor_ < place_.end && is_xml_blank(content_[cursor_])) ++cursor_;
   }
 
   std::string_view content_;

@@ -125,7 +125,7 @@ double line_width(std::size_t characters, double cell) {
   return characters == 0 ? 0 : (double(characters) * glyph_advance - 1) * cell;
 }
 
-struct Cell {
+struct FontCell {
   int column, row;
 };
 
@@ -136,13 +136,13 @@ void for_each_stroke(char character, const Draw& draw) {
   for (int row = 0; row < glyph_rows; ++row) {
     for (int column = 0; column < glyph_columns; ++column) {
       if (!inked(column, row)) continue;
-      const Cell cell{column, row};
+      const FontCell cell{column, row};
       draw(cell, cell);
       const bool right = inked(column + 1, row), below = inked(column, row + 1), left = inked(column - 1, row);
-      if (right) draw(cell, Cell{column + 1, row});
-      if (below) draw(cell, Cell{column, row + 1});
-      if (!right && !below && inked(column + 1, row + 1)) draw(cell, Cell{column + 1, row + 1});
-      if (!left && !below && inked(column - 1, row + 1)) draw(cell, Cell{column - 1, row + 1});
+      if (right) draw(cell, FontCell{column + 1, row});
+      if (below) draw(cell, FontCell{column, row + 1});
+      if (!right && !below && inked(column + 1, row + 1)) draw(cell, FontCell{column + 1, row + 1});
+      if (!left && !below && inked(column - 1, row + 1)) draw(cell, FontCell{column - 1, row + 1});
     }
   }
 }
@@ -220,12 +220,14 @@ void Canvas::text(const Place& at, const std::string& text, double cell, const R
   const double start = anchor == Anchor::start ? 0 : anchor == Anchor::middle ? -width / 2 : -width;
   const Place across = upward ? Place(0, -1) : Place(1, 0), down = upward ? Place(1, 0) : Place(0, 1);
   for (std::size_t i = 0; i < characters.size(); ++i) {
-    const auto place = [&](const Cell& c) -> Place {
+    const auto place = [&](const FontCell& c) -> Place {
       return at + (start + (double(i) * glyph_advance + c.column + 0.5) * cell) * across +
              (c.row + 0.5 - capital_rows / 2) * cell * down;
     };
     std::vector<Stroke> glyph;
-    for_each_stroke(characters[i], [&](const Cell& a, const Cell& b) { glyph.push_back({place(a), place(b)}); });
+    for_each_stroke(characters[i], [&](const FontCell& a, const FontCell& b) {
+      glyph.push_back({place(a), place(b)});
+    });
     strokes(glyph, line * stroke_cells * cell, color);
   }
 }

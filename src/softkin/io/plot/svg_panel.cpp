@@ -10,15 +10,16 @@ namespace softkin {
 namespace {
 
 constexpr double text_size = 12, title_size = 13, tick_size = 11;  // [pixel]
-constexpr double title_height = 20, legend_line = 17, label_height = 18, tick_length = 4;
+constexpr double title_room = 20, legend_line = 17, label_height = 18, tick_mark = 4;
 constexpr double sample_length = 30, sample_gap = 6, entry_gap = 16;  // of the legend
-constexpr double tick_gap = 14;                                       // between the labels of ticks
+constexpr double label_room = 14;                                     // between the labels of ticks
 constexpr double least_equal_height = 110;
 
 // colours of one lightness would be one grey: these differ in lightness, the dashes and marks in form
 constexpr std::array<const char*, 6> colors{"#0b5394", "#c2410c", "#15803d", "#7e22ce", "#000000", "#0891b2"};
 constexpr std::array<const char*, 6> dashes{"", "7 3", "2 2.5", "9 3 2 3", "13 4", "5 2 1.5 2 1.5 2"};
-constexpr const char *ink = "#000000", *grid = "#e2e2e2", *paper = "#ffffff", *pale = "#b4b4b4";
+constexpr const char *frame_color = "#000000", *grid_color = "#e2e2e2", *paper_color = "#ffffff",
+                     *pale_color = "#b4b4b4";
 
 struct Extent {
   double low = std::numeric_limits<double>::infinity(), high = -low;
@@ -78,9 +79,9 @@ void SvgPanel::Heights::cover(const Heights& other) {
 }
 
 SvgPanel::SvgPanel(const PlotPanel& panel, double width, double frame_height) : panel_(panel), width_(width) {
-  heights_.title = panel.title.empty() ? 0 : title_height;
+  heights_.title = panel.title.empty() ? 0 : title_room;
   heights_.frame = frame_height;
-  heights_.below = tick_length + 2 + tick_size + (panel.x.label.empty() ? 0 : label_height);
+  heights_.below = tick_mark + 2 + tick_size + (panel.x.label.empty() ? 0 : label_height);
   arrange_axes();
   if (panel.equal) {
     const double wanted = frame_width() * (y_range_.high - y_range_.low) / (x_range_.high - x_range_.low);
@@ -124,7 +125,7 @@ void SvgPanel::equalize() {
 
 void SvgPanel::find_y_ticks() {
   y_ticks_ = ticks_of(panel_.y, y_range_, heights_.frame / 32);
-  left_ = (panel_.y.label.empty() ? 0 : label_height) + widest(y_ticks_.labels) + tick_length + 4;
+  left_ = (panel_.y.label.empty() ? 0 : label_height) + widest(y_ticks_.labels) + tick_mark + 4;
 }
 
 void SvgPanel::find_x_ticks() {
@@ -132,7 +133,7 @@ void SvgPanel::find_x_ticks() {
   for (double most = frame_width() / 50; most >= 5; --most) {
     x_ticks_ = ticks_of(panel_.x, x_range_, most);
     const double room = frame_width() / static_cast<double>(x_ticks_.values.size());
-    if (widest(x_ticks_.labels) + tick_gap <= room) break;
+    if (widest(x_ticks_.labels) + label_room <= room) break;
   }
   if (x_ticks_.values.empty() || frame_width() / 50 < 5) x_ticks_ = ticks_of(panel_.x, x_range_, 5);
   const AxisScale scale{x_range_, 0, frame_width(), panel_.x.logarithmic};
@@ -149,7 +150,7 @@ int SvgPanel::style_of(std::size_t series) const {
 }
 
 SvgStroke SvgPanel::stroke_of(std::size_t series) const {
-  if (panel_.series[series].pale) return {pale, panel_.series[series].width, "", "none"};
+  if (panel_.series[series].pale) return {pale_color, panel_.series[series].width, "", "none"};
   const auto style = static_cast<std::size_t>(style_of(series));
   return {colors[style % colors.size()], panel_.series[series].width, dashes[style % dashes.size()], "none"};
 }
@@ -180,7 +181,7 @@ void SvgPanel::draw(SvgCanvas& canvas, SvgPoint corner, int number) const {
   const SvgPoint high{low.x + frame_width(), low.y + heights_.frame};
   draw_axes(canvas, low, high);
   draw_series(canvas, low, high, number);
-  canvas.rectangle(low, high, {ink, 1, "", "none"}, "frame");
+  canvas.rectangle(low, high, {frame_color, 1, "", "none"}, "frame");
   canvas.close();
 }
 
@@ -200,7 +201,7 @@ void SvgPanel::draw_legend(SvgCanvas& canvas, SvgPoint corner) const {
     const double x = corner.x + entry.x, y = corner.y + legend_line * entry.line + legend_line / 2;
     SvgStroke stroke = stroke_of(entry.series);
     if (series.line) canvas.line({x, y}, {x + sample_length, y}, stroke);
-    stroke = {stroke.color, 1.2, "", paper};
+    stroke = {stroke.color, 1.2, "", paper_color};
     if (series.marks)
       canvas.marks({{x + sample_length / 2, y}}, style_of(entry.series) % svg_mark_shapes, series.mark_radius, stroke);
     canvas.text({{x + sample_length + sample_gap, y + 0.35 * text_size}, entry.text, text_size});
@@ -210,15 +211,15 @@ void SvgPanel::draw_legend(SvgCanvas& canvas, SvgPoint corner) const {
 
 void SvgPanel::draw_axes(SvgCanvas& canvas, SvgPoint low, SvgPoint high) const {
   const AxisScale x{x_range_, low.x, high.x, panel_.x.logarithmic}, y{y_range_, high.y, low.y, panel_.y.logarithmic};
-  const SvgStroke faint{grid, 1, "", "none"}, black{ink, 1, "", "none"};
+  const SvgStroke faint{grid_color, 1, "", "none"}, black{frame_color, 1, "", "none"};
   canvas.open("x-axis");
   for (std::size_t i = 0; i < x_ticks_.values.size(); ++i) {
     const double at = x.at(x_ticks_.values[i]);
     canvas.line({at, low.y}, {at, high.y}, faint);
-    canvas.line({at, high.y}, {at, high.y + tick_length}, black);
-    canvas.text({{at, high.y + tick_length + 2 + 0.85 * tick_size}, x_ticks_.labels[i], tick_size, SvgAnchor::middle});
+    canvas.line({at, high.y}, {at, high.y + tick_mark}, black);
+    canvas.text({{at, high.y + tick_mark + 2 + 0.85 * tick_size}, x_ticks_.labels[i], tick_size, SvgAnchor::middle});
   }
-  const double below = high.y + tick_length + 2 + tick_size;
+  const double below = high.y + tick_mark + 2 + tick_size;
   if (!panel_.x.label.empty())
     canvas.text({{(low.x + high.x) / 2, below + text_size + 2},
                  svg_fitted(panel_.x.label, text_size, frame_width()),
@@ -229,8 +230,8 @@ void SvgPanel::draw_axes(SvgCanvas& canvas, SvgPoint low, SvgPoint high) const {
   for (std::size_t i = 0; i < y_ticks_.values.size(); ++i) {
     const double at = y.at(y_ticks_.values[i]);
     canvas.line({low.x, at}, {high.x, at}, faint);
-    canvas.line({low.x - tick_length, at}, {low.x, at}, black);
-    canvas.text({{low.x - tick_length - 3, at + 0.35 * tick_size}, y_ticks_.labels[i], tick_size, SvgAnchor::end});
+    canvas.line({low.x - tick_mark, at}, {low.x, at}, black);
+    canvas.text({{low.x - tick_mark - 3, at + 0.35 * tick_size}, y_ticks_.labels[i], tick_size, SvgAnchor::end});
   }
   if (!panel_.y.label.empty())
     canvas.text({{low.x - left_ + text_size, (low.y + high.y) / 2},
@@ -256,7 +257,7 @@ void SvgPanel::draw_series(SvgCanvas& canvas, SvgPoint low, SvgPoint high, int n
       canvas.segments(points, stroke);
     else if (series.line && points.size() > 1)
       canvas.polyline(thinned_line(points), stroke);
-    stroke = {stroke.color, 1.2, "", paper};
+    stroke = {stroke.color, 1.2, "", paper_color};
     const bool alone = !series.line || points.size() == 1;
     if (!points.empty() && (series.marks || alone))
       canvas.marks(alone ? apart_on_grid(points) : apart_along(points, 4 * series.mark_radius),

@@ -9,8 +9,8 @@ namespace softkin {
 
 namespace {
 
-constexpr double margin = 14, gap = 18, heading_size = 15, heading_height = 26;  // [pixel]
-constexpr double largest_extent = 1e300;                                         // beyond it extents overflow
+constexpr double plot_margin = 14, gap = 18, heading_size = 15, heading_height = 26;  // [pixel]
+constexpr double largest_extent = 1e300;                                              // beyond it extents overflow
 
 [[noreturn]] void refuse(const std::string& where, const std::string& why) {
   throw InvalidInput("plot: " + where + ": " + why);
@@ -62,21 +62,21 @@ void check_plot(const Plot& plot) {
   std::size_t number = 0;
   for (const auto& row : plot.rows) {
     if (row.empty()) refuse("rows", "a row has no panel");
-    if ((plot.width - 2 * margin) / static_cast<double>(row.size()) < 180)
+    if ((plot.width - 2 * plot_margin) / static_cast<double>(row.size()) < 180)
       refuse("rows", std::to_string(row.size()) + " panels side by side are too many for the width");
     for (const PlotPanel& panel : row) check_panel(panel, name_of(panel, number++));
   }
 }
 
-struct Row {
+struct PanelRow {
   std::vector<SvgPanel> panels;
   double height = 0;
 };
 
-Row row_of(const Plot& plot, const std::vector<PlotPanel>& panels) {
+PanelRow row_of(const Plot& plot, const std::vector<PlotPanel>& panels) {
   const auto count = static_cast<double>(panels.size());
-  const double width = (plot.width - 2 * margin - gap * (count - 1)) / count;
-  Row row;
+  const double width = (plot.width - 2 * plot_margin - gap * (count - 1)) / count;
+  PanelRow row;
   SvgPanel::Heights heights;
   for (const PlotPanel& panel : panels) {
     row.panels.emplace_back(panel, width, plot.panel_height);
@@ -91,25 +91,25 @@ Row row_of(const Plot& plot, const std::vector<PlotPanel>& panels) {
 
 std::string svg_text(const Plot& plot) {
   check_plot(plot);
-  std::vector<Row> rows;
-  double height = margin + (plot.title.empty() ? 0 : heading_height);
+  std::vector<PanelRow> rows;
+  double height = plot_margin + (plot.title.empty() ? 0 : heading_height);
   for (const auto& panels : plot.rows) {
     rows.push_back(row_of(plot, panels));
     height += rows.back().height + gap;
   }
-  SvgCanvas canvas(plot.width, height - gap + margin, plot.title);
-  double y = margin;
+  SvgCanvas canvas(plot.width, height - gap + plot_margin, plot.title);
+  double y = plot_margin;
   if (!plot.title.empty()) {
     canvas.text({{plot.width / 2, y + heading_size},
-                 svg_fitted(plot.title, heading_size * svg_bold, plot.width - 2 * margin),
+                 svg_fitted(plot.title, heading_size * svg_bold, plot.width - 2 * plot_margin),
                  heading_size,
                  SvgAnchor::middle,
                  true});
     y += heading_height;
   }
   int number = 0;
-  for (Row& row : rows) {
-    double x = margin;
+  for (PanelRow& row : rows) {
+    double x = plot_margin;
     for (SvgPanel& panel : row.panels) {
       panel.draw(canvas, {x, y}, number++);
       x += panel.width() + gap;

@@ -26,7 +26,7 @@ ObstacleShape read_shape(const Context& context, const std::string& key, const N
 }
 
 /// "x", "y" and "z".
-std::array<bool, 3> read_axes(const Node& node) {
+std::array<bool, 3> read_motion_axes(const Node& node) {
   std::array<bool, 3> axes{false, false, false};
   for (const auto& item : list(node)) {
     bool& axis = axes[choice(*item, {"x", "y", "z"})];
@@ -49,7 +49,7 @@ std::vector<ObstacleSpec> read_obstacles(const Context& context, const Node& nod
     const Node::Entry& shape = map.one_of(shapes);
     spec.shape = read_shape(context, shape.key, *shape.value);
     if (const Node* friction = map.find("friction")) spec.friction = not_negative(*friction);
-    if (const Node* motion = map.find("motion")) spec.motion = read_axes(*motion);
+    if (const Node* motion = map.find("motion")) spec.motion = read_motion_axes(*motion);
     spec.origin = item->origin;
     obstacles.push_back(std::move(spec));
   }

@@ -18,9 +18,9 @@ Range read_field_range(const Node& node) {
 }
 
 /// Adds an actuator for a command of a source.
-class Commands {
+class MagneticCommands {
  public:
-  Commands(const Node& node, const std::string& name) : node_(node), name_(name) {}
+  MagneticCommands(const Node& node, const std::string& name) : node_(node), name_(name) {}
 
   void add(FieldCommand command, const std::string& suffix, const Range& range, double rest = 0) {
     ActuatorSpec& actuator = actuators_.emplace_back();
@@ -48,7 +48,7 @@ class Commands {
 
 constexpr const char* field_axes = "xyz";
 
-UniformField read_uniform(const Map& map, Commands& commands) {
+UniformField read_uniform(const Map& map, MagneticCommands& commands) {
   const Range range = read_field_range(map.at("range"));
   UniformField field;
   if (const Node* direction = map.find("direction")) {
@@ -100,7 +100,7 @@ GridField read_grid(const Context& context, const Node& node) {
 /// Three entries, of which each is a number, or the [low, high] of what is commanded. middle: is a command at rest in
 /// the middle of its range, else at 0
 Vec3 read_entries(const Node& node, double unit, bool middle, FieldCommand first, const std::string& prefix,
-                  Commands& commands) {
+                  MagneticCommands& commands) {
   const auto& items = list_of(3, node);
   Vec3 values;
   for (int axis = 0; axis < 3; ++axis) {
@@ -118,7 +118,7 @@ Vec3 read_entries(const Node& node, double unit, bool middle, FieldCommand first
   return values;
 }
 
-DipoleField read_dipole(const Context& context, const Node& node, Commands& commands) {
+DipoleField read_dipole(const Context& context, const Node& node, MagneticCommands& commands) {
   const Map map(node, {"position", "moment"});
   DipoleField field;
   field.position = read_entries(map.at("position"), context.to_mm, true, FieldCommand::position_x, "_", commands);
@@ -145,7 +145,7 @@ std::vector<ActuatorSpec> read_field(const Context& context, const Map& map, con
         throw InvalidInput(entry->origin, "key '" + key + "' excludes '" + kind->key + "': a field has one source");
       if (!kind) kind = entry;
     }
-  Commands commands(map.node(), name);
+  MagneticCommands commands(map.node(), name);
   FieldSource source{name, UniformField{}};
   if (kind && kind->key == "dipole") {
     if (const Node::Entry* range = map.entry("range"))

@@ -34,7 +34,7 @@ Formulation formulation_of(const Context& context, const Map& map, const std::ve
   return elastic ? Formulation::physical : Formulation::target_shape;
 }
 
-std::array<bool, 3> read_axes(const Node& node) {
+std::array<bool, 3> read_held_axes(const Node& node) {
   std::array<bool, 3> axes{};
   for (const char c : text(node)) {
     const std::size_t axis = std::string("xyz").find(c);
@@ -60,7 +60,7 @@ FixedSpec read_fixed(const Context& context, const Node& node) {
   known.insert(known.end(), {"axes", "displacement", "rotation"});
   const Map map(node, known);
   FixedSpec fixed{read_place(context, map)};
-  if (const Node* axes = map.find("axes")) fixed.axes = read_axes(*axes);
+  if (const Node* axes = map.find("axes")) fixed.axes = read_held_axes(*axes);
   if (const Node* displacement = map.find("displacement")) fixed.displacement = read_position(context, *displacement);
   if (const Node* rotation = map.find("rotation")) fixed.rotation = read_rotation(context, *rotation);
   return fixed;

@@ -14,7 +14,7 @@ namespace softkin {
 
 namespace {
 
-std::vector<std::string_view> split(std::string_view line) {
+std::vector<std::string_view> cells_of(std::string_view line) {
   std::vector<std::string_view> cells;
   for (;;) {
     const std::size_t comma = line.find(',');
@@ -51,7 +51,7 @@ std::vector<std::string> read_header(const Scanner& scanner, std::string_view li
   if (line.find(';') != std::string_view::npos)
     scanner.fail("the header " + excerpt(line) +
                  " has semicolons: separate the cells by commas, and write numbers with a decimal point");
-  const std::vector<std::string_view> cells = split(line);
+  const std::vector<std::string_view> cells = cells_of(line);
   if (std::all_of(cells.begin(), cells.end(), is_number))
     scanner.fail("the header is missing: " + excerpt(line) + " holds numbers where columns are named");
   std::vector<std::string> columns;
@@ -66,7 +66,7 @@ std::vector<std::string> read_header(const Scanner& scanner, std::string_view li
 
 std::vector<double> read_row(const Scanner& scanner, std::string_view line, const std::vector<std::string>& columns,
                              bool gaps) {
-  const std::vector<std::string_view> cells = split(line);
+  const std::vector<std::string_view> cells = cells_of(line);
   if (cells.size() != columns.size())
     scanner.fail("the row has " + std::to_string(cells.size()) + " cells, the header " +
                  std::to_string(columns.size()) + " columns" +
