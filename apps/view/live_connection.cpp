@@ -8,7 +8,6 @@ namespace {
 
 using Response = http::response<http::span_body<const char>>;
 
-constexpr double linger_s = 2;           // for the other side to read that it goes
 constexpr int send_buffer = 256 * 1024;  // [bytes] what waits here is not the newest
 
 Clock::duration duration(double seconds) {

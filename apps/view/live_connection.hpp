@@ -16,12 +16,7 @@ namespace http = beast::http;
 namespace websocket = beast::websocket;
 
 using net::ip::tcp;
-using Clock = std::chrono::steady_clock;
 using Bytes = std::shared_ptr<const std::string>;
-
-[[nodiscard]] inline double seconds_between(Clock::time_point begin, Clock::time_point end) {
-  return std::chrono::duration<double>(end - begin).count();
-}
 
 /// Counts what a socket writes, and lets it read no faster than bytes_per_second.
 class Pace {

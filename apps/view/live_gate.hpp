@@ -6,6 +6,15 @@
 
 namespace softkin::view {
 
+using Clock = std::chrono::steady_clock;
+
+[[nodiscard]] inline double seconds_between(Clock::time_point begin, Clock::time_point end) {
+  return std::chrono::duration<double>(end - begin).count();
+}
+
+/// What a connection that is ended stays open for, so that the other side reads why [s].
+inline constexpr double linger_s = 2;
+
 /// What a request for the server says of itself. count: of the header fields of that name.
 struct RequestHead {
   std::string_view method, target, host, origin;
@@ -22,7 +31,7 @@ enum class Entry { page, live, forbidden, not_found, not_allowed };
 /// At most so many a second over time, and so many at once.
 class Allowance {
  public:
-  using Time = std::chrono::steady_clock::time_point;
+  using Time = Clock::time_point;
 
   Allowance(double per_second, double at_once) : rate_(per_second), most_(at_once), left_(at_once) {}
 

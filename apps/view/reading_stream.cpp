@@ -19,17 +19,11 @@ namespace net = boost::asio;
 namespace {
 
 using net::ip::tcp;
-using Clock = std::chrono::steady_clock;
 using ErrorCode = boost::system::error_code;
 
 constexpr auto look_every = std::chrono::milliseconds(250);
-constexpr double stream_linger_s = 2;                           // for the other side to read why it ends
 constexpr double longest_answer_s = 600;                        // to who has said all
 constexpr std::uint64_t first_writer = std::uint64_t{1} << 63;  // askers below it are pages
-
-double seconds_until(Clock::time_point begin, Clock::time_point end) {
-  return std::chrono::duration<double>(end - begin).count();
-}
 
 class Writer;
 
@@ -84,10 +78,10 @@ class Writer : public std::enable_shared_from_this<Writer> {
   /// Called now and then: ends what does not come on.
   void look(Clock::time_point now) {
     const StreamLimits& limits = host_.limits();
-    if (ending_ && seconds_until(since_, now) > stream_linger_s) return drop();
-    if (writing_ && seconds_until(since_, now) > limits.stalled_s) return drop();
-    if (has_said_all_ && seconds_until(since_, now) > longest_answer_s) return drop();
-    if (!ending_ && !let_in_ && seconds_until(opened_, now) > limits.head_s) refuse("no token came", true);
+    if (ending_ && seconds_between(since_, now) > linger_s) return drop();
+    if (writing_ && seconds_between(since_, now) > limits.stalled_s) return drop();
+    if (has_said_all_ && seconds_between(since_, now) > longest_answer_s) return drop();
+    if (!ending_ && !let_in_ && seconds_between(opened_, now) > limits.head_s) refuse("no token came", true);
   }
 
  private:
