@@ -44,7 +44,7 @@ struct Options {
 std::vector<PoseColumn> columns_of(const Model& model, bool volume_only) {
   if (volume_only) return {{"air_volume_mm3", -1, -1, 0, Reading::volume}};
   std::vector<PoseColumn> columns;
-  for (Index m = 0; m < static_cast<Index>(model.markers.size()); ++m)
+  for (Index m = 0; m < std::ssize(model.markers); ++m)
     for (int axis = 0; axis < 3; ++axis)
       columns.push_back({model.markers[m].name + "_" + "xyz"[axis] + "_mm", m, axis});
   return columns;
@@ -162,7 +162,7 @@ struct Errors {
 
   void add_shape(const Truth& truth, const Estimate& told) {
     double worst = 0, deviation = 0, held = 0;
-    const auto count = static_cast<Index>(truth.positions.rows());
+    const Index count = truth.positions.rows();
     for (Index v = 0; v < count; ++v) {
       const Vec3 off = vertex_at(told.state.positions, v) - vertex_at(truth.positions, v);
       const Vec3 own = told.vertex_deviation(v);
@@ -185,7 +185,7 @@ struct Errors {
     const Eigen::MatrixXd& covariance = told.near_covariance;
     const SymmetricEigen eigen = symmetric_eigen(covariance);
     Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(covariance.rows());
-    for (Index k = 0; k < static_cast<Index>(unknowns.size()); ++k)
+    for (Index k = 0; k < std::ssize(unknowns); ++k)
       unknowns += normal(random) * std::sqrt(std::max(0.0, eigen.values[k])) * eigen.vectors.col(k);
     Points moved = Points::Zero(told.moves.front().rows(), 3);
     for (std::size_t c = 0; c < told.moves.size(); ++c) moved += unknowns[c] * told.moves[c];
@@ -223,7 +223,7 @@ EstimatorOptions estimator_options(const Options& options) {
   EstimatorOptions own;
   own.statics = Draws::statics(options);
   own.fade_s = options.fade_s;
-  own.candidates = static_cast<std::size_t>(options.places);
+  own.candidates = options.places;
   own.starts = options.starts;
   return own;
 }
@@ -232,8 +232,7 @@ void run_draws(const Model& model, const Options& options) {
   const std::vector<PoseColumn> columns = columns_of(model, options.volume_only);
   const double deviation = options.volume_only ? 5 : options.noise_mm;  // [mm^3] or [mm]
   Draws draws(model, columns, options);
-  Estimator estimator(model, {{"touch", true}}, columns,
-                      Eigen::VectorXd::Constant(static_cast<Index>(columns.size()), deviation),
+  Estimator estimator(model, {{"touch", true}}, columns, Eigen::VectorXd::Constant(columns.size(), deviation),
                       estimator_options(options));
   Errors errors;
   for (int d = 0; d < options.draws; ++d) {
@@ -269,8 +268,7 @@ void tell_each(int draw, const Truth& truth, const std::vector<std::size_t>& wro
 void run_swaps(const Model& model, const Options& options) {
   const std::vector<PoseColumn> columns = columns_of(model, false);
   Draws draws(model, columns, options);
-  Estimator estimator(model, {{"touch", true}}, columns,
-                      Eigen::VectorXd::Constant(static_cast<Index>(columns.size()), options.noise_mm),
+  Estimator estimator(model, {{"touch", true}}, columns, Eigen::VectorXd::Constant(columns.size(), options.noise_mm),
                       estimator_options(options));
   for (const bool swap : {true, false}) {
     int named = 0, exact = 0;
@@ -281,13 +279,13 @@ void run_swaps(const Model& model, const Options& options) {
       const auto a = static_cast<std::size_t>(draws.random()() % 4), b = (a + 1 + draws.random()() % 3) % 4;
       std::vector<std::size_t> wrong{a};
       if (swap) {
-        const Vec3 first = values.segment<3>(3 * static_cast<Index>(a));
-        values.segment<3>(3 * static_cast<Index>(a)) = values.segment<3>(3 * static_cast<Index>(b)).eval();
-        values.segment<3>(3 * static_cast<Index>(b)) = first;
+        const Vec3 first = values.segment<3>(3 * a);
+        values.segment<3>(3 * a) = values.segment<3>(3 * b).eval();
+        values.segment<3>(3 * b) = first;
         wrong = {std::min(a, b), std::max(a, b)};
       } else {
         Vec3 off(1 - 2.0 * (draws.random()() % 2), 0.3, 0.5);
-        values.segment<3>(3 * static_cast<Index>(a)) += 30 * off.normalized();
+        values.segment<3>(3 * a) += 30 * off.normalized();
       }
       estimator.forget();
       const Estimate& told = estimator.update(truth.commands, values);
@@ -322,8 +320,7 @@ void run_updates(const Model& model, const Options& options) {
   const std::vector<PoseColumn> columns = columns_of(model, false);
   Draws draws(model, columns, options);
   const estimate::Problem problem(model, {{"touch", true}}, columns, Draws::statics(options));
-  Estimator estimator(model, {{"touch", true}}, columns,
-                      Eigen::VectorXd::Constant(static_cast<Index>(columns.size()), options.noise_mm),
+  Estimator estimator(model, {{"touch", true}}, columns, Eigen::VectorXd::Constant(columns.size(), options.noise_mm),
                       estimator_options(options));
   std::vector<double> seconds, processor, equilibria, force_N, place_mm;
   estimate::Guess guess;

@@ -34,7 +34,7 @@ RobotSpec finger() {
 std::vector<PoseColumn> all_columns(const Model& model, Eigen::VectorXd& deviations) {
   std::vector<PoseColumn> columns;
   std::vector<double> of;
-  for (Index m = 0; m < static_cast<Index>(model.markers.size()); ++m)
+  for (Index m = 0; m < std::ssize(model.markers); ++m)
     for (int axis = 0; axis < 3; ++axis) {
       columns.push_back({"marker", m, axis});
       of.push_back(0.2);
@@ -47,7 +47,7 @@ std::vector<PoseColumn> all_columns(const Model& model, Eigen::VectorXd& deviati
     columns.push_back({"load cell", -1, axis, -1, Reading::force, 0});
     of.push_back(0.02);
   }
-  deviations = Eigen::Map<const Eigen::VectorXd>(of.data(), static_cast<Index>(of.size()));
+  deviations = Eigen::Map<const Eigen::VectorXd>(of.data(), of.size());
   return columns;
 }
 
@@ -107,7 +107,7 @@ int main() {
     std::printf("| %s |", row.name);
     for (std::size_t set = 0; set < told.size(); ++set) {
       const Eigen::MatrixXd own = matrix(told[set], told[set]), prior = before(told[set], told[set]);
-      const auto size = static_cast<Index>(told[set].size());
+      const Index size = told[set].size();
       const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(size, size);
       const Eigen::MatrixXd covariance = CholeskyFactor(own).solve(identity),
                             first = CholeskyFactor(prior).solve(identity);

@@ -95,8 +95,8 @@ struct Cholmod {
 
 cholmod_sparse view_of(Eigen::SparseMatrix<double>& matrix) {
   cholmod_sparse view{};
-  view.nrow = view.ncol = static_cast<std::size_t>(matrix.rows());
-  view.nzmax = static_cast<std::size_t>(matrix.nonZeros());
+  view.nrow = view.ncol = matrix.rows();
+  view.nzmax = matrix.nonZeros();
   view.p = matrix.outerIndexPtr();
   view.i = matrix.innerIndexPtr();
   view.x = matrix.valuePtr();
@@ -118,7 +118,7 @@ std::optional<FactorTimes> time_cholmod_supernodal(const Eigen::SparseMatrix<dou
   cholmod_sparse a = view_of(copy);
   Eigen::VectorXd b = Eigen::VectorXd::Ones(matrix.rows());
   cholmod_dense right{};
-  right.nrow = right.nzmax = right.d = static_cast<std::size_t>(b.size());
+  right.nrow = right.nzmax = right.d = b.size();
   right.ncol = 1;
   right.x = b.data();
   right.xtype = CHOLMOD_REAL;

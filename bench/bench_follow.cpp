@@ -208,8 +208,7 @@ void compare(const RobotSpec& spec, Solver solver, const Options& options) {
               "[s]", "[ms]", "faster");
   for (const std::string& file : options.paths) {
     MarkerPath path = read_marker_path(file, model);
-    if (path.waypoints.size() > static_cast<std::size_t>(options.waypoints))
-      path.waypoints.resize(static_cast<std::size_t>(options.waypoints));
+    if (path.waypoints.size() > static_cast<std::size_t>(options.waypoints)) path.waypoints.resize(options.waypoints);
     const Actuation start = sample_near(model, statics, path, options);
     std::printf("  %s\n", std::filesystem::path(file).stem().c_str());
     Followed newton;

@@ -174,7 +174,7 @@ class Bench {
   /// The tip drawn along a closed curve inside the reach, in steps of so many mm.
   int drag() {
     State state = statics_.rest();
-    const Index m = static_cast<Index>(model_.actuators.size());
+    const Index m = model_.actuators.size();
     const int points = 48;
     std::vector<Vec3> curve;
     std::vector<State> states;
@@ -218,7 +218,7 @@ class Bench {
 
  private:
   Actuation random_actuation() {
-    Actuation actuation(static_cast<Index>(model_.actuators.size()));
+    Actuation actuation(model_.actuators.size());
     for (Index a = 0; a < actuation.size(); ++a) {
       const Actuator& actuator = model_.actuators[a];
       actuation[a] = std::uniform_real_distribution<double>(actuator.low, actuator.high)(engine_);

@@ -112,7 +112,7 @@ double full_grid(const MapData& data) {
       for (Index q = 0; q < polynomials.count(); ++q) {
         if (data.outputs[q].unit != "mm") continue;
         double sum = 0;
-        for (Index t = 0; t < static_cast<Index>(polynomials.terms().rows()); ++t)
+        for (Index t = 0; t < polynomials.terms().rows(); ++t)
           if (polynomials.terms()(t, j) >= degree) sum += std::abs(polynomials.coefficients()(t, q));
         beyond = std::max(beyond, sum);
       }

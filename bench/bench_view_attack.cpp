@@ -110,7 +110,7 @@ class Attack {
   }
 
   void watch(int count) {
-    std::vector<std::unique_ptr<LiveClient>> clients(static_cast<std::size_t>(count));
+    std::vector<std::unique_ptr<LiveClient>> clients(count);
     while (!ended_) {
       for (auto& client : clients) {
         if (!client && (client = connected<LiveClient>(0))) client->hello("");
@@ -147,7 +147,7 @@ class Attack {
   /// Without a pause to speak of, one after another.
   void attack(int count, unsigned seed) {
     std::mt19937 random(seed);
-    std::vector<std::unique_ptr<LiveClient>> clients(static_cast<std::size_t>(count));
+    std::vector<std::unique_ptr<LiveClient>> clients(count);
     while (!ended_) {
       for (auto& client : clients) {
         if (!client) client = connected<LiveClient>(0);

@@ -52,9 +52,8 @@ double distance(const Model& model, const WorkspaceSample& sample, const Equilib
   if (sample.status != Status::converged || cold.report.status != Status::converged) return 0;
   double farthest = 0;
   for (std::size_t p = 0; p < model.markers.size(); ++p)
-    farthest = std::max(farthest, (sample.markers.row(static_cast<Index>(p)).transpose() -
-                                   model.markers[p].point.at(cold.state.positions))
-                                      .norm());
+    farthest = std::max(farthest,
+                        (sample.markers.row(p).transpose() - model.markers[p].point.at(cold.state.positions)).norm());
   return farthest;
 }
 
@@ -78,7 +77,7 @@ int measure(const Options& options) {
   (void)statics.solve(plan.actuations.row(0), statics.rest(), alone);  // makes the work space
   Cost first, next, grouped, cold;
   double apart = 0;
-  const auto all = static_cast<Index>(plan.groups.size()), count = std::min(options.groups, all);
+  const Index all = plan.groups.size(), count = std::min(options.groups, all);
   for (Index g = 0; g < count; ++g) {
     GroupTask task{static_cast<Index>(static_cast<std::int64_t>(g) * all / count), {}};
     task.known.resize(plan.groups[task.group].size());

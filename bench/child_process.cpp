@@ -59,7 +59,7 @@ void write_all(int file, const std::vector<char>& bytes) {
     const ssize_t count = ::write(file, bytes.data() + done, bytes.size() - done);
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) ::_exit(3);
-    done += static_cast<std::size_t>(count);
+    done += count;
   }
 }
 

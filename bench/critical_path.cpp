@@ -22,7 +22,7 @@ CriticalPath::Part part_of(const linear::Front& front) {
 
 /// The longest of the cores' days, where each takes the next piece when it is free.
 double longest(const std::vector<double>& pieces, int cores) {
-  std::vector<double> busy(static_cast<std::size_t>(cores));
+  std::vector<double> busy(cores);
   for (const double work : pieces) *std::min_element(busy.begin(), busy.end()) += work;
   return *std::max_element(busy.begin(), busy.end());
 }

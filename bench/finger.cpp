@@ -33,7 +33,7 @@ struct Line {
     const int cells = std::max(least, static_cast<int>(std::lround(extent / cell)));
     const double begin = at.back();
     for (int c = 1; c <= cells; ++c) at.push_back(begin + extent * c / cells);
-    parts.insert(parts.end(), static_cast<std::size_t>(cells), part);
+    parts.insert(parts.end(), cells, part);
   }
   [[nodiscard]] int cells() const { return static_cast<int>(parts.size()); }
 };
@@ -41,9 +41,7 @@ struct Line {
 struct Grid {
   Line x, y, z;
 
-  [[nodiscard]] Index vertex(int i, int j, int k) const {
-    return static_cast<Index>(i + (x.cells() + 1) * (j + (y.cells() + 1) * k));
-  }
+  [[nodiscard]] Index vertex(int i, int j, int k) const { return i + (x.cells() + 1) * (j + (y.cells() + 1) * k); }
 };
 
 Grid grid_of(double cell) {
@@ -142,8 +140,7 @@ void add_surface(Mesh& mesh, const std::string& name, const std::vector<Triangle
   Region region;
   region.name = name;
   region.dimension = 2;
-  region.triangles =
-      numbers(static_cast<Index>(mesh.triangles.size()), static_cast<Index>(mesh.triangles.size() + triangles.size()));
+  region.triangles = numbers(mesh.triangles.size(), mesh.triangles.size() + triangles.size());
   mesh.triangles.insert(mesh.triangles.end(), triangles.begin(), triangles.end());
   mesh.regions.push_back(std::move(region));
 }
@@ -186,9 +183,8 @@ Vec3 middle_of_lower_edge(const Mesh& mesh, const std::vector<Index>& face) {
 constexpr double angle_tolerance = 0.05;  // [degrees]
 
 Points centred(const Points& positions, const std::vector<Index>& vertices) {
-  Points points(static_cast<Eigen::Index>(vertices.size()), 3);
-  for (std::size_t i = 0; i < vertices.size(); ++i)
-    points.row(static_cast<Eigen::Index>(i)) = positions.row(vertices[i]);
+  Points points(vertices.size(), 3);
+  for (std::size_t i = 0; i < vertices.size(); ++i) points.row(i) = positions.row(vertices[i]);
   const Eigen::RowVector3d mean = points.colwise().mean();
   return points.rowwise() - mean;
 }
@@ -282,7 +278,7 @@ Mesh bellows_finger(double cell_mm) {
   Mesh mesh;
   const auto split = [&](int i, int j, int k) { split_cell(grid, i, j, k, mesh.tetrahedra); };
   each_cell(grid, Fill::body, split);
-  const Index body = static_cast<Index>(mesh.tetrahedra.size());
+  const Index body = mesh.tetrahedra.size();
   each_cell(grid, Fill::chamber, split);
   const std::vector<Index> number = take_vertices(grid, mesh);
   Region region;
@@ -290,7 +286,7 @@ Mesh bellows_finger(double cell_mm) {
   region.tetrahedra = numbers(0, body);
   mesh.regions.push_back(region);
   region.name = "chamber";
-  region.tetrahedra = numbers(body, static_cast<Index>(mesh.tetrahedra.size()));
+  region.tetrahedra = numbers(body, mesh.tetrahedra.size());
   mesh.regions.push_back(region);
   add_surfaces(mesh, body);
   Region marker;

@@ -38,7 +38,7 @@ struct Search {
 /// The shape in a file.
 State shape_of(const Model& model, const std::string& file) {
   State shape = runs::read_state(file, model);
-  if (!shape.knows(static_cast<Index>(model.actuators.size())))
+  if (!shape.knows(model.actuators.size()))
     throw InvalidInput({file}, "the shape is of no equilibrium that is known: a search cannot begin there");
   check_actuation(model, shape.actuation);
   return shape;

@@ -86,7 +86,7 @@ class MapRun {
   }
 
   [[nodiscard]] int stopped() const {
-    const std::size_t found = static_cast<std::size_t>(told_.equilibria + told_.checks);
+    const std::size_t found = told_.equilibria + told_.checks;
     std::fprintf(stderr, "softkin: %s after %s; they are in %s: the same command with --resume goes on\n",
                  why_stopped().c_str(), counted(found, "equilibrium", "equilibria").c_str(),
                  runs::MapJournal::path_of(asked_.output).string().c_str());

@@ -162,7 +162,7 @@ class WorkspaceRun {
     if (!options_.json) print(line + "\n");
   }
 
-  [[nodiscard]] std::size_t samples() const { return static_cast<std::size_t>(asked_.plan.samples()); }
+  [[nodiscard]] std::size_t samples() const { return asked_.plan.samples(); }
   [[nodiscard]] std::string samples_text() const { return counted(samples(), "sample"); }
 
   void say_resumed() const {

@@ -24,7 +24,7 @@ EstimateSetup with_columns(EstimateSetup setup, const std::vector<PoseColumn>& a
     setup.columns.push_back(column);
     given.push_back(deviation);
   }
-  setup.deviations = Eigen::Map<const Eigen::VectorXd>(given.data(), static_cast<Index>(given.size()));
+  setup.deviations = Eigen::Map<const Eigen::VectorXd>(given.data(), given.size());
   return setup;
 }
 
@@ -82,12 +82,11 @@ void LiveEstimator::have(const Eigen::VectorXd& values) {
       deviations.push_back(setup_.deviations[c]);
     }
     estimator_ = Estimator(model_, setup_.unknowns, columns_,
-                           Eigen::Map<const Eigen::VectorXd>(deviations.data(), static_cast<Index>(deviations.size())),
-                           setup_.how);
+                           Eigen::Map<const Eigen::VectorXd>(deviations.data(), deviations.size()), setup_.how);
     last_s_.reset();
     last_ = {};
   }
-  values_.resize(static_cast<Index>(columns_.size()));
+  values_.resize(columns_.size());
   Index next = 0;
   for (std::size_t c = 0; c < setup_.columns.size(); ++c)
     if (has_[static_cast<std::size_t>(setup_.columns[c].kind)]) values_[next++] = values[c];
@@ -99,7 +98,7 @@ std::string LiveEstimator::text_for_page() const {
   for (std::size_t c = 0; c < setup_.columns.size(); ++c) {
     const PoseColumn& column = setup_.columns[c];
     const auto group = std::find_if(groups.begin(), groups.end(), [&](const ReadingGroup& g) {
-      return std::find(g.columns.begin(), g.columns.end(), static_cast<Index>(c)) != g.columns.end();
+      return std::find(g.columns.begin(), g.columns.end(), c) != g.columns.end();
     });
     columns.push_back({{"name", column.name},
                        {"group", group->name},

@@ -48,7 +48,7 @@ class Message {
   [[nodiscard]] Eigen::VectorXd numbers(const char* key, std::size_t size, const std::string& count) const {
     const Json& list = at(key);
     if (!list.is_array() || list.size() != size) refuse(std::string(key) + " must be a list of " + count);
-    Eigen::VectorXd numbers(static_cast<Index>(size));
+    Eigen::VectorXd numbers(size);
     for (std::size_t i = 0; i < size; ++i) {
       if (list[i].is_number()) numbers[i] = list[i].get<double>();
       if (!list[i].is_number() || !std::isfinite(numbers[i]))
@@ -62,7 +62,7 @@ class Message {
     const Json& list = at("values");
     if (!list.is_array() || list.size() != size)
       refuse("values must be a list of " + counted(size, "number") + " or null, one per column");
-    Eigen::VectorXd values = Eigen::VectorXd::Constant(static_cast<Index>(size), std::nan(""));
+    Eigen::VectorXd values = Eigen::VectorXd::Constant(size, std::nan(""));
     for (std::size_t i = 0; i < size; ++i) {
       if (list[i].is_null()) continue;
       if (!list[i].is_number() || !(std::abs(list[i].get<double>()) <= largest_reading))
@@ -117,7 +117,7 @@ ReadingsRequest readings_of(const Message& message, const Model& model, std::siz
 
 TargetRequest target_of(const Message& message, const Model& model) {
   TargetRequest request{message.id()};
-  request.marker = static_cast<Index>(message.place("marker", model.markers.size()));
+  request.marker = message.place("marker", model.markers.size());
   request.at = message.numbers("at", 3, "3 numbers");
   const double farthest = farthest_target_mm(model);
   if (request.at.cwiseAbs().maxCoeff() > farthest)

@@ -37,7 +37,7 @@ class LineReader {
  public:
   explicit LineReader(const LineColumns& columns) : columns_(columns), commanded_(columns.model.actuators.size()) {
     line_.commands = columns.model.rest_actuation();
-    line_.values = Eigen::VectorXd::Constant(static_cast<Index>(columns.readings.size()), std::nan(""));
+    line_.values = Eigen::VectorXd::Constant(columns.readings.size(), std::nan(""));
   }
 
   void take(const std::string& key, const Json& value) {
@@ -69,7 +69,7 @@ class LineReader {
   }
 
   void take_command(const std::string& key, Index actuator, const Json& value) {
-    const auto at = static_cast<std::size_t>(actuator);
+    const std::size_t at = actuator;
     const Actuator& of = columns_.model.actuators[at];
     if (std::find(columns_.told.begin(), columns_.told.end(), actuator) != columns_.told.end())
       throw Refusal(key + " is to be told: leave it out");

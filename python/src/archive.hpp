@@ -109,7 +109,7 @@ class Reader {
     std::uint64_t number = 0;
     get(number);
     require(number <= rest_.size() / bytes_each);
-    return static_cast<std::size_t>(number);
+    return number;
   }
 
   template <class T>
@@ -163,7 +163,7 @@ class Reader {
     };
     require(fits(rows, Rows) && fits(columns, Columns));
     require(columns == 0 || rows <= rest_.size() / sizeof(double) / columns);
-    matrix.resize(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
+    matrix.resize(rows, columns);
     raw(matrix.data(), static_cast<std::size_t>(matrix.size()) * sizeof(double));
   }
 

@@ -18,7 +18,7 @@ Index Robot::marker(const std::string& name) const {
   std::vector<std::string> names;
   for (const Marker& marker : model_.markers) names.push_back(marker.name);
   for (std::size_t i = 0; i < names.size(); ++i)
-    if (names[i] == name) return static_cast<Index>(i);
+    if (names[i] == name) return i;
   throw InvalidInput("no marker '" + name + "'" + (names.empty() ? "; the robot has none" : suggest_name(name, names)));
 }
 

@@ -87,7 +87,7 @@ void bind_mesh(nb::module_& module) {
           [](Mesh& mesh, const std::string& name, const CellsIn& triangles) {
             Region region{name, 2, {}, {}, {}, {}, {}};
             for (const Triangle& triangle : cells_of<3>(triangles)) {
-              region.triangles.push_back(static_cast<Index>(mesh.triangles.size()));
+              region.triangles.push_back(mesh.triangles.size());
               mesh.triangles.push_back(triangle);
             }
             mesh.regions.push_back(std::move(region));

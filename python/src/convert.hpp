@@ -30,11 +30,11 @@ using IndicesOut = Array<Index, nb::ndim<1>>;
 using CellsOut = Array<Index, nb::ndim<2>>;
 
 [[nodiscard]] inline Points points_of(const PointsIn& array) {
-  return Eigen::Map<const Points>(array.data(), static_cast<Eigen::Index>(array.shape(0)), 3);
+  return Eigen::Map<const Points>(array.data(), array.shape(0), 3);
 }
 
 [[nodiscard]] inline Eigen::VectorXd vector_of(const VectorIn& array) {
-  return Eigen::Map<const Eigen::VectorXd>(array.data(), static_cast<Eigen::Index>(array.shape(0)));
+  return Eigen::Map<const Eigen::VectorXd>(array.data(), array.shape(0));
 }
 
 [[nodiscard]] inline Vec3 vec3_of(const std::array<double, 3>& values) {
@@ -68,7 +68,7 @@ template <class T>
 }
 
 [[nodiscard]] inline VectorOut vector_out(const Eigen::VectorXd& vector) {
-  return list_of(vector.data(), static_cast<std::size_t>(vector.size()));
+  return list_of(vector.data(), vector.size());
 }
 
 template <std::size_t N>

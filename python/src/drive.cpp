@@ -118,11 +118,10 @@ Commands commands_of(const Robot& robot, const TableIn& rows, const std::optiona
   const std::size_t actuators = robot.model().actuators.size();
   Commands commands{"the commands", std::vector<bool>(actuators, true), std::vector<bool>(actuators, false), {}};
   const auto row_of = [actuators](const TableIn& table, std::size_t row) {
-    return Eigen::VectorXd(
-        Eigen::Map<const Eigen::VectorXd>(table.data() + row * actuators, static_cast<Eigen::Index>(actuators)));
+    return Eigen::VectorXd(Eigen::Map<const Eigen::VectorXd>(table.data() + row * actuators, actuators));
   };
   for (std::size_t i = 0; i < rows.shape(0); ++i) {
-    CommandRow row{row_of(rows, i), Eigen::VectorXd::Zero(static_cast<Eigen::Index>(actuators)), {}, i + 1};
+    CommandRow row{row_of(rows, i), Eigen::VectorXd::Zero(actuators), {}, i + 1};
     check_actuation(robot.model(), row.actuation);
     if (pressures) row.pressures_kpa = row_of(*pressures, i);
     for (std::size_t a = 0; a < actuators && i == 0 && pressures; ++a)

@@ -78,7 +78,7 @@ class RobotEstimator {
 
 TableOut matrix_out(const Eigen::MatrixXd& matrix) {
   const Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> rows = matrix;
-  return table_of<double>(rows.data(), static_cast<std::size_t>(rows.rows()), static_cast<std::size_t>(rows.cols()));
+  return table_of<double>(rows.data(), rows.rows(), rows.cols());
 }
 
 /// Of every vertex, along each axis [mm].

@@ -99,7 +99,7 @@ std::shared_ptr<GraspOut> unpickled_grasp(RobotPtr robot, const nb::bytes& bytes
   Reader reader({bytes.c_str(), bytes.size()});
   reader(out->options, out->body, out->grasp, out->pulls);
   reader.finish();
-  if (out->body < 0 || out->body >= static_cast<Index>(robot->model().bodies.size()))
+  if (out->body < 0 || out->body >= std::ssize(robot->model().bodies))
     throw InvalidInput("the pickle is of a grasp of another robot");
   out->robot = std::move(robot);
   return out;

@@ -56,7 +56,7 @@ struct Answer : std::enable_shared_from_this<Answer> {
       if ((force != nullptr) != of_forces) continue;
       errors.push_back(found.errors_mm[i] / (force != nullptr ? force->mm_per_N : 1));
     }
-    return Eigen::Map<Eigen::VectorXd>(errors.data(), static_cast<Index>(errors.size()));
+    return Eigen::Map<Eigen::VectorXd>(errors.data(), errors.size());
   }
 };
 

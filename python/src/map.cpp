@@ -120,7 +120,7 @@ class Batch {
     const auto work = [&] {
       Team team(std::min<int>(threads > 0 ? threads : static_cast<int>(std::thread::hardware_concurrency()), blocks));
       team.each(blocks, [&](Index number) {
-        if (watch.go_on()) solve_block(static_cast<std::size_t>(number));
+        if (watch.go_on()) solve_block(number);
       });
     };
     watch.watch(work, {});
@@ -182,7 +182,7 @@ TableOut shape_at(const Map& map, const VectorIn& commands) {
   const auto place = map.map.evaluate(commands.data(), values.data());
   if (!place) throw InvalidInput(refusal(map, commands));
   const Points points = map.map.shape(commands.data(), *place);
-  return table_of<double>(points.data(), static_cast<std::size_t>(points.rows()), 3);
+  return table_of<double>(points.data(), points.rows(), 3);
 }
 
 /// Commands, covariance of the unknowns by rows, outputs; chi-square, freedoms, misfit; converged.
@@ -211,7 +211,7 @@ std::vector<OutputOut> outputs_of(const Map& map) {
   std::vector<OutputOut> all;
   for (std::size_t q = 0; q < data.outputs.size(); ++q) {
     const MapOutput& output = data.outputs[q];
-    const auto at = static_cast<Index>(q);
+    const Index at = q;
     all.emplace_back(output.name, output.unit, output.accuracy, data.check.largest[at], data.check.mean[at]);
   }
   return all;

@@ -188,7 +188,7 @@ class WalkRun : public Runner<runs::WalkRecord> {
 
 Steps steps_of(const Robot& robot, const TableIn& rows, const std::optional<VectorIn>& times) {
   Steps steps;
-  const auto columns = static_cast<Eigen::Index>(rows.shape(1));
+  const Eigen::Index columns = rows.shape(1);
   for (std::size_t i = 0; i < rows.shape(0); ++i) {
     ActuationStep step;
     step.actuation = Eigen::Map<const Eigen::VectorXd>(rows.data() + i * rows.shape(1), columns);

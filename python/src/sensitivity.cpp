@@ -97,16 +97,13 @@ std::vector<NumberSlopes> sensitivity_of(const Shape& shape, const std::vector<s
     for (std::size_t p = 0; p < numbers.size(); ++p) {
       values.push_back(asked.all[p]->value);
       moves.emplace_back(found.positions[p]);
-      loads.emplace_back(found.multipliers.col(static_cast<Index>(p)));
+      loads.emplace_back(found.multipliers.col(p));
       Rows& rows = markers.emplace_back(static_cast<Eigen::Index>(shape.model().markers.size()), 3);
       for (Eigen::Index m = 0; m < rows.rows(); ++m)
-        rows.row(m) = marker_slope(shape.model(), asked.perturbed[p], static_cast<std::size_t>(m), state.positions,
-                                   found.positions[p]);
+        rows.row(m) = marker_slope(shape.model(), asked.perturbed[p], m, state.positions, found.positions[p]);
     }
   }
-  const auto table = [](const Rows& rows) {
-    return table_of<double>(rows.data(), static_cast<std::size_t>(rows.rows()), static_cast<std::size_t>(rows.cols()));
-  };
+  const auto table = [](const Rows& rows) { return table_of<double>(rows.data(), rows.rows(), rows.cols()); };
   std::vector<NumberSlopes> out;
   for (std::size_t p = 0; p < numbers.size(); ++p)
     out.emplace_back(values[p], table(moves[p]), table(markers[p]), vector_out(loads[p]));
@@ -135,14 +132,13 @@ VectorOut gradient_of(const Shape& shape, const std::vector<std::string>& number
     told.by_places += by_places(shape, markers);
     const Eigen::MatrixXd found =
         Perturbations(shape.robot()->statics(), asked.perturbed).gradients(state, {told}, shape.options());
-    if (found.cols() != static_cast<Eigen::Index>(numbers.size())) refuse_singular();
+    if (found.cols() != std::ssize(numbers)) refuse_singular();
     gradient = found.row(0).transpose();
     const Points still = Points::Zero(state.positions.rows(), 3);  // how markers move in the shape as it is
     for (std::size_t p = 0; p < numbers.size(); ++p)
       for (Eigen::Index m = 0; m < markers.rows(); ++m)
         if (!markers.row(m).isZero(0))
-          gradient[p] += markers.row(m) * marker_slope(shape.model(), asked.perturbed[p], static_cast<std::size_t>(m),
-                                                       state.positions, still);
+          gradient[p] += markers.row(m) * marker_slope(shape.model(), asked.perturbed[p], m, state.positions, still);
   }
   return vector_out(gradient);
 }

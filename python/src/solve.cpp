@@ -58,8 +58,7 @@ TableOut jacobian_of(const Shape& shape, const Session* session, const std::vect
       throw InvalidInput("the shape stands at a limit of existence or a branch, where it has no Jacobian");
     slopes = jacobian(shape.model(), shape.positions(), sensitivity, markers);
   }
-  return table_of<double>(slopes.data(), static_cast<std::size_t>(slopes.rows()),
-                          static_cast<std::size_t>(slopes.cols()));
+  return table_of<double>(slopes.data(), slopes.rows(), slopes.cols());
 }
 
 }  // namespace

@@ -26,8 +26,7 @@ namespace {
 /// Groups one after another; samples are kept in memory.
 class MemoryDesk : public GroupDesk {
  public:
-  MemoryDesk(const WorkspacePlan& plan, const Watch& watch)
-      : plan_(plan), watch_(watch), samples_(static_cast<std::size_t>(plan.samples())) {}
+  MemoryDesk(const WorkspacePlan& plan, const Watch& watch) : plan_(plan), watch_(watch), samples_(plan.samples()) {}
 
   std::optional<GroupTask> take() override {
     const std::lock_guard lock(mutex_);
@@ -159,7 +158,7 @@ HullOut hull_of(const Workspace& workspace, const std::string& marker) {
   const Hull& hull = *reach.hull;
   static constexpr const char* names[] = {"solid", "flat", "line", "point"};
   return {names[static_cast<int>(hull.shape)],
-          table_of<double>(hull.vertices.data(), static_cast<std::size_t>(hull.vertices.rows()), 3),
+          table_of<double>(hull.vertices.data(), hull.vertices.rows(), 3),
           cells_out(hull.triangles),
           hull.volume,
           hull.area,
@@ -173,7 +172,7 @@ std::string summary_of(const Workspace& workspace, const std::string& marker) {
                                             [&](const WorkspaceSample& s) { return s.status == status; }));
   };
   return runs::workspace_summary(model.name, workspace.head, runs::reach_of(model, workspace.samples, marker, true),
-                                 static_cast<Index>(workspace.samples.size()), count, workspace.seconds);
+                                 workspace.samples.size(), count, workspace.seconds);
 }
 
 }  // namespace

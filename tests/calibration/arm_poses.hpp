@@ -57,8 +57,8 @@ class Arm {
     std::mt19937 engine(seed);
     std::normal_distribution<double> normal(0, 1);
     std::uniform_real_distribution<double> share(0, 1);
-    for (Index pose = 0; pose < static_cast<Index>(poses.values.rows()); ++pose)
-      for (Index c = 0; c < static_cast<Index>(poses.values.cols()); c += 3) {
+    for (Index pose = 0; pose < poses.values.rows(); ++pose)
+      for (Index c = 0; c < poses.values.cols(); c += 3) {
         const Vec3 way(normal(engine), normal(engine), normal(engine));
         const bool off = share(engine) < wrong;
         for (Index axis = 0; axis < 3; ++axis)
@@ -71,7 +71,7 @@ class Arm {
   [[nodiscard]] static MeasuredPoses empty(const Model& model) {
     MeasuredPoses poses;
     poses.file = "poses.csv";
-    const auto markers = static_cast<Index>(model.markers.size());
+    const Index markers = model.markers.size();
     for (Index m = 0; m < markers; ++m)
       for (int axis = 0; axis < 3; ++axis) {
         const std::string name = model.markers[m].name;

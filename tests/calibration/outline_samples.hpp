@@ -37,7 +37,7 @@ inline void show_outlines(MeasuredPoses& poses, const NumberedRobot& truth, doub
                         frame.place.transpose();
     std::vector<Eigen::Vector2d> way = one_after_another(SeenOutline(surface, seen).lines(), 0.5);
     for (Eigen::Vector2d& point : way) point += noise * Eigen::Vector2d(normal(engine), normal(engine));
-    poses.pictures.push_back(static_cast<Index>(pose + 1));
+    poses.pictures.push_back(pose + 1);
     poses.outlines.points.push_back(std::move(way));
   }
 }

@@ -199,7 +199,7 @@ TEST(NonnegativeLeastSquares, IsTheBestOfAllSetsOfColumns) {
       std::vector<Eigen::Index> chosen;
       for (int c = 0; c < 6; ++c)
         if (c < free || (set >> c & 1) != 0) chosen.push_back(c);
-      if (chosen.empty() || static_cast<Eigen::Index>(chosen.size()) > a.rows()) continue;
+      if (chosen.empty() || std::ssize(chosen) > a.rows()) continue;
       const Eigen::MatrixXd some = a(Eigen::all, chosen);
       const Eigen::VectorXd x = (some.transpose() * some).inverse() * some.transpose() * b;
       bool allowed = true;

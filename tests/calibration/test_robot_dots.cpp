@@ -23,7 +23,7 @@ double least_by_trying(const Eigen::MatrixXd& costs, double alone, Eigen::Index 
   if (row == costs.rows()) return 0;
   double least = alone + least_by_trying(costs, alone, row + 1, taken);
   for (Eigen::Index c = 0; c < costs.cols(); ++c) {
-    const auto column = static_cast<std::size_t>(c);
+    const std::size_t column = c;
     if (taken[column] || !std::isfinite(costs(row, c))) continue;
     taken[column] = true;
     least = std::min(least, costs(row, c) + least_by_trying(costs, alone, row + 1, taken));
@@ -38,22 +38,22 @@ MeasuredPoses with_dots(const MeasuredPoses& poses, unsigned seed, const std::ve
   std::mt19937 engine(seed);
   std::vector<Eigen::Index> keep;
   std::vector<Index> markers;
-  for (Eigen::Index c = 0; c < static_cast<Eigen::Index>(poses.columns.size()); ++c) {
+  for (Eigen::Index c = 0; c < std::ssize(poses.columns); ++c) {
     const Index marker = poses.columns[c].marker;
     const bool has_name = std::find(named.begin(), named.end(), marker) != named.end();
     if (has_name) keep.push_back(c);
-    if (!has_name && poses.columns[c].axis == 0) markers.push_back(static_cast<Index>(c));
+    if (!has_name && poses.columns[c].axis == 0) markers.push_back(c);
   }
   seen.columns.clear();
   for (const Eigen::Index c : keep) seen.columns.push_back(poses.columns[c]);
   seen.values = poses.values(Eigen::all, keep).eval();
   seen.dots.axes = {0, 1, 2};
   for (std::size_t d = 0; d < markers.size(); ++d) seen.dots.names.push_back("dot" + std::to_string(d + 1));
-  seen.dots.places.resize(poses.values.rows(), static_cast<Index>(3 * markers.size()));
+  seen.dots.places.resize(poses.values.rows(), 3 * markers.size());
   for (Eigen::Index pose = 0; pose < poses.values.rows(); ++pose) {
     std::shuffle(markers.begin(), markers.end(), engine);
     for (std::size_t d = 0; d < markers.size(); ++d)
-      seen.dots.places.row(pose).segment(static_cast<Index>(3 * d), 3) = poses.values.row(pose).segment(markers[d], 3);
+      seen.dots.places.row(pose).segment(3 * d, 3) = poses.values.row(pose).segment(markers[d], 3);
   }
   return seen;
 }
@@ -92,9 +92,9 @@ TEST(Assignment, IsTheLeastOfAll) {
     const std::vector<Index> columns = least_assignment(costs, alone);
     ASSERT_EQ(columns.size(), static_cast<std::size_t>(costs.rows()));
     double sum = 0;
-    std::vector<bool> taken(static_cast<std::size_t>(costs.cols()));
+    std::vector<bool> taken(costs.cols());
     for (std::size_t row = 0; row < columns.size(); ++row) {
-      sum += columns[row] < 0 ? alone : costs(static_cast<Eigen::Index>(row), columns[row]);
+      sum += columns[row] < 0 ? alone : costs(row, columns[row]);
       if (columns[row] < 0) {
         ++with_none;
         continue;
@@ -103,7 +103,7 @@ TEST(Assignment, IsTheLeastOfAll) {
       taken[columns[row]] = true;
       ++full;
     }
-    std::vector<bool> none(static_cast<std::size_t>(costs.cols()));
+    std::vector<bool> none(costs.cols());
     EXPECT_NEAR(sum, least_by_trying(costs, alone, 0, none), 1e-12) << costs << "\nalone " << alone;
   }
   EXPECT_GT(with_none, 100);
@@ -125,7 +125,7 @@ TEST(RobotDots, ShuffledAreFittedAsNamed) {
       const MeasuredPoses seen = with_dots(poses, seed);
       const RobotFit fit = fit_robot(robot, seen, within(8));
       EXPECT_EQ(fit.status, Status::converged) << fit.remark;
-      for (Index i = 0; i < static_cast<Index>(numbers.size()); ++i) {
+      for (Index i = 0; i < std::ssize(numbers); ++i) {
         EXPECT_NEAR(fit.values[i], named.values[i], least * named.deviations[i]) << i;
         EXPECT_NEAR(fit.deviations[i], named.deviations[i], 1e-4 * named.deviations[i]) << i;
       }

@@ -103,7 +103,7 @@ TEST(RobotFit, ForcesOfSupportsTellTheDensity) {
   MeasuredPoses poses = arm.poses({"materials.body.density=1000"});
   poses.columns = {{"x_low_force_z_N", -1, 2, -1, Reading::force, 0},
                    {"x_low_force_x_N", -1, 0, -1, Reading::force, 0}};
-  poses.values.resize(static_cast<Index>(poses.commands.size()), 2);
+  poses.values.resize(poses.commands.size(), 2);
   poses.values.col(0).setConstant(1000 * 6e-6 * 9.81);
   poses.values.col(1).setZero();
   const RobotFit fit = fit_robot(robot, poses, {});
@@ -120,7 +120,7 @@ TEST(RobotFit, DirectionsTellTheModulusAndTheBase) {
   MeasuredPoses poses = arm.poses({});
   poses.columns.clear();
   for (int axis = 0; axis < 3; ++axis) poses.columns.push_back({"d", -1, axis, -1, Reading::direction, -1, 0});
-  poses.values.setZero(static_cast<Index>(poses.commands.size()), 3);
+  poses.values.setZero(poses.commands.size(), 3);
   poses.values = predict_poses(made, poses, made.start(), {}).computed.values;
   EXPECT_NEAR(poses.values.row(0).norm(), 1, 1e-9);
   const RobotFit fit = fit_robot(robot, poses, {});
@@ -142,7 +142,7 @@ TEST(RobotFit, DeviationsAreThoseOfTheNoise) {
     MeasuredPoses poses = exact;
     std::mt19937 engine(draw);
     std::normal_distribution<double> normal(0, 0.5);
-    for (Index i = 0; i < static_cast<Index>(poses.values.size()); ++i) poses.values.data()[i] += normal(engine);
+    for (Index i = 0; i < std::ssize(poses.values); ++i) poses.values.data()[i] += normal(engine);
     const RobotFit fit = fit_robot(robot, poses, {});
     EXPECT_NEAR(fit.scales[0], 0.5, 0.2);
     for (Index i = 0; i < 2; ++i) inside += std::abs(fit.values[i] - value_of(made[i])) < 1.645 * fit.deviations[i];
@@ -171,7 +171,7 @@ TEST(RobotFit, WrongReadingsHardlyCount) {
 TEST(RobotFit, SaysWhereTheSceneRefusesWhatWouldFitBetter) {
   const Arm arm;
   MeasuredPoses poses = arm.poses({"actuators.t1.factor=0.01"});
-  for (Index pose = 0; pose < static_cast<Index>(poses.values.rows()); ++pose)
+  for (Index pose = 0; pose < poses.values.rows(); ++pose)
     if (poses.commands[pose][0] > 0) poses.values(pose, 2) -= 5;
   const RobotFit fit = fit_robot(arm.robot({"actuators.t1.factor=0.5"}), poses, {});
   EXPECT_EQ(fit.status, Status::not_converged);

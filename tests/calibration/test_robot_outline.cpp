@@ -227,8 +227,8 @@ TEST(RobotOutline, DistancesHaveTheirDerivatives) {
         ((1 - held.share) * all.row(held.vertices[0]) + held.share * all.row(held.vertices[1])).transpose();
     return (of.frame.rotation * body + of.frame.place).head<2>();
   };
-  for (Index i = 0; i < static_cast<Index>(names.size()); ++i) {
-    const double step = 1e-3 * robot.size(static_cast<std::size_t>(i));
+  for (Index i = 0; i < std::ssize(names); ++i) {
+    const double step = 1e-3 * robot.size(i);
     Eigen::VectorXd above = at, below = at;
     above[i] += step;
     below[i] -= step;
@@ -259,7 +259,7 @@ TEST(RobotOutline, DerivativesHoldForDistancesFoundAnew) {
   const std::optional<RobotPoint> point = problem.solve(robot.start(), nullptr, true);
   std::size_t close = 0, all = 0;
   for (Index i = 0; i < 2; ++i) {
-    const double step = 1e-4 * robot.size(static_cast<std::size_t>(i));
+    const double step = 1e-4 * robot.size(i);
     Eigen::VectorXd above = robot.start();
     above[i] += step;
     const auto more = problem.solve(above, &*point, false);

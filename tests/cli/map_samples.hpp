@@ -17,7 +17,7 @@ inline std::string scene_to_map() {
 inline void cut_map(const std::string& file, double at, bool keep_below) {
   MapData data = runs::read_map(file);
   for (MapPiece& piece : data.pieces) {
-    const auto next = static_cast<Index>(piece.tree.size());
+    const Index next = piece.tree.size();
     const MapNode whole = piece.tree.front(), none;
     piece.tree.front() = {0, at, next, next + 1, -1};
     piece.tree.push_back(keep_below ? whole : none);

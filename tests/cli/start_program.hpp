@@ -99,8 +99,7 @@ class StartedProgram {
   [[nodiscard]] std::string read_terminal() const {  // until the program has closed it
     std::string text;
     char bytes[4096];
-    for (ssize_t count = 0; (count = ::read(terminal_, bytes, sizeof bytes)) > 0;)
-      text.append(bytes, static_cast<std::size_t>(count));
+    for (ssize_t count = 0; (count = ::read(terminal_, bytes, sizeof bytes)) > 0;) text.append(bytes, count);
     return text;
   }
 

@@ -32,7 +32,7 @@ std::string path_text(int rows = steps, double changed_first = 1) {
 /// Steps in the journal that a run keeps beside its report while it goes on; 0 without one.
 std::size_t journaled(const std::string& report) {
   const std::string text = read_text(report + ".run");
-  const auto lines = static_cast<std::size_t>(std::count(text.begin(), text.end(), '\n'));
+  const std::size_t lines = std::count(text.begin(), text.end(), '\n');
   return lines > 0 ? lines - 1 : 0;
 }
 

@@ -96,7 +96,7 @@ TEST(MisleadingMeshes, SurfacesOfSkinsAndOfOtherUnits) {
   softkin::TriangleSurface two = box_surface({0, 0, 0}, {30, 30, 30});
   softkin::Points vertices(two.vertices.rows() + cavity.vertices.rows(), 3);
   vertices << two.vertices, cavity.vertices;
-  const auto first = static_cast<Index>(two.vertices.rows());
+  const Index first = two.vertices.rows();
   for (const auto& [a, b, c] : cavity.triangles) two.triangles.push_back({first + a, first + b, first + c});
   softkin::write_stl(folder / "skin.stl", vertices, two.triangles);
   expect_refused(folder, with_surface("skin.stl"),

@@ -20,7 +20,7 @@ struct PlotText {
     for (const auto& found : xml.select_nodes("//text")) texts.insert(found.node().child_value());
     for (const auto& found : xml.select_nodes("//polyline")) {
       const std::string text = found.node().attribute("points").value();
-      points.push_back(static_cast<std::size_t>(std::count(text.begin(), text.end(), ',')));
+      points.push_back(std::count(text.begin(), text.end(), ','));
     }
   }
   void expect(const std::vector<std::string>& wanted) const {

@@ -121,7 +121,7 @@ Vec3 settle_together(const Chain& chain, const Vec3& given) {
     if (excess.cwiseAbs().maxCoeff() < 1e-4) return ratios;
     Mat3 slope;
     for (std::size_t i = 0; i < 3; ++i)
-      slope.col(static_cast<Index>(i)) = (excess_of(steps[i + 1], rows[i + 1], given) - excess) / difference;
+      slope.col(i) = (excess_of(steps[i + 1], rows[i + 1], given) - excess) / difference;
     ratios = (ratios - slope.partialPivLu().solve(excess)).cwiseMax(1.0).cwiseMin(1.6);
   }
   ADD_FAILURE() << "the pump does not settle";

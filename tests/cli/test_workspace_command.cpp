@@ -43,7 +43,7 @@ std::size_t row_count(const std::string& text) {
   const auto lines = lines_of(text);
   const auto rows = std::count_if(lines.begin(), lines.end(),
                                   [](const std::string& line) { return !line.empty() && line[0] != '#'; });
-  return static_cast<std::size_t>(std::max<std::ptrdiff_t>(rows - 1, 0));  // the header may not be there yet
+  return std::max<std::ptrdiff_t>(rows - 1, 0);  // the header may not be there yet
 }
 
 std::vector<std::string> cells_of(const std::string& line) {

@@ -30,7 +30,7 @@ inline Sphere make_sphere(int splits, double radius) {
     triangles = split_faces(faces);
   }
   Sphere sphere{Points(points.size(), 3), triangles};
-  for (std::size_t i = 0; i < points.size(); ++i) sphere.points.row(static_cast<Eigen::Index>(i)) = radius * points[i];
+  for (std::size_t i = 0; i < points.size(); ++i) sphere.points.row(i) = radius * points[i];
   return sphere;
 }
 

@@ -26,7 +26,7 @@ PairSet set_of(const std::vector<Pair>& pairs) {
 }
 
 std::vector<Index> vertices_in(const Surface& s, Index i, int of) {
-  const auto at = static_cast<std::size_t>(i);
+  const std::size_t at = i;
   if (of == 1) return {s.vertices[at]};
   if (of == 2) return {s.edges[at].begin(), s.edges[at].end()};
   return {s.triangles[at].begin(), s.triangles[at].end()};
@@ -73,7 +73,7 @@ bool clearly_apart(const std::vector<Index>& a, const std::vector<Index>& b, con
   for (const Points* x : {&instants.front(), &instants.back()}) along += middle(*x, a) - middle(*x, b);
   FourPoints end;
   for (std::size_t i = 0; i < 4; ++i)
-    end.col(static_cast<Index>(i)) = instants.back().row(i < a.size() ? a[i] : b[i - a.size()]).transpose();
+    end.col(i) = instants.back().row(i < a.size() ? a[i] : b[i - a.size()]).transpose();
   const Kind kind = a.size() == 1 ? Kind::vertex_triangle : Kind::edge_edge;
   return apart(along, a, b, instants, distance) || apart(separation(kind, end).vector, a, b, instants, distance);
 }
@@ -84,8 +84,8 @@ PairSet all_within(const Surface& s, const std::vector<Points>& instants, double
   const std::size_t first = of == 3 ? s.vertices.size() : s.edges.size(), second = of == 3 ? s.triangles.size() : first;
   for (std::size_t i = 0; i < first; ++i)
     for (std::size_t j = of == 3 ? 0 : i + 1; j < second; ++j) {
-      const auto a = vertices_in(s, static_cast<Index>(i), of == 3 ? 1 : 2);
-      const auto b = vertices_in(s, static_cast<Index>(j), of);
+      const auto a = vertices_in(s, i, of == 3 ? 1 : 2);
+      const auto b = vertices_in(s, j, of);
       const bool meet = std::find_first_of(a.begin(), a.end(), b.begin(), b.end()) != a.end();
       if (!meet && gap(a, b, instants) <= reach && keeps(a, b) && !clearly_apart(a, b, instants, reach))
         found.emplace(i, j);
@@ -206,7 +206,7 @@ TEST(Candidates, LeaveOutNeighboursAndGroups) {
   const Surface s = make_surface(sphere.triangles, sphere.points);
   const Points flat = flattened(sphere.points);
   Exclusions exclusions;
-  exclusions.neighbours = neighbours_of(s, static_cast<Index>(flat.rows()), 2);
+  exclusions.neighbours = neighbours_of(s, flat.rows(), 2);
   for (Eigen::Index i = 0; i < flat.rows(); ++i)
     exclusions.group.push_back(flat(i, 0) > 0 ? -1 : flat(i, 1) > 0 ? 0 : 1);
   const auto steps = [&](Index a, Index b) {  // up to two, by the edges themselves

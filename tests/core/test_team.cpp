@@ -40,7 +40,7 @@ TEST(Team, ResultsOfALoopAreSeenByTheNext) {
   std::vector<std::int64_t> values(512, 1);
   for (int loop = 0; loop < 500; ++loop) {
     std::vector<std::int64_t> next(values.size());
-    team.each(static_cast<Index>(values.size()), [&](Index i) { next[i] = values[(i + 1) % values.size()] + 1; });
+    team.each(values.size(), [&](Index i) { next[i] = values[(i + 1) % values.size()] + 1; });
     values.swap(next);
   }
   for (const std::int64_t value : values) EXPECT_EQ(value, 501);

@@ -121,7 +121,7 @@ class FaultyMarlin {
       char bytes[512];
       const ssize_t count = ::read(master_, bytes, sizeof bytes);
       if (count <= 0) continue;
-      from_host.append(bytes, static_cast<std::size_t>(count));
+      from_host.append(bytes, count);
       for (std::size_t end = 0; (end = from_host.find('\n')) != std::string::npos;) {
         const std::string line = from_host.substr(0, end + 1);
         from_host.erase(0, end + 1);
@@ -162,7 +162,7 @@ class FaultyMarlin {
     std::size_t sent = 0;
     while (sent < line.size() && !quit_) {
       const ssize_t count = ::write(master_, line.data() + sent, line.size() - sent);
-      if (count > 0) sent += static_cast<std::size_t>(count);
+      if (count > 0) sent += count;
     }
   }
 

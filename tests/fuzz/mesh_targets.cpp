@@ -24,7 +24,7 @@ void check_list(const std::vector<Index>& list, std::size_t end) {
 }
 
 void check(const Mesh& mesh) {
-  const auto vertices = static_cast<Index>(mesh.vertices.rows());
+  const Index vertices = mesh.vertices.rows();
   require(mesh.vertices.allFinite(), "a coordinate is not finite");
   require(!mesh.tetrahedra.empty() || !mesh.prisms.empty(), "a mesh without elements");
   check_vertices(mesh.tetrahedra, vertices);
@@ -42,7 +42,7 @@ void check(const Mesh& mesh) {
     check_list(region.prisms, mesh.prisms.size());
     check_list(region.triangles, mesh.triangles.size());
     check_list(region.quads, mesh.quads.size());
-    check_list(region.vertices, static_cast<std::size_t>(vertices));
+    check_list(region.vertices, vertices);
   }
 }
 
@@ -94,7 +94,7 @@ void run_tet(const Input& input) {
 
 void check(const TriangleSurface& surface) {
   require(surface.vertices.allFinite(), "a coordinate is not finite");
-  check_vertices(surface.triangles, static_cast<Index>(surface.vertices.rows()));
+  check_vertices(surface.triangles, surface.vertices.rows());
 }
 
 /// A surface in single precision, which is what a first copy has, is copied exactly.

@@ -51,7 +51,7 @@ void run_marlin(const Input& input) {
 }
 
 void require_commands(const Model& model, const Actuation& commands) {
-  require(commands.size() == static_cast<Index>(model.actuators.size()), "other actuators");
+  require(commands.size() == std::ssize(model.actuators), "other actuators");
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const double value = commands[a];
     require(value >= model.actuators[a].low && value <= model.actuators[a].high, "a command outside its range");
@@ -100,7 +100,7 @@ void run_live_message(const Input& input) {
     require_readings(readings->values, columns);
   } else if (const auto* target = std::get_if<view::TargetRequest>(&message)) {
     require_id(target->id);
-    require(target->marker >= 0 && target->marker < static_cast<Index>(model.markers.size()), "no such marker");
+    require(target->marker >= 0 && target->marker < std::ssize(model.markers), "no such marker");
     require(target->at.cwiseAbs().maxCoeff() <= view::farthest_target_mm(model), "a target farther than anything");
   }
 }

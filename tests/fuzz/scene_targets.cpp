@@ -18,7 +18,7 @@ void check(const EmbeddedPoint& point, Index vertices) {
 }
 
 void check(const Model& model) {
-  const auto vertices = static_cast<Index>(model.rest.rows());
+  const Index vertices = model.rest.rows();
   require(model.rest.allFinite() && model.held.at.allFinite() && model.loads.dead.allFinite(),
           "a place or load is not finite");
   require_finite(model.diagonal_mm, "the size is not finite");

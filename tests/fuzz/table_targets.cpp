@@ -22,7 +22,7 @@ void run_csv(const Input& input) {
 }
 
 void check(const Model& model, const Actuation& actuation) {
-  require(actuation.size() == static_cast<Index>(model.actuators.size()), "other actuators");
+  require(actuation.size() == std::ssize(model.actuators), "other actuators");
   for (Index a = 0; a < actuation.size(); ++a) {
     const Actuator& actuator = model.actuators[a];
     require(actuation[a] >= actuator.low && actuation[a] <= actuator.high, "a command outside its range");

@@ -18,7 +18,7 @@ void solve(const char* scene) {
   std::printf("%s, %s: %s\n", model.name.c_str(), formulation_name(model.formulation), name_of(found.report.status));
 
   std::vector<Index> markers;
-  for (std::size_t i = 0; i < model.markers.size(); ++i) markers.push_back(static_cast<Index>(i));
+  for (std::size_t i = 0; i < model.markers.size(); ++i) markers.push_back(i);
   std::cout << "Jacobian [mm per unit]:\n" << jacobian(statics, found, markers) << "\n";
 
   const runs::StepRecord record = runs::step_record(model, found, measured);

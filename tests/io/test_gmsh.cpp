@@ -180,7 +180,7 @@ Mesh random_mesh() {
     std::set<std::set<Index>> known;
     while (cells.size() < count) {
       typename std::decay_t<decltype(cells)>::value_type cell;
-      for (Index& v : cell) v = static_cast<Index>(random() % 60);
+      for (Index& v : cell) v = random() % 60;
       const std::set<Index> key(cell.begin(), cell.end());
       if (key.size() == cell.size() && known.insert(key).second) cells.push_back(cell);
     }
@@ -192,7 +192,7 @@ Mesh random_mesh() {
   const auto some = [&](std::size_t count) {
     List list;
     for (std::size_t i = 0; i < count; ++i)
-      if (random() % 3 == 0) list.push_back(static_cast<Index>(i));
+      if (random() % 3 == 0) list.push_back(i);
     return list;
   };
   for (const char* name : {"body", "soft part", "0", "\xc3\xa9l\xc3\xa9ment #3"})

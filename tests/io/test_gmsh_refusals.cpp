@@ -288,7 +288,7 @@ void expect_consistent(const Mesh& mesh) {
     check(region.prisms, mesh.prisms.size());
     check(region.triangles, mesh.triangles.size());
     check(region.quads, mesh.quads.size());
-    check(region.vertices, static_cast<std::size_t>(mesh.vertices.rows()));
+    check(region.vertices, mesh.vertices.rows());
   }
 }
 

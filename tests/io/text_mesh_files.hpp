@@ -156,7 +156,7 @@ inline void expect_consistent(const Mesh& mesh) {
     check_members(region.prisms, mesh.prisms.size());
     check_members(region.triangles, mesh.triangles.size());
     check_members(region.quads, mesh.quads.size());
-    check_members(region.vertices, static_cast<std::size_t>(vertices));
+    check_members(region.vertices, vertices);
   }
 }
 

@@ -28,7 +28,7 @@ inline RobotSpec touched_finger() {
 
 inline std::vector<PoseColumn> marker_columns(const Model& model) {
   std::vector<PoseColumn> columns;
-  for (Index m = 0; m < static_cast<Index>(model.markers.size()); ++m)
+  for (Index m = 0; m < std::ssize(model.markers); ++m)
     for (int axis = 0; axis < 3; ++axis)
       columns.push_back({model.markers[m].name + "_" + "xyz"[axis] + "_mm", m, axis});
   return columns;
@@ -59,9 +59,9 @@ inline Actuation commands_of(const Model& model, double pressure) {
 /// A column of slopes against differences, to a share of the largest slope of what is read of the same kind.
 inline void expect_slopes(const std::vector<PoseColumn>& columns, const Eigen::MatrixXd& slopes, Index c,
                           const Eigen::VectorXd& difference, double share) {
-  for (Index r = 0; r < static_cast<Index>(difference.size()); ++r) {
+  for (Index r = 0; r < std::ssize(difference); ++r) {
     double size = 0;
-    for (Index other = 0; other < static_cast<Index>(difference.size()); ++other)
+    for (Index other = 0; other < std::ssize(difference); ++other)
       if (columns[other].kind == columns[r].kind) size = std::max(size, slopes.row(other).cwiseAbs().maxCoeff());
     EXPECT_NEAR(slopes(r, c), difference[r], share * size) << "reading " << r << ", column " << c;
   }

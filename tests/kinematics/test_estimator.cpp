@@ -85,7 +85,7 @@ TEST(Estimator, ForcesAnywhereDoWhatEachDoes) {
   ASSERT_EQ(by.cols(), 3 * static_cast<Index>(force.patch->nodes().size()));
   for (const Index node : {0, 4, 11})
     for (Index axis = 0; axis < 3; ++axis) {
-      const auto all = static_cast<Index>(problem.variables().model().actuators.size());
+      const Index all = problem.variables().model().actuators.size();
       const Eigen::VectorXd one =
           problem.slopes(at, {Actuation::Unit(all, force.first_command + 3 * node + axis)}).of_readings;
       EXPECT_LE((by.col(3 * node + axis) - one).norm(), 1e-6 * one.norm()) << node << ", " << axis;
@@ -393,7 +393,7 @@ TEST(Estimator, PlansWhatToReadFurther) {
   EstimatorOptions exact;
   exact.accuracy = 1e-5;
   const auto told_by = [&](const std::vector<PoseColumn>& read) {
-    const auto count = static_cast<Index>(read.size());
+    const Index count = read.size();
     Estimator estimator(model, {{"touch", true}}, read, Eigen::VectorXd::Constant(count, 0.1), exact);
     // what the model itself has at the estimate by all markers, so that both are told the same
     Eigen::VectorXd values = touch.readings.head(count);
@@ -414,7 +414,7 @@ TEST(Estimator, PlansWhatToReadFurther) {
   EXPECT_NEAR(marker[0].places[0], std::sqrt(more.diagonal().tail<2>().sum()), 0.1 * marker[0].places[0]);
   EXPECT_NEAR(marker[0].bits, 0.5 * std::log2(few.near_covariance.determinant() / more.determinant()), 0.15);
 
-  for (Index v = 0; v < static_cast<Index>(model.rest.rows()); v += 3) options.vertices.push_back(v);
+  for (Index v = 0; v < model.rest.rows(); v += 3) options.vertices.push_back(v);
   options.count = 2;
   const std::vector<PlannedReading> plan = plan_readings(model, {basis}, options);
   ASSERT_EQ(plan.size(), 2u);

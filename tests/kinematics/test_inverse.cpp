@@ -16,7 +16,7 @@ namespace {
 using namespace testing;
 
 Actuation random_actuation(const Model& model, std::mt19937& engine) {
-  Actuation actuation(static_cast<Index>(model.actuators.size()));
+  Actuation actuation(model.actuators.size());
   for (Index a = 0; a < actuation.size(); ++a) {
     const Actuator& actuator = model.actuators[a];
     actuation[a] = std::uniform_real_distribution<double>(actuator.low, actuator.high)(engine);

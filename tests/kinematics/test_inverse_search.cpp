@@ -74,7 +74,7 @@ inverse::SearchSettings settings_for(const Vector& preferred) {
 }
 
 Vector point(std::initializer_list<double> values) {
-  Vector result(static_cast<Eigen::Index>(values.size()));
+  Vector result(values.size());
   std::copy(values.begin(), values.end(), result.data());
   return result;
 }

@@ -13,9 +13,9 @@ using namespace testing;
 
 /// Marker positions one below the other.
 Eigen::VectorXd places(const Model& model, const std::vector<Index>& markers, const Points& positions) {
-  Eigen::VectorXd all(3 * static_cast<Index>(markers.size()));
+  Eigen::VectorXd all(3 * std::ssize(markers));
   for (std::size_t p = 0; p < markers.size(); ++p)
-    all.segment<3>(3 * static_cast<Index>(p)) = model.markers[markers[p]].point.at(positions);
+    all.segment<3>(3 * p) = model.markers[markers[p]].point.at(positions);
   return all;
 }
 

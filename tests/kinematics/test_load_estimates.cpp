@@ -40,7 +40,7 @@ TEST(WrenchEstimates, TellForceAndMoment) {
   const Model model = compile(finger_with_tool());
   const Statics statics(model);
   const std::vector<PoseColumn> columns = all_columns(model);
-  Eigen::VectorXd deviations = Eigen::VectorXd::Constant(static_cast<Index>(columns.size()), 0.02);
+  Eigen::VectorXd deviations = Eigen::VectorXd::Constant(columns.size(), 0.02);
   for (std::size_t r = 0; r < columns.size(); ++r) {
     if (columns[r].kind == Reading::volume) deviations[r] = 2;
     if (columns[r].kind == Reading::force) deviations[r] = 0.002;
@@ -78,12 +78,12 @@ TEST(WrenchEstimates, TellForceAndMoment) {
 TEST(WrenchEstimates, TellThePressureOverAPatch) {
   const Model model = compile(finger_with_tool());
   const std::vector<PoseColumn> columns = marker_columns(model);
-  const Eigen::VectorXd deviations = Eigen::VectorXd::Constant(static_cast<Index>(columns.size()), 0.02);
+  const Eigen::VectorXd deviations = Eigen::VectorXd::Constant(columns.size(), 0.02);
   Estimator estimator(model, {{"press"}}, columns, deviations);
   Actuation commands = commands_of(model, 5);
   commands[static_cast<Index>(model.actuators.size()) - 1] = 2.5;
   const Equilibrium truth = Statics(model).solve(commands, Statics(model).rest(), exactly());
-  Eigen::VectorXd values(static_cast<Index>(columns.size()));
+  Eigen::VectorXd values(columns.size());
   for (std::size_t r = 0; r < columns.size(); ++r)
     values[r] = model.markers[columns[r].marker].at(truth.state.positions)[columns[r].axis];
   const Estimate& told = estimator.update(commands_of(model, 5), values);
@@ -97,7 +97,7 @@ TEST(WrenchEstimates, OfUnknownPlaceAreRefused) {
   const Model model = compile(finger_with_tool());
   const std::vector<PoseColumn> columns = marker_columns(model);
   try {
-    Estimator(model, {{"tool", true}}, columns, Eigen::VectorXd::Ones(static_cast<Index>(columns.size())));
+    Estimator(model, {{"tool", true}}, columns, Eigen::VectorXd::Ones(columns.size()));
     ADD_FAILURE() << "accepted";
   } catch (const InvalidInput& error) {
     EXPECT_NE(std::string(error.what()).find("acts on its region as a whole: its place cannot be told"),
@@ -163,7 +163,7 @@ TEST(StiffnessEstimates, AreOfTheRobotThatIsSoStiff) {
 TEST(StiffnessEstimates, FollowAMaterialThatDrifts) {
   const Model model = compile(two_materials(0.4, 0.4));
   const std::vector<PoseColumn> columns = all_columns(model);
-  Eigen::VectorXd deviations = Eigen::VectorXd::Constant(static_cast<Index>(columns.size()), 0.02);
+  Eigen::VectorXd deviations = Eigen::VectorXd::Constant(columns.size(), 0.02);
   for (std::size_t r = 0; r < columns.size(); ++r) {
     if (columns[r].kind == Reading::volume) deviations[r] = 2;
     if (columns[r].kind == Reading::force) deviations[r] = 0.002;
@@ -199,7 +199,7 @@ TEST(StiffnessEstimates, AreRefusedWithAReason) {
   const std::vector<PoseColumn> columns = marker_columns(model);
   const auto refused = [&](const std::vector<EstimatedUnknown>& unknowns, const std::string& why) {
     try {
-      Estimator(model, unknowns, columns, Eigen::VectorXd::Ones(static_cast<Index>(columns.size())));
+      Estimator(model, unknowns, columns, Eigen::VectorXd::Ones(columns.size()));
       ADD_FAILURE() << "accepted: " << why;
     } catch (const InvalidInput& error) {
       EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();

@@ -23,7 +23,7 @@ struct Made {
     const Wanted wanted{Eigen::VectorXd::Constant(1, 0.01), {}, 0, most};
     PieceFit fit(data, wanted, piece);
     for (RowMatrix asked = fit.next(); asked.rows() > 0; asked = fit.next()) {
-      std::vector<Sample> samples(static_cast<std::size_t>(asked.rows()));
+      std::vector<Sample> samples(asked.rows());
       for (Index i = 0; i < asked.rows(); ++i) {
         Sample& sample = samples[i];
         sample.commands = asked.row(i);
@@ -36,7 +36,7 @@ struct Made {
       }
       fit.take(std::move(samples));
     }
-    equilibria = static_cast<Index>(fit.samples().size());
+    equilibria = fit.samples().size();
     gave_up = fit.gave_up();
     data.pieces = {piece};
     data.actuation = Actuation::Zero(2);

@@ -47,7 +47,7 @@ std::vector<Index> by_brute_force(const std::vector<WorkspaceSample>& samples, I
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
                    [&](Index a, Index b) { return error(samples[a].markers) < error(samples[b].markers); });
-  order.resize(static_cast<std::size_t>(count));
+  order.resize(count);
   return order;
 }
 

@@ -30,7 +30,7 @@ TEST_P(PolynomialSums, AreThoseOfTheirTerms) {
   const Index d = sums.variables(), size = sums.count();
   const auto direct = [&](const Eigen::VectorXd& x) -> Eigen::VectorXd {
     Eigen::VectorXd products = Eigen::VectorXd::Ones(sums.terms().rows());
-    for (Index t = 0; t < static_cast<Index>(products.size()); ++t)
+    for (Index t = 0; t < std::ssize(products); ++t)
       for (Index j = 0; j < d; ++j) products[t] *= std::cos(sums.terms()(t, j) * std::acos(x[j]));
     return sums.coefficients().transpose() * products;
   };

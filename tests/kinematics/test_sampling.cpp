@@ -140,7 +140,7 @@ TEST(Sampling, NeighboursFollowEachOtherAlongAHilbertCurve) {
     Actuations points(count, dimensions);
     for (Index i = 0; i < count; ++i)
       for (Index d = 0, rest = i; d < dimensions; ++d, rest /= edge) points(i, d) = (rest % edge + 0.5) / edge;
-    const std::vector<Index> order = order_of_neighbours(unit_ranges(static_cast<std::size_t>(dimensions)), points);
+    const std::vector<Index> order = order_of_neighbours(unit_ranges(dimensions), points);
     EXPECT_EQ(std::set<Index>(order.begin(), order.end()).size(), static_cast<std::size_t>(count));
     for (std::size_t i = 1; i < order.size(); ++i)
       EXPECT_NEAR((points.row(order[i]) - points.row(order[i - 1])).lpNorm<1>(), 1.0 / edge, 1e-12)

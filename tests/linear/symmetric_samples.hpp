@@ -41,25 +41,25 @@ inline void append_column(BlockColumns& pattern, Index column, const std::set<In
     pattern.offsets.push_back(pattern.offsets.back() +
                               static_cast<std::int64_t>(pattern.width(row)) * pattern.width(column));
   }
-  pattern.starts.push_back(static_cast<Index>(pattern.rows.size()));
+  pattern.starts.push_back(pattern.rows.size());
 }
 
 inline BlockColumns ordered_pattern(const std::vector<Index>& widths, const Links& links) {
-  const Index nodes = static_cast<Index>(widths.size());
+  const Index nodes = widths.size();
   std::vector<Eigen::Triplet<double>> entries;
   for (Index node = 0; node < nodes; ++node) entries.emplace_back(node, node, 1.0);
   for (const auto& [a, b] : links) entries.emplace_back(std::max(a, b), std::min(a, b), 1.0);
   Eigen::SparseMatrix<double> graph(nodes, nodes);
   graph.setFromTriplets(entries.begin(), entries.end());
   const Ordering ordering = nested_dissection(graph);
-  std::vector<Index> place(static_cast<std::size_t>(nodes));
+  std::vector<Index> place(nodes);
   BlockColumns pattern;
   pattern.pieces = ordering.pieces;
   for (Index k = 0; k < nodes; ++k) {
     place[ordering.order[k]] = k;
     pattern.unknowns.push_back(pattern.unknowns.back() + widths[ordering.order[k]]);
   }
-  std::vector<std::set<Index>> below(static_cast<std::size_t>(nodes));
+  std::vector<std::set<Index>> below(nodes);
   for (const auto& [a, b] : links)
     if (a != b) below[std::min(place[a], place[b])].insert(std::max(place[a], place[b]));
   for (Index k = 0; k < nodes; ++k) append_column(pattern, k, below[k]);
@@ -72,7 +72,7 @@ inline Symmetric make_sample(const std::vector<Index>& widths, const Links& link
   Symmetric sample;
   sample.pattern = ordered_pattern(widths, links);
   const BlockColumns& p = sample.pattern;
-  sample.values.resize(static_cast<std::size_t>(p.offsets.back()));
+  sample.values.resize(p.offsets.back());
   sample.dense = Eigen::MatrixXd::Zero(p.size(), p.size());
   std::mt19937 engine(seed);
   std::normal_distribution<double> normal(0, 0.2);

@@ -29,7 +29,7 @@ struct Factored {
 template <class Number = double>
 Factored factored(const Eigen::MatrixXd& matrix, Index pivots, double least, Team& team) {
   using Matrix = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>;
-  const Index size = static_cast<Index>(matrix.rows()), stride = front_stride<Number>(size);
+  const Index size = matrix.rows(), stride = front_stride<Number>(size);
   std::vector<Number> front(static_cast<std::size_t>(stride) * size + front_slack, 1e3), diagonal(pivots);
   Eigen::Map<Matrix> kept(front.data(), stride, size);
   kept.topLeftCorner(size, pivots).template triangularView<Eigen::Lower>() =

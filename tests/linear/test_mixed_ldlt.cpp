@@ -18,7 +18,7 @@ MixedLdlt factor_of(const Symmetric& sample) {
 }
 
 Index negative_eigenvalues(const Symmetric& sample) {
-  return static_cast<Index>((symmetric_eigenvalues(sample.dense).array() < 0).count());
+  return (symmetric_eigenvalues(sample.dense).array() < 0).count();
 }
 
 /// Shifts it until its eigenvalue nearest 0 is so large.

@@ -26,15 +26,15 @@ Eigen::SparseMatrix<double> grid_matrix(Index side) {
 /// The pattern of a matrix with one unknown a row.
 BlockColumns columns_of(const Eigen::SparseMatrix<double>& matrix, const Ordering& ordering) {
   std::vector<Index> place(ordering.order.size());
-  for (std::size_t k = 0; k < place.size(); ++k) place[ordering.order[k]] = static_cast<Index>(k);
+  for (std::size_t k = 0; k < place.size(); ++k) place[ordering.order[k]] = k;
   std::vector<std::set<Index>> below(place.size());
   for (Index j = 0; j < matrix.cols(); ++j)
     for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, j); it; ++it)
       if (const Index a = place[it.row()], b = place[j]; a != b) below[std::min(a, b)].insert(std::max(a, b));
   BlockColumns pattern;
   pattern.pieces = ordering.pieces;
-  for (std::size_t k = 0; k < place.size(); ++k) pattern.unknowns.push_back(static_cast<Index>(k) + 1);
-  for (std::size_t k = 0; k < place.size(); ++k) testing::append_column(pattern, static_cast<Index>(k), below[k]);
+  for (std::size_t k = 0; k < place.size(); ++k) pattern.unknowns.push_back(k + 1);
+  for (std::size_t k = 0; k < place.size(); ++k) testing::append_column(pattern, k, below[k]);
   return pattern;
 }
 
@@ -62,7 +62,7 @@ struct QuadraticBar {
 
   QuadraticBar(Index length, Index width, bool hollow) {
     const Index steps[3] = {1, length, length * width};
-    ends.assign(static_cast<std::size_t>(length * width * width), {-1, -1});
+    ends.assign(length * width * width, {-1, -1});
     for (Index i = 0; i + 1 < length; ++i)
       for (Index j = 0; j + 1 < width; ++j)
         for (Index k = 0; k + 1 < width; ++k) {
@@ -74,7 +74,7 @@ struct QuadraticBar {
             add_tetrahedron(nodes);
           } while (std::next_permutation(axes, axes + 3));
         }
-    const Index count = static_cast<Index>(ends.size());
+    const Index count = ends.size();
     for (Index i = 0; i < count; ++i) entries_.emplace_back(i, i, 1.0);
     matrix.resize(count, count);
     matrix.setFromTriplets(entries_.begin(), entries_.end());

@@ -47,7 +47,7 @@ Points random_points(Index n) {
 TEST(SparseFactor, SolvesAsADenseFactorDoes) {
   for (const auto& matrix : {grid_matrix(12, 4, 5, 1), grid_matrix(9, 5, 3, 2, true), grid_matrix(1, 1, 1, 3),
                              grid_matrix(2, 1, 1, 4), grid_matrix(40, 1, 1, 5)}) {
-    const Points right = random_points(static_cast<Index>(matrix.rows()));
+    const Points right = random_points(matrix.rows());
     const Eigen::MatrixXd dense = Eigen::MatrixXd(matrix).selfadjointView<Eigen::Lower>();
     const Eigen::MatrixXd expected = dense.ldlt().solve(right);
     Points solution = right;
@@ -60,7 +60,7 @@ TEST(SparseFactor, SolvesAsADenseFactorDoes) {
 TEST(SparseFactor, ResultDoesNotDependOnThreads) {
   const auto matrix = grid_matrix(30, 6, 6, 7);
   const SparseFactor factor(matrix);
-  Points one = random_points(static_cast<Index>(matrix.rows())), two = one, three = one;
+  Points one = random_points(matrix.rows()), two = one, three = one;
   Team alone(1), pair(2), trio(3);
   factor.solve(one, alone);
   factor.solve(two, pair);
@@ -78,13 +78,13 @@ TEST(SparseFactor, RefusesAnIndefiniteMatrix) {
 TEST(Ordering, IsAPermutationWhosePiecesAreIndependent) {
   const auto matrix = grid_matrix(20, 5, 5, 1);
   const Ordering ordering = nested_dissection(matrix);
-  const Index n = static_cast<Index>(matrix.rows());
+  const Index n = matrix.rows();
   std::vector<int> seen(n, 0);
   std::vector<Index> piece(n, -1);
   for (Index k = 0; k < n; ++k) {
     ++seen[ordering.order[k]];
     for (std::size_t p = 0; p + 1 < ordering.pieces.size(); ++p)
-      if (k >= ordering.pieces[p] && k < ordering.pieces[p + 1]) piece[ordering.order[k]] = static_cast<Index>(p);
+      if (k >= ordering.pieces[p] && k < ordering.pieces[p + 1]) piece[ordering.order[k]] = p;
   }
   for (const int count : seen) EXPECT_EQ(count, 1);
   EXPECT_GE(ordering.pieces.size(), 3u);

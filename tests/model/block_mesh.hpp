@@ -15,7 +15,7 @@ namespace softkin::testing {
 enum class Split { five, six, prisms };  // tetrahedra or prisms (extruded along z) per cell
 
 inline Index grid_vertex(const std::array<int, 3>& cells, int i, int j, int k) {
-  return static_cast<Index>(i + (cells[0] + 1) * (j + (cells[1] + 1) * k));
+  return i + (cells[0] + 1) * (j + (cells[1] + 1) * k);
 }
 
 inline Points grid_points(const std::array<int, 3>& cells, const Vec3& size) {
@@ -82,12 +82,12 @@ inline void add_face_regions(Mesh& mesh, const Vec3& size) {
       };
       for (const Triangle& t : boundary.triangles)
         if (on_face(t)) {
-          face.triangles.push_back(static_cast<Index>(mesh.triangles.size()));
+          face.triangles.push_back(mesh.triangles.size());
           mesh.triangles.push_back(t);
         }
       for (const Quad& q : boundary.quads)
         if (on_face(q)) {
-          face.quads.push_back(static_cast<Index>(mesh.quads.size()));
+          face.quads.push_back(mesh.quads.size());
           mesh.quads.push_back(q);
         }
       mesh.regions.push_back(std::move(face));
@@ -100,8 +100,8 @@ inline void add_face_regions(Mesh& mesh, const Vec3& size) {
   Mesh mesh = layered_mesh(cells, size, split, split);
   Region body;
   body.name = "body";
-  for (std::size_t i = 0; i < mesh.tetrahedra.size(); ++i) body.tetrahedra.push_back(static_cast<Index>(i));
-  for (std::size_t i = 0; i < mesh.prisms.size(); ++i) body.prisms.push_back(static_cast<Index>(i));
+  for (std::size_t i = 0; i < mesh.tetrahedra.size(); ++i) body.tetrahedra.push_back(i);
+  for (std::size_t i = 0; i < mesh.prisms.size(); ++i) body.prisms.push_back(i);
   mesh.regions.push_back(std::move(body));
   add_face_regions(mesh, size);
   return mesh;
@@ -118,9 +118,9 @@ void add_volume_region(Mesh& mesh, const std::string& name, const Inside& inside
   Region region;
   region.name = name;
   for (std::size_t i = 0; i < mesh.tetrahedra.size(); ++i)
-    if (inside(centroid(mesh.tetrahedra[i]))) region.tetrahedra.push_back(static_cast<Index>(i));
+    if (inside(centroid(mesh.tetrahedra[i]))) region.tetrahedra.push_back(i);
   for (std::size_t i = 0; i < mesh.prisms.size(); ++i)
-    if (inside(centroid(mesh.prisms[i]))) region.prisms.push_back(static_cast<Index>(i));
+    if (inside(centroid(mesh.prisms[i]))) region.prisms.push_back(i);
   mesh.regions.push_back(std::move(region));
 }
 

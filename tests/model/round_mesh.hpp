@@ -57,8 +57,8 @@ inline Footprint cut_on_ball(std::vector<Vec3> at, std::vector<Triangle> triangl
     }
     plan.triangles = finer;
   }
-  plan.vertices.resize(static_cast<Index>(at.size()), 3);
-  for (std::size_t i = 0; i < at.size(); ++i) plan.vertices.row(static_cast<Index>(i)) = at[i].transpose();
+  plan.vertices.resize(at.size(), 3);
+  for (std::size_t i = 0; i < at.size(); ++i) plan.vertices.row(i) = at[i].transpose();
   return plan;
 }
 
@@ -93,7 +93,7 @@ inline Footprint dome_surface(int sides, int cuts) {
 template <class Place>
 Mesh layered(const Footprint& plan, int layers, const Place& place) {
   Mesh mesh;
-  const Index each = static_cast<Index>(plan.vertices.rows());
+  const Index each = plan.vertices.rows();
   mesh.vertices.resize(each * (layers + 1), 3);
   for (int k = 0; k <= layers; ++k)
     for (Index v = 0; v < each; ++v)
@@ -113,7 +113,7 @@ Mesh layered(const Footprint& plan, int layers, const Place& place) {
     }
   Region body;
   body.name = "body";
-  for (std::size_t i = 0; i < mesh.tetrahedra.size(); ++i) body.tetrahedra.push_back(static_cast<Index>(i));
+  for (std::size_t i = 0; i < mesh.tetrahedra.size(); ++i) body.tetrahedra.push_back(i);
   mesh.regions.push_back(std::move(body));
   return mesh;
 }

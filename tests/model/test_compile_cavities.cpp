@@ -37,7 +37,7 @@ TriangleSurface cut(const TriangleSurface& surface, double edge) {
 TriangleSurface both(const TriangleSurface& a, const TriangleSurface& b) {
   TriangleSurface all{Points(a.vertices.rows() + b.vertices.rows(), 3), a.triangles};
   all.vertices << a.vertices, b.vertices;
-  const auto first = static_cast<Index>(a.vertices.rows());
+  const Index first = a.vertices.rows();
   for (const auto& [i, j, k] : b.triangles) all.triangles.push_back({first + i, first + j, first + k});
   return all;
 }
@@ -117,7 +117,7 @@ RobotSpec walled(bool quadratic) {
   wall.dimension = 2;
   for (Triangle t : boundary_of(elements, {}).triangles) {
     if (wall.triangles.size() % 3 == 0) std::swap(t[0], t[1]);
-    wall.triangles.push_back(static_cast<Index>(spec.mesh.triangles.size()));
+    wall.triangles.push_back(spec.mesh.triangles.size());
     spec.mesh.triangles.push_back(t);
   }
   spec.mesh.regions.push_back(wall);

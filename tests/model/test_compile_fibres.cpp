@@ -146,7 +146,7 @@ TEST(CompileFibres, RegionsAndRobots) {
   const Model pair = compile(joined({{"a", one, {}, line(3)}, {"b", one, moved, line(4)}}, {"pair.yaml", {}, {}, {}}));
   ASSERT_EQ(pair.reinforcement.fibres.size(), 2u);
   EXPECT_EQ(pair.reinforcement.fibres[1].name, "b.thread");
-  const Index half = static_cast<Index>(pair.rest.rows()) / 2;
+  const Index half = pair.rest.rows() / 2;
   for (const FibrePlace& place : pair.reinforcement.fibres[0].places)
     for (const Index v : place.vertices) EXPECT_LT(v, half);
   for (const FibrePlace& place : pair.reinforcement.fibres[1].places)

@@ -18,7 +18,7 @@ void double_elements(RobotSpec& spec) {
 
 void add_overlapping(RobotSpec& spec) {
   Mesh& mesh = spec.mesh;
-  const Index apex = static_cast<Index>(mesh.vertices.rows());
+  const Index apex = mesh.vertices.rows();
   const auto& [a, b, c, d] = mesh.tetrahedra[0];
   Points vertices(apex + 1, 3);
   vertices << mesh.vertices, 0.5 * mesh.vertices.row(d) + (mesh.vertices.row(a) + mesh.vertices.row(b)) / 4;
@@ -58,7 +58,7 @@ TEST(MeshErrors, OfVoidElementsDoNotMatter) {
   add_volume_region(spec.mesh, "end", [](const Vec3& p) { return p[0] > 20; });
   Region copies;
   copies.name = "copies";
-  for (std::size_t i = once; i < 2 * once; ++i) copies.tetrahedra.push_back(static_cast<Index>(i));
+  for (std::size_t i = once; i < 2 * once; ++i) copies.tetrahedra.push_back(i);
   spec.mesh.regions.push_back(copies);
   spec.voids = {named("end"), named("copies")};
   EXPECT_EQ(compile(spec).elements.tetrahedra.size(), 12u);
@@ -78,7 +78,7 @@ TEST(MeshErrors, TheScreenAgreesWithTheCheck) {
     Mesh mesh = block_mesh({3, 2, 2}, {3, 2, 2}, round % 2 == 0 ? Split::six : Split::prisms);
     if (round >= 50 && !mesh.tetrahedra.empty()) {
       Tetrahedron t = mesh.tetrahedra[random() % mesh.tetrahedra.size()];
-      t[random() % 4] = static_cast<Index>(random() % static_cast<unsigned>(mesh.vertices.rows()));
+      t[random() % 4] = random() % static_cast<unsigned>(mesh.vertices.rows());
       const double volume = signed_volume(mesh.vertices, t);
       if (std::abs(volume) < 1e-3) continue;
       if (volume < 0) std::swap(t[2], t[3]);
@@ -90,7 +90,7 @@ TEST(MeshErrors, TheScreenAgreesWithTheCheck) {
     const bool wrong = !(check.duplicate_elements.empty() && check.overlapping.empty() &&
                          check.nonmanifold_faces.empty() && check.nonmanifold_quads.empty());
     clashes += wrong;
-    EXPECT_EQ(share_a_side(mesh.tetrahedra, {}, mesh.prisms, static_cast<Index>(mesh.vertices.rows())), wrong);
+    EXPECT_EQ(share_a_side(mesh.tetrahedra, {}, mesh.prisms, mesh.vertices.rows()), wrong);
   }
   EXPECT_GT(clashes, 50);
 }

@@ -108,7 +108,7 @@ TEST(ContactModel, RobotsAreParts) {
   const Model model = compile(spec);
   const ContactModel& contact = model.contact;
   std::vector<std::string> labels;
-  for (Index part = 0; part < static_cast<Index>(contact.parts.size()); ++part) labels.push_back(contact.label(part));
+  for (Index part = 0; part < std::ssize(contact.parts); ++part) labels.push_back(contact.label(part));
   EXPECT_EQ(labels, (std::vector<std::string>{"robot 'left'", "robot 'right'", "region 'right.end'", "obstacle 'floor'",
                                               "obstacle 'ball'"}));
   EXPECT_EQ(contact.label_of_solid(2), "robot 'right'");
@@ -168,7 +168,7 @@ TEST(ContactModel, FacesOfARegion) {
 TEST(ContactModel, ObstaclesVerticesFollowTheRobots) {
   const Model model = compile(robot());
   const Model bare = compile(physical_robot(block_mesh({4, 2, 1}, {40, 20, 10})));
-  const auto rows = static_cast<std::size_t>(model.rest.rows());
+  const std::size_t rows = model.rest.rows();
   EXPECT_EQ(model.robot_vertices(), 45 - 15);
   EXPECT_EQ(model.rest.topRows(30), bare.rest);
   EXPECT_EQ(model.held.at.rows(), model.rest.rows());
@@ -224,7 +224,7 @@ TEST(ContactModel, FacesOfOrderTwoAreFourTriangles) {
   for (const auto& [a, b, c] : contact.triangles)
     volume += vertex_at(model.rest, a).dot(vertex_at(model.rest, b).cross(vertex_at(model.rest, c))) / 6;
   EXPECT_NEAR(volume, 1000, 1e-9);  // normals outwards
-  std::vector<double> area(static_cast<std::size_t>(model.rest.rows()));
+  std::vector<double> area(model.rest.rows());
   for (const Triangle& t : contact.triangles)
     for (const Index v : t) area[v] += 12.5 / 3;
   for (std::size_t v = 0; v < area.size(); ++v) EXPECT_NEAR(contact.area[v], area[v], 1e-9);

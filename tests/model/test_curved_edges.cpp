@@ -197,7 +197,7 @@ TEST(CurvedEdges, RegionsInsideAreRoundToo) {
       middle += mesh.vertices(v, 0) / 4;
       radius = std::max(radius, mesh.vertices.row(v).tail<2>().norm());
     }
-    if (radius < 5.1 && middle > 7.5 && middle < 52.5) chamber.tetrahedra.push_back(static_cast<Index>(t));
+    if (radius < 5.1 && middle > 7.5 && middle < 52.5) chamber.tetrahedra.push_back(t);
   }
   mesh.regions.push_back(chamber);
   const CurvedMesh rod = curved_mesh(mesh, smooth_curve());
@@ -230,7 +230,7 @@ void check_random_bodies(unsigned first, int count) {
     held += body.done.held_back;
     ASSERT_GT(least_on_lattice(body.mesh, 6), 0.1 - 1e-9) << seed;
     ASSERT_LE(largest_bulge(body.mesh), 0.25) << seed;
-    const Index corners = static_cast<Index>(RandomRound(seed).draw().vertices.rows());
+    const Index corners = RandomRound(seed).draw().vertices.rows();
     ASSERT_EQ(body.mesh.vertices.topRows(corners), body.straight.vertices.topRows(corners)) << seed;
   }
   EXPECT_GT(moved, 50u * static_cast<unsigned>(count));

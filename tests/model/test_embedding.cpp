@@ -31,7 +31,7 @@ double brute_distance(const std::vector<Vec3>& corners, const Vec3& point) {
     std::vector<Vec3> chosen;
     for (std::size_t i = 0; i < corners.size(); ++i)
       if (subset >> i & 1u) chosen.push_back(corners[i]);
-    Eigen::MatrixXd edges(3, static_cast<Eigen::Index>(chosen.size()) - 1);
+    Eigen::MatrixXd edges(3, std::ssize(chosen) - 1);
     for (Eigen::Index i = 0; i < edges.cols(); ++i) edges.col(i) = chosen[i + 1] - chosen[0];
     const Eigen::VectorXd w = edges.cols() ? least_squares(edges, point - chosen[0]).solution : Eigen::VectorXd(0);
     if (w.size() && (w.minCoeff() < -1e-12 || w.sum() > 1 + 1e-12)) continue;

@@ -26,7 +26,7 @@ RobotSpec two_cubes(const std::vector<std::pair<double, double>>& shared) {
       number.push_back(same);
       continue;
     }
-    number.push_back(static_cast<Index>(mesh.vertices.rows()));
+    number.push_back(mesh.vertices.rows());
     mesh.vertices.conservativeResize(mesh.vertices.rows() + 1, 3);
     mesh.vertices.bottomRows(1) = at.transpose() + Eigen::RowVector3d(common ? 0 : 1e-3, 0, 0);
   }

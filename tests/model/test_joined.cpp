@@ -97,8 +97,8 @@ TEST(Joined, RegionsAreThoseOfTheRobotAlone) {
     const RobotSpec spec = pair(alone, alone);
     const Mesh mesh = quadratic ? elevated(alone.mesh) : alone.mesh;
     const RegionTable one(alone, mesh), both(spec);
-    const auto vertices = static_cast<Index>(mesh.vertices.rows());
-    const auto elements = static_cast<Index>(mesh.tetrahedra.size());
+    const Index vertices = mesh.vertices.rows();
+    const Index elements = mesh.tetrahedra.size();
     ASSERT_EQ(spec.mesh.vertices.rows(), 2 * vertices);
     const auto expect_same = [&](const Region& expected, const Region& found, Index robot) {
       SCOPED_TRACE(found.name);
@@ -115,7 +115,7 @@ TEST(Joined, RegionsAreThoseOfTheRobotAlone) {
       expect_same(one.find("all", {}), both.find(name, {}), robot);
       for (const char* region : {"body", "x_low", "z_high", "chamber", "corner", "ball", "list", "first"})
         expect_same(one.find(region, {}), both.find(name + "." + region, {}), robot);
-      const auto f = static_cast<std::size_t>(2 * robot + 1);
+      const std::size_t f = 2 * robot + 1;
       expect_same(one.resolve(alone.fixed[1].where), both.resolve(spec.fixed[f].where), robot);
       EXPECT_EQ(label(spec.fixed[f].where), "the box of robot '" + name + "'");
       EXPECT_EQ(spec.fixed[f].where.origin.line, 7u);
@@ -170,7 +170,7 @@ TEST(Joined, PointsLieInTheirOwnBody) {
   const Model one = compile(block);
   const Model both =
       compile(joined({placed("left", block, {}, 3), placed("right", block, beside, 4)}, {"pair.yaml", {}, {}, {}}));
-  const auto vertices = static_cast<Index>(one.rest.rows());
+  const Index vertices = one.rest.rows();
   const auto expect_own = [&](const EmbeddedPoint& point, const EmbeddedPoint& alone, Index robot) {
     std::map<Index, double> weights;
     for (std::size_t i = 0; i < point.vertices.size(); ++i) weights[point.vertices[i]] += point.weights[i];

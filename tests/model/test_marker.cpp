@@ -43,9 +43,9 @@ TEST(Marker, AStemTurnsWithItsRegion) {
 TEST(Marker, ItsVelocityIsThatOfDifferences) {
   const Marker marker = tip_of(stem("x_high", {4, -7, 11}));
   const Points rest = grid_points({3, 2, 2}, {30, 20, 10});
-  const Points shape = rest + noise(static_cast<Index>(rest.rows()), 2, 3);
+  const Points shape = rest + noise(rest.rows(), 2, 3);
   for (const unsigned seed : {5u, 6u, 7u}) {
-    const Points moves = noise(static_cast<Index>(rest.rows()), 1, seed);
+    const Points moves = noise(rest.rows(), 1, seed);
     constexpr double reach = 1e-5;
     const Vec3 slope = (marker.at(shape + reach * moves) - marker.at(shape - reach * moves)) / (2 * reach);
     EXPECT_LT((marker.velocity(shape, moves) - slope).norm(), 1e-8 * slope.norm());

@@ -14,7 +14,7 @@ namespace softkin {
 namespace {
 
 Points points(std::initializer_list<Vec3> list) {
-  Points result(static_cast<Index>(list.size()), 3);
+  Points result(list.size(), 3);
   Index i = 0;
   for (const Vec3& p : list) result.row(i++) = p.transpose();
   return result;
@@ -74,7 +74,7 @@ Mesh two_cubes(const Vec3& offset) {
       if ((second.row(i) - mesh.vertices.row(j)).norm() < 1e-12) corner[i] = j;
   for (Index i = 0; i < 8; ++i) {
     if (corner[i] >= 0) continue;
-    corner[i] = static_cast<Index>(mesh.vertices.rows());
+    corner[i] = mesh.vertices.rows();
     append(mesh, second.row(i));
   }
   add_cube(mesh, [&](int i) { return corner[i]; });
@@ -221,7 +221,7 @@ TEST(MeshCheck, DuplicateVerticesAgreeWithBruteForce) {
   mesh.vertices.resize(count, 3);
   for (Index i = 0; i < count; ++i) {
     const bool twin = i > 10 && uniform(random) < 0.5;
-    const Index other = static_cast<Index>(uniform(random) * i);
+    const Index other = uniform(random) * i;
     const Vec3 shift = Vec3(direction(random), direction(random), direction(random)).normalized();
     // clearly within or clearly beyond 1e-9 of the diagonal sqrt(3)
     const double distance = uniform(random) < 0.5 ? 0.8e-9 * std::sqrt(3.0) : 3e-9 * std::sqrt(3.0);
@@ -232,7 +232,7 @@ TEST(MeshCheck, DuplicateVerticesAgreeWithBruteForce) {
   mesh.vertices.row(1).setOnes();
   const Vec3 size = (mesh.vertices.colwise().maxCoeff() - mesh.vertices.colwise().minCoeff()).transpose();
   Indices expected;
-  std::vector<bool> is_twin(static_cast<std::size_t>(count), false);
+  std::vector<bool> is_twin(count, false);
   for (Index i = 0; i < count; ++i)
     for (Index j = 0; j < i && !is_twin[i]; ++j)
       if (!is_twin[j] && (mesh.vertices.row(i) - mesh.vertices.row(j)).norm() < 1e-9 * size.norm()) {

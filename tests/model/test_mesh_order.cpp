@@ -108,7 +108,7 @@ TEST(MeshOrder, LoweredForgetsTheEdgeNodes) {
 /// Two triangles beside a block, of which one hangs on an edge of it.
 TEST(MeshOrder, EdgesOfSheetsHaveNodesToo) {
   Mesh mesh = block_mesh({1, 1, 1}, {1, 1, 1});
-  const auto before = static_cast<Index>(mesh.vertices.rows());
+  const Index before = mesh.vertices.rows();
   mesh.vertices.conservativeResize(before + 2, 3);
   mesh.vertices.bottomRows(2) << 3, 0, 0, 3, 1, 0;
   mesh.triangles = {{0, 1, before}, {1, before + 1, before}};

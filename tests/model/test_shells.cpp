@@ -19,7 +19,7 @@ TriangleSurface together(const std::vector<TriangleSurface>& surfaces) {
   TriangleSurface all;
   all.vertices.resize(0, 3);
   for (const TriangleSurface& surface : surfaces) {
-    const auto first = static_cast<Index>(all.vertices.rows());
+    const Index first = all.vertices.rows();
     Points vertices(first + surface.vertices.rows(), 3);
     vertices << all.vertices, surface.vertices;
     all.vertices = vertices;

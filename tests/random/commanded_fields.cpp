@@ -11,7 +11,7 @@ CommandedFields::CommandedFields(const Model& model, const State& state) {
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const auto* drive = model.actuators[a].as<MagneticDrive>();
     if (!drive) continue;
-    const auto source = static_cast<std::size_t>(drive->source);
+    const std::size_t source = drive->source;
     const double value = state.actuation[a];
     const auto* along = std::get_if<UniformField>(&model.magnetism->sources[source].field);
     switch (drive->command) {

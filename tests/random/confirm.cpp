@@ -151,7 +151,7 @@ Confirmation confirm(const Model& model, const Actuation& command, const Equilib
   check_report(command, found, out);
   if (!found.state.positions.allFinite()) return out;
   count_inverted(model, found.state.positions, out);
-  const bool known = found.state.knows(static_cast<Index>(model.actuators.size())) &&
+  const bool known = found.state.knows(model.actuators.size()) &&
                      (found.report.status == Status::converged || found.state.actuation.size() > 0 ||
                       model.formulation == Formulation::physical);
   if (!known || !found.state.multipliers.allFinite()) return out;

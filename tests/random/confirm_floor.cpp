@@ -52,7 +52,7 @@ void ConfirmedFloor::push(const std::vector<bool>& of_rigid, RealPoints& sum) co
     }
   }
   for (std::size_t v = 0; v < near_.size(); ++v) {
-    const auto at = static_cast<Index>(v);
+    const Index at = v;
     if (!of_surface_[v] || model_.held.fixed[v][2] || of_rigid[v]) continue;
     if (between[v])
       sum(at, 2) -= static_cast<Real>(to_node) * push[v];

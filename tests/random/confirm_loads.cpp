@@ -24,7 +24,7 @@ void add_tractions(const Model& model, const State& state, Forces& forces) {
       for (const TrianglePoint& point : triangle_points(nodes.size())) {
         Real2 rest = Real2::Zero(), now = Real2::Zero();
         for (std::size_t i = 0; i < nodes.size(); ++i) {
-          const auto k = static_cast<Eigen::Index>(i);
+          const Eigen::Index k = i;
           const Eigen::Matrix<Real, 1, 2> along(point.along_u[k], point.along_v[k]);
           rest += model.rest.row(nodes[i]).transpose().cast<Real>() * along;
           now += state.positions.row(nodes[i]).transpose().cast<Real>() * along;

@@ -96,7 +96,7 @@ void add_pressures(const Model& model, const Equilibrium& found, Forces& forces,
     if (!model.elements.edge_nodes.empty())
       std::copy(model.elements.edge_nodes[e].begin(), model.elements.edge_nodes[e].end(), nodes.begin() + 4);
     const int count = model.elements.edge_nodes.empty() ? 4 : 10;
-    const Grown growth = grown(model, found.state, false, static_cast<Index>(e));
+    const Grown growth = grown(model, found.state, false, e);
     std::array<Index, 4> numbers;
     std::array<Real, 4> pressures;
     for (std::size_t i = 0; i < 4; ++i) {
@@ -107,7 +107,7 @@ void add_pressures(const Model& model, const Equilibrium& found, Forces& forces,
         pressure_pulls_of(nodes_at(model.rest, nodes.data(), count),
                           nodes_at(found.state.positions, nodes.data(), count), pressures, bulk, shear, growth.drive);
     for (int i = 0; i < count; ++i) {
-      const auto at = static_cast<std::size_t>(i);
+      const std::size_t at = i;
       forces.add(nodes[at], pulls.pulls.force[at], pulls.pulls.rounding[at]);
       forces.stiffness[nodes[at]] += pulls.pulls.stiffness[at];
     }
@@ -132,7 +132,7 @@ void add_elements(const Model& model, const Equilibrium& found, const State& beg
   const Points& positions = found.state.positions;
   const auto add = [&](const Index* nodes, int count, Index material, const LayerDrive& drive, Real begun_ratio,
                        bool prism, std::size_t element) {
-    const auto e = static_cast<Index>(element);
+    const Index e = element;
     const BranchDrive branches{&model.elements.materials[material].viscosity, found.state.elapsed_s,
                                nodes_at(begun.positions, nodes, count), begun_ratio,
                                grown(model, begun, prism, e).drive};
@@ -357,7 +357,7 @@ void add_actuators(const Model& model, const Equilibrium& found, Forces& forces,
   std::size_t memory = 0;  // of what rubs
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const Actuator& actuator = model.actuators[a];
-    const auto index = static_cast<Index>(a);
+    const Index index = a;
     const double multiplier = state.multipliers[index];
     if (actuator.is<DeaDrive>() || actuator.is<MagneticDrive>() || actuator.is<TurnCommand>() ||
         actuator.is<GrowthDrive>() || actuator.is<MomentCommand>() || actuator.is<PressureCommand>()) {
@@ -434,7 +434,7 @@ void add_families(const Model& model, const Equilibrium& found, Forces& forces) 
       }
     };
     for (std::size_t i = 0; i < all.tetrahedra.size(); ++i) {
-      const auto e = static_cast<std::size_t>(all.tetrahedra[i]);
+      const std::size_t e = all.tetrahedra[i];
       std::array<Index, 10> nodes;
       std::copy(model.elements.tetrahedra[e].begin(), model.elements.tetrahedra[e].end(), nodes.begin());
       if (!model.elements.edge_nodes.empty())
@@ -555,7 +555,7 @@ void enter_rigid(const Model& model, const RigidRegion& region, const State& sta
 void confirm_physical(const Model& model, const Equilibrium& found, const State& begun, Confirmation& out) {
   const State& state = found.state;
   check_places(model, state, out);
-  Forces forces(static_cast<Index>(model.rest.rows()));
+  Forces forces(model.rest.rows());
   add_elements(model, found, begun, forces);
   add_pressures(model, found, forces, out);
   add_actuators(model, found, forces, out);

@@ -35,8 +35,8 @@ Shape centred(const Shape& shape) {
 }
 
 Shape shape_at(const std::vector<EmbeddedPoint>& nodes, const Points& positions) {
-  Shape shape(static_cast<Index>(nodes.size()), 3);
-  for (std::size_t i = 0; i < nodes.size(); ++i) shape.row(static_cast<Index>(i)) = nodes[i].at(positions).transpose();
+  Shape shape(nodes.size(), 3);
+  for (std::size_t i = 0; i < nodes.size(); ++i) shape.row(i) = nodes[i].at(positions).transpose();
   return shape;
 }
 
@@ -242,8 +242,8 @@ Eigen::MatrixXd moves_by_unknowns(const Model& model, const Points& positions) {
         columns.emplace_back(Eigen::VectorXd::Zero(rows));
         columns.back()[3 * v + axis] = 1;
       }
-  Eigen::MatrixXd all(rows, static_cast<Index>(columns.size()));
-  for (std::size_t i = 0; i < columns.size(); ++i) all.col(static_cast<Index>(i)) = columns[i];
+  Eigen::MatrixXd all(rows, columns.size());
+  for (std::size_t i = 0; i < columns.size(); ++i) all.col(i) = columns[i];
   return all;
 }
 
@@ -264,7 +264,7 @@ struct Step {
     if (values[1] + proper * values[2] < tie * values[0]) undecided = true;
     const Mat3 rotation = svd.matrixU() * Vec3(1, 1, proper).asDiagonal() * svd.matrixV().transpose();
     const Shape wanted = element.target * rotation.transpose() + element.scale_current * element.current;
-    const Index k = static_cast<Index>(element.nodes.size());
+    const Index k = element.nodes.size();
     const double size = std::max(element.current.norm(), element.target.norm());
     for (Index i = 0; i < k; ++i) {
       const EmbeddedPoint& a = element.nodes[i];
@@ -312,13 +312,13 @@ void check_held(const Model& model, const State& state, Confirmation& out) {
 void confirm_target_shape(const Model& model, const Equilibrium& found, Confirmation& out) {
   const Points& positions = found.state.positions;
   check_held(model, found.state, out);
-  Step step(static_cast<Index>(model.rest.rows()));
+  Step step(model.rest.rows());
   for (const Element& element : elements_of(model, found).all) step.add(element);
   out.undecided = step.undecided;
 
   const Eigen::MatrixXd moves = moves_by_unknowns(model, positions);
   if (moves.cols() == 0) return;
-  const Index count = static_cast<Index>(model.rest.rows());
+  const Index count = model.rest.rows();
   Eigen::MatrixXd spread(3 * count, moves.cols());  // the matrix times each column
   for (int axis = 0; axis < 3; ++axis) {
     const Eigen::Map<const Eigen::MatrixXd, 0, Eigen::Stride<Eigen::Dynamic, 3>> of_axis(

@@ -155,7 +155,7 @@ void spoil_cells(Making& m) {
 void bend_edges(Making& m) {
   Mesh& mesh = m.mesh();
   if (!m.made.spec.mesh_options.quadratic || m.is(Oddity::bad_cells)) return;
-  const auto corners = static_cast<Index>(mesh.vertices.rows());
+  const Index corners = mesh.vertices.rows();
   mesh = elevated(mesh);
   m.made.spec.mesh_options.quadratic = m.draw.chance(0.5);
   const double share = m.draw.pick({0.02, 0.05, 0.2});

@@ -147,7 +147,7 @@ double voltage_unit(Making& m) {
   constexpr double vacuum = 8.8541878128e-6;  // MPa per (kV/mm)^2
   double thickness = m.size[2];
   const Mesh& mesh = m.mesh();
-  const auto exists = [&](Index v) { return v >= 0 && v < static_cast<Index>(mesh.vertices.rows()); };
+  const auto exists = [&](Index v) { return v >= 0 && v < mesh.vertices.rows(); };
   for (const Prism& prism : mesh.prisms)
     if (exists(prism[0]) && exists(prism[3]))
       thickness = std::min(thickness, (mesh.vertices.row(prism[3]) - mesh.vertices.row(prism[0])).norm());
@@ -216,7 +216,7 @@ void make_commands(Making& m) {
   const std::vector<ActuatorSpec>& actuators = m.made.spec.actuators;
   const int count = m.draw.chance(0.2) ? 2 : 1;
   for (int i = 0; i < count; ++i) {
-    Actuation command(static_cast<Index>(actuators.size()));
+    Actuation command(actuators.size());
     for (std::size_t a = 0; a < actuators.size(); ++a) command[a] = random_command(m, actuators[a]);
     if (m.is(Oddity::commands) && m.draw.chance(0.05)) command.conservativeResize(command.size() + 1);
     m.made.commands.push_back(std::move(command));

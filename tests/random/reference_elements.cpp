@@ -241,7 +241,7 @@ std::vector<ParentPoint> prism_points() {
         point.slope.row(i) << x * (1 - z) / 2, y * (1 - z) / 2, -l / 2;
         point.slope.row(i + 3) << x * (1 + z) / 2, y * (1 + z) / 2, l / 2;
         point.shape[i] = l * (1 - z) / 2;
-        point.shape[static_cast<std::size_t>(i) + 3] = l * (1 + z) / 2;
+        point.shape[i + 3] = l * (1 + z) / 2;
       }
       points.push_back(point);
     }
@@ -272,7 +272,7 @@ ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealP
                       const BranchDrive& viscous, const ElementGrowth& growth) {
   constexpr Real ulp = std::numeric_limits<double>::epsilon();
   const Eigen::Index count = rest.rows();
-  const auto nodes = static_cast<std::size_t>(count);
+  const std::size_t nodes = count;
   ElementPulls out{std::vector<RealVec3>(nodes, RealVec3::Zero()), std::vector<Real>(nodes, 0),
                    std::vector<Real>(nodes, 0)};
   const Real rest_size = rest.rowwise().norm().maxCoeff(), current_size = current.rowwise().norm().maxCoeff();
@@ -311,7 +311,7 @@ ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealP
     const Real blurred = stiffness * all * (current_size + gradient.norm() * rest_size) * ulp +
                          p.norm() * (1 + all * rest_size) * ulp + stiffness * ulp;
     for (Eigen::Index a = 0; a < count; ++a) {
-      const auto i = static_cast<std::size_t>(a);
+      const std::size_t i = a;
       const Real own = volume * slope.row(a).norm();
       out.force[i] += volume * (p * slope.row(a).transpose());
       out.stiffness[i] += own * stiffness * all;
@@ -324,7 +324,7 @@ ElementPulls pulls_of(const ElasticLaw& law, const RealPoints& rest, const RealP
 ElementPulls family_pulls_of(const RealPoints& rest, const RealPoints& current, const std::vector<FibreDrive>& fibres) {
   constexpr Real ulp = std::numeric_limits<double>::epsilon();
   const Eigen::Index count = rest.rows();
-  const auto nodes = static_cast<std::size_t>(count);
+  const std::size_t nodes = count;
   ElementPulls out{std::vector<RealVec3>(nodes, RealVec3::Zero()), std::vector<Real>(nodes, 0),
                    std::vector<Real>(nodes, 0)};
   const Real rest_size = rest.rowwise().norm().maxCoeff(), current_size = current.rowwise().norm().maxCoeff();
@@ -360,7 +360,7 @@ ElementPulls family_pulls_of(const RealPoints& rest, const RealPoints& current, 
       const Real blurred = stiffness * all * (current_size + gradient.norm() * rest_size) * ulp +
                            p.norm() * (1 + all * rest_size) * ulp + stiffness * ulp;
       for (Eigen::Index a = 0; a < count; ++a) {
-        const auto i = static_cast<std::size_t>(a);
+        const std::size_t i = a;
         const Real own = volume * slope.row(a).norm();
         out.force[i] += volume * (p * slope.row(a).transpose());
         out.stiffness[i] += own * stiffness * all;
@@ -375,7 +375,7 @@ PressurePulls pressure_pulls_of(const RealPoints& rest, const RealPoints& curren
                                 Real bulk, Real shear, const ElementGrowth& growth) {
   constexpr Real ulp = std::numeric_limits<double>::epsilon();
   const Eigen::Index count = rest.rows();
-  const auto nodes = static_cast<std::size_t>(count);
+  const std::size_t nodes = count;
   PressurePulls out{
       {std::vector<RealVec3>(nodes, RealVec3::Zero()), std::vector<Real>(nodes, 0), std::vector<Real>(nodes, 0)}};
   const Real size = rest.rowwise().norm().maxCoeff() + current.rowwise().norm().maxCoeff();
@@ -428,7 +428,7 @@ ElementPulls magnetic_pulls_of(const RealPoints& rest, const RealPoints& current
   constexpr Real permeability = 4e-7L * 3.14159265358979323846L;  // [T m / A]; 1 mT^2 is 1e-6 T^2, 1 MPa 1e6 Pa
   constexpr Real ulp = std::numeric_limits<double>::epsilon();
   const Eigen::Index count = rest.rows();
-  const auto nodes = static_cast<std::size_t>(count);
+  const std::size_t nodes = count;
   ElementPulls out{std::vector<RealVec3>(nodes, RealVec3::Zero()), std::vector<Real>(nodes, 0),
                    std::vector<Real>(nodes, 0)};
   const Real rest_size = rest.rowwise().norm().maxCoeff(), current_size = current.rowwise().norm().maxCoeff();
@@ -455,7 +455,7 @@ ElementPulls magnetic_pulls_of(const RealPoints& rest, const RealPoints& current
     const Real stiffness = turns ? 2 * remanence.norm() * field.value.norm() / (values.least() * values.least()) : 0;
     const Real blurred = stiffness * ulp * (1 + all * (current_size + gradient.norm() * rest_size));
     for (Eigen::Index a = 0; a < count; ++a) {
-      const auto i = static_cast<std::size_t>(a);
+      const std::size_t i = a;
       const Real own = scale * slope.row(a).norm();
       out.force[i] -= scale * (by_gradient * slope.row(a).transpose() + point.shape[i] * pull);
       out.stiffness[i] += own * stiffness * all;

@@ -61,7 +61,7 @@ void Summary::add(const RunResult& run) {
     for (std::size_t i = 0; i < effort.of.size(); ++i) efforts_[i].emplace_back(effort.of[i], run.seed);
     if (effort.of[0] > long_way) long_ways_[kind_of(effort.end)].push_back(run.seed);
     for (const auto& [why, times] : effort.rejections)
-      rejections_.try_emplace(why, 0, run.seed).first->second.first += static_cast<std::size_t>(times);
+      rejections_.try_emplace(why, 0, run.seed).first->second.first += times;
   }
   total_seconds_ += run.seconds;
   seconds_.enter(run.seconds, run.seed);

@@ -44,11 +44,11 @@ inline MapData outline(const std::string& name, const std::vector<MapInput>& inp
   MapData data;
   data.robot = "0123456789abcdef";
   data.name = name;
-  data.actuation = Actuation::Zero(static_cast<Index>(inputs.size()));
+  data.actuation = Actuation::Zero(inputs.size());
   data.inputs = inputs;
   for (const char* axis : {"tip_x", "tip_y", "tip_z"}) data.outputs.push_back({axis, "mm", 0.01});
   for (const std::string& output : others) data.outputs.push_back({output, "kPa", 0.1});
-  const auto outputs = static_cast<Index>(data.outputs.size());
+  const Index outputs = data.outputs.size();
   data.check = {200,  0,   1, Eigen::VectorXd::Constant(outputs, 1e-4), Eigen::VectorXd::Constant(outputs, 1e-5),
                 0.01, 1e-3};
   data.equilibria = 64;
@@ -56,8 +56,7 @@ inline MapData outline(const std::string& name, const std::vector<MapInput>& inp
 }
 
 inline Eigen::VectorXd limits(const MapData& data, const std::vector<Index>& inputs, double MapInput::*which) {
-  return Eigen::VectorXd::NullaryExpr(static_cast<Index>(inputs.size()),
-                                      [&](Index j) { return data.inputs[inputs[j]].*which; });
+  return Eigen::VectorXd::NullaryExpr(inputs.size(), [&](Index j) { return data.inputs[inputs[j]].*which; });
 }
 
 /// An arm of constant curvature that three chambers bend: 6 outputs.

@@ -21,17 +21,17 @@ Model touched_model() {
 /// Both forces, told with these deviations; the shape is that at rest, turned by a quarter about z.
 Estimate made_up(const Model& model, const Vec3& force, const Eigen::VectorXd& deviations) {
   Estimate told;
-  told.actuation = Actuation::Zero(static_cast<Index>(model.actuators.size()));
+  told.actuation = Actuation::Zero(model.actuators.size());
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
-    const auto at = static_cast<Index>(a);
+    const Index at = a;
     told.actuation[at] = a < 3 ? force[at] : 0;
     told.numbers.push_back({model.actuators[a].name, "N", told.actuation[at], deviations[at], 0, 1, 0, at});
   }
-  const auto numbers = static_cast<Index>(told.numbers.size());
+  const Index numbers = told.numbers.size();
   told.covariance = Eigen::MatrixXd::Zero(numbers + 2, numbers + 2);
   for (Index n = 0; n < numbers; ++n) told.covariance(n, n) = deviations[n] * deviations[n];
   told.state.positions = model.rest;
-  for (Index v = 0; v < static_cast<Index>(model.rest.rows()); ++v) {
+  for (Index v = 0; v < model.rest.rows(); ++v) {
     told.state.positions(v, 0) = -model.rest(v, 1);
     told.state.positions(v, 1) = model.rest(v, 0);
   }

@@ -192,7 +192,7 @@ void compare_estimate(const Exported& map, const Eigen::VectorXd& commands, cons
   ++tally.estimated;
   for (std::size_t u = 0; u < unknowns.size(); ++u) {
     const Index i = unknowns[u].input;
-    const double deviation = std::sqrt(own->covariance(static_cast<Index>(u), static_cast<Index>(u)));
+    const double deviation = std::sqrt(own->covariance(u, u));
     EXPECT_NEAR(told[i], own->commands[i], (map.floats ? 0.05 : 0.003) * deviation) << map.data.name;
     // in float normal equations round what readings tell hardly
     EXPECT_NEAR(std::sqrt(covariance[i * inputs + i]), deviation, (map.floats ? 0.5 : 0.003) * deviation);

@@ -32,7 +32,7 @@ std::string commands_text(const std::vector<Eigen::VectorXd>& rows, const std::s
   std::string text;
   for (const Eigen::VectorXd& row : rows) {
     text += text.empty() ? "[" : ",";
-    for (Index i = 0; i < static_cast<Index>(row.size()); ++i)
+    for (Index i = 0; i < std::ssize(row); ++i)
       text += (i == 0 ? "[" : ",") + (std::isnan(row[i]) ? not_a_number : exact(row[i]));
     text += "]";
   }
@@ -51,7 +51,7 @@ Told told_by(const std::string& program, const std::filesystem::path& exported, 
 
 void expect_close(const Told& found, const Eigen::Ref<const Eigen::VectorXd>& wanted, double tolerance) {
   ASSERT_EQ(found.size(), static_cast<std::size_t>(wanted.size()));
-  for (Index i = 0; i < static_cast<Index>(wanted.size()); ++i)
+  for (Index i = 0; i < std::ssize(wanted); ++i)
     EXPECT_NEAR(found[i].get<double>(), wanted[i], tolerance * std::max(1.0, std::abs(wanted[i])));
 }
 

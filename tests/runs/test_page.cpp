@@ -114,7 +114,7 @@ TEST(Page, SurfaceIsClosedAndOutward) {
     const Points rest = points_of(surface.at("rest"));
     EXPECT_NEAR(enclosed_volume(rest, triangles), (27 - 1) * 64, 1e-3) << order;
     // a vertex of the surface comes before those that only the cable needs
-    std::vector<bool> of_surface(static_cast<std::size_t>(rest.rows()));
+    std::vector<bool> of_surface(rest.rows());
     for (const Triangle& t : triangles)
       for (const Index v : t) of_surface[v] = true;
     EXPECT_TRUE(std::is_partitioned(of_surface.begin(), of_surface.end(), [](bool is) { return is; }));
@@ -144,7 +144,7 @@ TEST(Page, StepsHaveTheShapeOfTheVtu) {
     const Points written = read_vtu_points(folder / "a.vtu"), shown = points_of(step.at("positions"));
     ASSERT_EQ(static_cast<std::size_t>(shown.rows()), document.vertices().size());
     const double rounding = std::sqrt(3) * 14 / 65535 / 2;  // the block reaches 13.44 mm along x, less across it
-    for (Index i = 0; i < static_cast<Index>(shown.rows()); ++i)
+    for (Index i = 0; i < shown.rows(); ++i)
       EXPECT_LT((shown.row(i) - written.row(document.vertices()[i])).norm(), rounding + 1e-5);
     EXPECT_EQ(step.at("status"), "not converged");
     EXPECT_EQ(step.at("remark"), record.remark);
@@ -255,7 +255,7 @@ MapData map_of_vertices(const Model& model) {
   std::mt19937 generator(9);
   shape.mean = model.rest.cast<float>().reshaped<Eigen::RowMajor>();
   shape.modes.resize(shape.mean.size(), shape.units.size());
-  for (Index k = 0; k < static_cast<Index>(shape.modes.size()); ++k)
+  for (Index k = 0; k < std::ssize(shape.modes); ++k)
     shape.modes.data()[k] = static_cast<std::int16_t>(static_cast<int>(generator() % 60000) - 30000);
   return map;
 }
@@ -292,7 +292,7 @@ TEST(Page, MapBendsTheVerticesOfThePage) {
       for (std::size_t k = 0; k < 3; ++k) {
         double at = static_cast<double>(mean[3 * i + k]);
         for (std::size_t m = 0; m < units.size(); ++m) at += units[m] * amplitudes[m] * modes[m * numbers + 3 * i + k];
-        EXPECT_NEAR(at, wanted(document.vertices()[i], static_cast<Index>(k)), 1e-4);
+        EXPECT_NEAR(at, wanted(document.vertices()[i], k), 1e-4);
       }
   }
   const MapData other = cable_map();

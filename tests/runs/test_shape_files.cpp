@@ -58,7 +58,7 @@ TEST(ShapeFiles, AStateIsReadAsItWasWritten) {
   const TemporaryFolder folder;
   State state{model.rest};
   state.positions(3, 1) += 1.0 / 3;
-  state.actuation = state.multipliers = Eigen::VectorXd::Constant(static_cast<Index>(model.actuators.size()), 0.1);
+  state.actuation = state.multipliers = Eigen::VectorXd::Constant(model.actuators.size(), 0.1);
   state.share = 1.0 / 7;
   state.anchors = {{4, 1, 2, Vec3(0.2, 0.3, 0.5), 1e-3}, {5, 0, 7, Vec3(1, 0, 0), 0}};
   state.history = std::make_shared<const ViscousHistory>(ViscousHistory{{1, 1.1, 0.9, 0.01, 0, 1.0 / 3}});

@@ -40,7 +40,7 @@ struct StackedBlocks {
     Mesh mesh = layered_mesh(lower, Vec3::Constant(size), Split::six, Split::six);
     Mesh other = layered_mesh(upper, Vec3::Constant(size), Split::six, Split::six);
     if (uneven) shift_inside(other.vertices);
-    const auto first = static_cast<Index>(mesh.vertices.rows());
+    const Index first = mesh.vertices.rows();
     mesh.vertices.conservativeResize(first + other.vertices.rows(), 3);
     mesh.vertices.bottomRows(other.vertices.rows()) = other.vertices.rowwise() + Eigen::RowVector3d(0, 0, size + gap);
     for (Tetrahedron t : other.tetrahedra) {
@@ -96,7 +96,7 @@ inline double push_of_gap(double z) {
 /// edges of order 2 they are a third of the edge's height beyond the nodes.
 [[nodiscard]] inline Eigen::VectorXd push_of_floor(const Model& model, const Points& positions,
                                                    const std::vector<Index>& vertices) {
-  Eigen::VectorXd push(static_cast<Index>(vertices.size())), height = positions.col(2);
+  Eigen::VectorXd push(vertices.size()), height = positions.col(2);
   for (const auto& [a, b, node] : model.contact.edges)
     height[node] = 4 * positions(node, 2) / 3 - (positions(a, 2) + positions(b, 2)) / 6;
   for (std::size_t i = 0; i < vertices.size(); ++i)

@@ -26,7 +26,7 @@ inline RobotSpec blown_ball(int cuts, int layers, double kilopascals, double nu,
   hollow.dimension = 2;
   for (const Triangle& t : boundary_of(mesh.tetrahedra, {}).triangles)
     if (std::all_of(t.begin(), t.end(), [&](Index v) { return mesh.vertices.row(v).norm() < inner + 1e-9; })) {
-      hollow.triangles.push_back(static_cast<Index>(mesh.triangles.size()));
+      hollow.triangles.push_back(mesh.triangles.size());
       mesh.triangles.push_back(t);
     }
   mesh.regions.push_back(std::move(hollow));

@@ -54,14 +54,14 @@ inline Pillow pillow(const Sheet& sheet) {
   for (std::size_t v = 0; v < sheet.points.size(); ++v) {
     below[v] = sheet.rim[v] ? static_cast<Index>(v) : static_cast<Index>(points.size());
     if (sheet.rim[v])
-      made.rim.push_back(static_cast<Index>(v));
+      made.rim.push_back(v);
     else
       points.push_back(sheet.points[v]);
   }
   made.top = 0;
   made.bottom = below[0];
-  made.mesh.vertices.resize(static_cast<Index>(points.size()), 3);
-  for (std::size_t v = 0; v < points.size(); ++v) made.mesh.vertices.row(static_cast<Index>(v)) = points[v].transpose();
+  made.mesh.vertices.resize(points.size(), 3);
+  for (std::size_t v = 0; v < points.size(); ++v) made.mesh.vertices.row(v) = points[v].transpose();
   made.mesh.triangles = sheet.triangles;
   for (const Triangle& t : sheet.triangles) made.mesh.triangles.push_back({below[t[0]], below[t[2]], below[t[1]]});
   return made;

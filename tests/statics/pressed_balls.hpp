@@ -77,7 +77,7 @@ struct PressedBalls {
 
   /// Another ball, its pole at the origin, turned up.
   static void append(Mesh& mesh, Mesh other) {
-    const auto first = static_cast<Index>(mesh.vertices.rows());
+    const Index first = mesh.vertices.rows();
     for (Index v = 0; v < other.vertices.rows(); ++v) {
       const Vec3 p = other.vertices.row(v);
       other.vertices.row(v) << p.y(), p.x(), -p.z() - radius;

@@ -13,7 +13,7 @@
 namespace softkin::testing {
 
 inline Actuation values(std::initializer_list<double> list) {
-  Actuation actuation(static_cast<Index>(list.size()));
+  Actuation actuation(list.size());
   std::copy(list.begin(), list.end(), actuation.data());
   return actuation;
 }

@@ -118,7 +118,7 @@ TEST(ContactAtRest, ARobotInside) {
   // in the hollow of a closed surface, and in a surface with a rim, there is room
   TriangleSurface hollow = box_surface({-50, -50, -50}, {100, 100, 100});
   const TriangleSurface cave = box_surface({-40, -40, -40}, {80, 80, 80});
-  const auto first = static_cast<Index>(hollow.vertices.rows());
+  const Index first = hollow.vertices.rows();
   hollow.vertices.conservativeResize(first + cave.vertices.rows(), 3);
   hollow.vertices.bottomRows(cave.vertices.rows()) = cave.vertices;
   for (const auto& [a, b, c] : cave.triangles) hollow.triangles.push_back({a + first, c + first, b + first});
@@ -147,13 +147,13 @@ TEST(ContactAtRest, ArmsThatTouchOrCross) {
 
   // two meshes in each other
   Mesh one = drawn({"#"}), two = drawn({"#"});
-  const auto first = static_cast<Index>(one.vertices.rows());
+  const Index first = one.vertices.rows();
   two.vertices.rowwise() += Eigen::RowVector3d(9, 0.5, 0.25);
   one.vertices.conservativeResize(2 * first, 3);
   one.vertices.bottomRows(first) = two.vertices;
   Region left{"left", 3, {}, {}, {}, {}, {}};
   for (std::size_t t = 0; t < two.tetrahedra.size(); ++t) {
-    left.tetrahedra.push_back(static_cast<Index>(t));
+    left.tetrahedra.push_back(t);
     Tetrahedron moved = two.tetrahedra[t];
     for (Index& v : moved) v += first;
     one.tetrahedra.push_back(moved);

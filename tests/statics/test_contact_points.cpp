@@ -49,7 +49,7 @@ struct NearBlocks {
     contacts.find_pairs(at, *scratch, alone, pairs);
     linear::Cliques cliques;
     contacts.add_cliques(pairs, cliques);
-    const linear::BlockPattern pattern(static_cast<Index>(at.rows()), cliques);
+    const linear::BlockPattern pattern(at.rows(), cliques);
     LargeVector<double> slots(9 * static_cast<std::size_t>(cliques.slots.back()), 5.0), blocks;
     contacts.stiffness(at, false, *scratch, pairs, slots.data());
     pattern.gather(slots, blocks, alone);
@@ -162,7 +162,7 @@ TEST(ContactPoints, AnEvenPressureComesAsItsConsistentLoads) {
   at.topRows(model.robot_vertices()).col(2).array() -= 0.4;
   const Points gradient = contact_gradient(model, at);
   const double pressure = push_of_gap(0.1 / 0.2), cell = BlockOnFloor::size / 3;
-  std::vector<double> area(static_cast<std::size_t>(at.rows()));
+  std::vector<double> area(at.rows());
   int corners = 0, edges = 0;
   const auto inside = [&](Index v) {
     const auto far = (model.rest.row(v).head<2>().array() - BlockOnFloor::size / 2).abs().maxCoeff();

@@ -79,8 +79,7 @@ struct Sample {
 /// A body below and one more triangle, whose first vertex alone carries area, far away at rest.
 struct Probe : Sample {
   Probe(std::vector<Corners> triangles, const Points& body, double reach)
-      : Sample(with_probe(std::move(triangles), static_cast<Index>(body.rows())), beside(body), reach),
-        vertex(static_cast<Index>(body.rows())) {
+      : Sample(with_probe(std::move(triangles), body.rows()), beside(body), reach), vertex(body.rows()) {
     std::fill(surface.edge_area.begin(), surface.edge_area.end(), 0);
     std::fill(surface.vertex_area.begin(), surface.vertex_area.end(), 0);
     surface.vertex_area[surface.surface.vertices.size() - 3] = 1;
@@ -121,7 +120,7 @@ std::unique_ptr<Sample> two_sheets(unsigned seed) {
   std::mt19937 engine(seed);
   const Points below = places(4, 0.2, 0, 0.15, engine), above = places(4, 0.2, 0.5, 0.15, engine);
   std::vector<Corners> triangles = sheet(4, 0, engine);
-  for (const Corners& t : sheet(4, static_cast<Index>(below.rows()), engine)) triangles.push_back(t);
+  for (const Corners& t : sheet(4, below.rows(), engine)) triangles.push_back(t);
   Points rest(below.rows() + above.rows(), 3);
   rest << below, above;
   Points apart = rest;

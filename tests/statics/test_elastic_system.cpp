@@ -58,7 +58,7 @@ void expect_consistent(const Model& model, const Eigen::VectorXd& actuation) {
   physical::Body system(model);
   Cliques cliques;
   system.add_cliques(cliques);
-  const Index n = static_cast<Index>(model.rest.rows());
+  const Index n = model.rest.rows();
   const BlockPattern pattern(n, cliques);
   physical::Body::Scratch scratch = system.make_scratch();
   const auto gradient_at = [&](const Points& p) {
@@ -118,11 +118,11 @@ TEST(Body, InvariantUnderRigidMotion) {
   for (const Model& model : {compile(mixed_laws()), compile(quadratic_laws())}) {
     const physical::Body system(model);
     physical::Body::Scratch scratch = system.make_scratch();
-    const Actuation actuation = Actuation::Ones(static_cast<Index>(model.actuators.size()));
+    const Actuation actuation = Actuation::Ones(model.actuators.size());
     Points gradient, turned;
     EXPECT_NEAR(system.force({actuation}, model.rest, scratch, gradient, alone).energy, 0, 1e-12);
     EXPECT_LT(gradient.norm(), 1e-11);
-    const Points positions = model.rest + noise(static_cast<Index>(model.rest.rows()), 0.3, 4);
+    const Points positions = model.rest + noise(model.rest.rows(), 0.3, 4);
     const Mat3 turn = Eigen::AngleAxisd(2, Vec3(1, -2, 3).normalized()).toRotationMatrix();
     const double energy = system.force({actuation}, positions, scratch, gradient, alone).energy;
     const Points moved = (positions * turn.transpose()).rowwise() + Eigen::RowVector3d(10, 20, -30);
@@ -141,7 +141,7 @@ TEST(Body, ProjectedStiffnessIsPositive) {
   physical::Body system(model);
   Cliques cliques;
   system.add_cliques(cliques);
-  const Index n = static_cast<Index>(model.rest.rows());
+  const Index n = model.rest.rows();
   const BlockPattern pattern(n, cliques);
   physical::Body::Scratch scratch = system.make_scratch();
   const Points positions = model.rest * Eigen::Vector3d(0.5, 0.9, 0.9).asDiagonal() + noise(n, 0.3, 5);

@@ -40,7 +40,7 @@ RobotSpec held_robot() {
 struct FreedomSample {
   explicit FreedomSample(const RobotSpec& spec) : model(compile(spec)) {
     for (const Tetrahedron& t : model.elements.tetrahedra) cliques.add(t);
-    const Index n = static_cast<Index>(model.rest.rows());
+    const Index n = model.rest.rows();
     cliques.add(std::vector<Index>{0, n - 1, n / 2, 3, n / 3});
     pattern.emplace(n, cliques);
     freedoms.emplace(model, *pattern);
@@ -143,7 +143,7 @@ TEST(Freedoms, ExpandIsTheSlopeOfMoveAndReduceItsTranspose) {
     sample.freedoms->move(unknowns, -reach, low);
     sample.freedoms->expand(unknowns, sample.positions, moves);
     EXPECT_LT(((high - low) / (2 * reach) - moves).norm(), 1e-8 * moves.norm());
-    const Points vectors = noise(static_cast<Index>(moves.rows()), 1, seed + 50);
+    const Points vectors = noise(moves.rows(), 1, seed + 50);
     Eigen::VectorXd reduced(sample.freedoms->size());
     sample.freedoms->reduce(vectors, sample.positions, reduced);
     EXPECT_NEAR(reduced.dot(unknowns), vectors.cwiseProduct(moves).sum(), 1e-10 * vectors.norm() * moves.norm());
@@ -183,11 +183,11 @@ TEST(Freedoms, ReducedMatrixIsTheDenseOne) {
 /// Vertices that were far apart in the order of elimination become neighbours, with each other and with regions.
 TEST(Freedoms, MatrixOfAWiderPatternIsTheDenseOne) {
   FreedomSample sample(held_robot());
-  const Index n = static_cast<Index>(sample.model.rest.rows());
+  const Index n = sample.model.rest.rows();
   std::mt19937 engine(11);
   for (int i = 0; i < 30; ++i) {
     std::set<Index> set;
-    while (set.size() < 4) set.insert(static_cast<Index>(engine() % static_cast<unsigned>(n)));
+    while (set.size() < 4) set.insert(engine() % static_cast<unsigned>(n));
     sample.cliques.add(std::vector<Index>(set.begin(), set.end()));
   }
   sample.pattern.emplace(n, sample.cliques);
@@ -262,7 +262,7 @@ TEST(Freedoms, HoldProjects) {
   const FreedomSample sample(held_robot());
   const Model& model = sample.model;
   for (const double share : {0.0, 0.4, 1.0}) {
-    Points positions = model.rest + noise(static_cast<Index>(model.rest.rows()), 2, 3);
+    Points positions = model.rest + noise(model.rest.rows(), 2, 3);
     const Points before = positions;
     sample.freedoms->hold(share, positions);
     for (Index v = 0; v < positions.rows(); ++v)

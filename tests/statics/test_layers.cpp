@@ -132,7 +132,7 @@ TEST(Layers, PlatesSinkAsKirchhoffSays) {
 
 TEST(Layers, StoreWhatAQuadraticSurfaceHas) {
   RobotSpec spec = physical_robot(block_mesh({5, 5, 1}, {10, 10, 2}));
-  const Points apart = noise(static_cast<Index>(spec.mesh.vertices.rows()), 0.3, 3);
+  const Points apart = noise(spec.mesh.vertices.rows(), 0.3, 3);
   for (Index v = 0; v < spec.mesh.vertices.rows(); ++v)  // irregular, but flat and with its border
     for (int axis = 0; axis < 2; ++axis)
       if (const double p = spec.mesh.vertices(v, axis); p > 0 && p < 10) spec.mesh.vertices(v, axis) += apart(v, axis);
@@ -241,7 +241,7 @@ TEST(Layers, StoreNothingOfATurn) {
   const Shaped still = energy_of_layers(at, at.model.rest * turn.transpose());
   EXPECT_LT(still.energy, 1e-20);
   EXPECT_LT(still.pull_N, 1e-10);
-  const Points shaken = at.model.rest + noise(static_cast<Index>(at.model.rest.rows()), 0.3, 3);
+  const Points shaken = at.model.rest + noise(at.model.rest.rows(), 0.3, 3);
   const double energy = energy_of_layers(at, shaken).energy;
   EXPECT_GT(energy, 0.1);
   EXPECT_NEAR(energy_of_layers(at, shaken * turn.transpose()).energy, energy, 1e-10 * energy);

@@ -46,7 +46,7 @@ TEST(LocalGlobal, EnergyFallsAtEveryIterationWhereTargetsAreFixed) {
     for (int a = 0; a < 3; ++a)
       actuation[a] = std::uniform_real_distribution<double>(model.actuators[a].low, model.actuators[a].high)(engine);
     State start = statics.rest();
-    if (round % 2) start.positions += noise(static_cast<Index>(model.rest.rows()), 3, round);
+    if (round % 2) start.positions += noise(model.rest.rows(), 3, round);
     const auto history = statics.solve(actuation, start, options).report.history;
     ASSERT_GT(history.size(), 5u);
     for (std::size_t i = 1; i < history.size(); ++i)
@@ -62,7 +62,7 @@ TEST(LocalGlobal, SameShapeFromRestAndFromARandomStart) {
   EXPECT_GT(largest_move(from_rest, model.rest), 1);
   for (const double size : {1.0, 5.0, 10.0, 20.0}) {
     State start = statics.rest();
-    start.positions += noise(static_cast<Index>(model.rest.rows()), size, 17);
+    start.positions += noise(model.rest.rows(), size, 17);
     for (const int anderson : {0, 6}) {
       if (anderson > 0 && size > 5) continue;  // from a crumpled start its jumps may end in another equilibrium
       const Equilibrium found = statics.solve(one(1.8), start, to_the_end(anderson));
@@ -317,7 +317,7 @@ TEST(LocalGlobal, OverflowEndsAsNotConvergedWithFiniteNumbers) {
   const Model model = compile(finger_robot(true));
   const Statics statics(model);
   State start = statics.rest();
-  start.positions += noise(static_cast<Index>(model.rest.rows()), 1e200, 3);
+  start.positions += noise(model.rest.rows(), 1e200, 3);
   const Equilibrium found = statics.solve(one(1.5), start, local_global());
   EXPECT_EQ(found.report.status, Status::not_converged);
   EXPECT_TRUE(found.state.positions.allFinite());
@@ -362,7 +362,7 @@ TEST(LocalGlobal, GradientNormIsThatOfTheEnergy) {
   StaticsOptions options = local_global();
   options.max_iterations = 1;
   State start = statics.rest();
-  start.positions += noise(static_cast<Index>(model.rest.rows()), 0.3, 1);
+  start.positions += noise(model.rest.rows(), 0.3, 1);
   for (Index v = 0; v < model.rest.rows(); ++v)
     if (model.held.fixed[v][0]) start.positions.row(v) = model.rest.row(v);
   const auto energy = [&](const Points& positions) {

@@ -18,7 +18,7 @@ struct FieldSample {
     add_field(spec, std::move(source), commands);
     model = compile(spec);
     fields = std::make_unique<physical::Fields>(model);
-    demand = {Actuation::Zero(static_cast<Index>(commands.size())), 1};
+    demand = {Actuation::Zero(commands.size()), 1};
   }
 
   /// In one lane of many, all at the same place; none where the field is not known there.

@@ -41,7 +41,7 @@ struct MagneticSample {
   explicit MagneticSample(const RobotSpec& spec) : model(compile(spec)), body(model), team(1) {
     body.add_cliques(cliques);
     magnets = std::make_unique<physical::Magnets>(model, body.element_slots());
-    positions = model.rest + noise(static_cast<Index>(model.rest.rows()), 0.3, 3);
+    positions = model.rest + noise(model.rest.rows(), 0.3, 3);
     demand.actuation = model.rest_actuation();
   }
 
@@ -60,7 +60,7 @@ struct MagneticSample {
     return value;
   }
   [[nodiscard]] Points stiffness_times(const Points& vectors, bool projected) {
-    const linear::BlockPattern pattern(static_cast<Index>(model.rest.rows()), cliques);
+    const linear::BlockPattern pattern(model.rest.rows(), cliques);
     LargeVector<double> slots(9 * static_cast<std::size_t>(cliques.slots.back())), blocks;
     std::fill(slots.begin(), slots.end(), 0.0);
     magnets->stiffness({positions, {}}, demand, projected, none, slots, team);
@@ -129,7 +129,7 @@ TEST(Magnets, StiffnessIsTheSlopeOfTheForces) {
       for (const char* of : {"uniform", "coil", "grid", "magnet"}) {
         MagneticSample sample(in_all_fields(elements, magnetisation));
         sample.demand.actuation = commands(sample.model, of, 2);
-        const Points along = noise(static_cast<Index>(sample.model.rest.rows()), 1, 7);
+        const Points along = noise(sample.model.rest.rows(), 1, 7);
         const Points exact = sample.stiffness_times(along, false);
         const Points slope =
             change_along([&](const Points& shape) { return sample.gradient(shape); }, sample.positions, along, 1e-4);
@@ -148,7 +148,7 @@ TEST(Magnets, ProjectedStiffnessIsPositive) {
         MagneticSample sample(in_all_fields(ElementKind::quadratic, magnetisation));
         sample.demand.actuation = commands(sample.model, of, value);
         for (unsigned seed = 1; seed < 10; ++seed) {
-          const Points along = noise(static_cast<Index>(sample.model.rest.rows()), 1, seed);
+          const Points along = noise(sample.model.rest.rows(), 1, seed);
           const double exact = along.cwiseProduct(sample.stiffness_times(along, false)).sum();
           const double positive = along.cwiseProduct(sample.stiffness_times(along, true)).sum();
           EXPECT_GE(positive, std::max(0.0, exact) - 1e-12) << of << value;
@@ -203,7 +203,7 @@ TEST(Magnets, CommandForcesAreTheSlopesByTheCommands) {
     MagneticSample sample(in_all_fields(ElementKind::quadratic, magnetisation));
     sample.demand = {commands(sample.model, "magnet", 0.2), 0.7};
     sample.demand.actuation += commands(sample.model, "coil", 1.5) - sample.model.rest_actuation();
-    for (Index a = 0; a < static_cast<Index>(sample.model.actuators.size()); ++a) {
+    for (Index a = 0; a < std::ssize(sample.model.actuators); ++a) {
       Points exact = Points::Zero(sample.positions.rows(), 3);
       sample.magnets->add_derivative(a, sample.demand, sample.positions, sample.none, exact, sample.team);
       physical::Demand high = sample.demand, low = sample.demand;

@@ -166,7 +166,7 @@ TEST(Material, EnergyGrowsWithTheVolumeAlone) {
     const target_shape::System system(model);
     target_shape::System::Scratch scratch = system.make_scratch();
     Team alone(1);
-    const Points positions = model.rest + scale * testing::noise(static_cast<Index>(model.rest.rows()), 0.3, 7);
+    const Points positions = model.rest + scale * testing::noise(model.rest.rows(), 0.3, 7);
     return system.local_step(testing::values({1.2, 1.5, 0.8}), positions, scratch, alone);
   };
   EXPECT_NEAR(energy(ElementWeights::mesh_independent, 2) / energy(ElementWeights::mesh_independent, 1), 8, 1e-6);

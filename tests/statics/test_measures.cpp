@@ -83,7 +83,7 @@ TEST(Measures, GradientAndSecondDerivativeAgreeWithDifferences) {
     supports::ActuatorMeasures measures(model);
     Cliques cliques;
     measures.add_cliques(cliques);
-    const Index n = static_cast<Index>(model.rest.rows());
+    const Index n = model.rest.rows();
     const BlockPattern pattern(n, cliques);
     const Points positions = model.rest + noise(n, 0.8, 1);
     LargeVector<double> slots(9 * static_cast<std::size_t>(cliques.slots.back()), 7.0), blocks;

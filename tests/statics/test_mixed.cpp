@@ -20,9 +20,9 @@ using namespace testing;
 /// A block of elements with pressures in a shape out of balance, under pressures out of balance.
 struct MixedSample : PhysicalEquations {
   explicit MixedSample(const RobotSpec& spec) : PhysicalEquations(compile(spec)) {
-    const auto count = static_cast<Index>(system.model().rest.rows());
+    const Index count = system.model().rest.rows();
     demand = {model.rest_actuation(), 1};
-    active.assign(static_cast<std::size_t>(system.actuators()), false);
+    active.assign(system.actuators(), false);
     at.positions = system.model().rest + noise(count, 0.3, 1);
     at.positions.col(0).tail(system.pressures()->count()) = noise(count, 4, 3).col(0).tail(system.pressures()->count());
     at.multipliers = Eigen::VectorXd::Zero(system.actuators());
@@ -72,7 +72,7 @@ TEST(MixedElements, StiffnessIsTheDerivativeOfTheGradient) {
     for (const Law law : laws_with_bulk) {
       MixedSample sample(small_block(law, quadratic));
       const Index pressures = sample.system.pressures()->count();
-      Points along = noise(static_cast<Index>(sample.at.positions.rows()), 1, 7);
+      Points along = noise(sample.at.positions.rows(), 1, 7);
       along.bottomRightCorner(pressures, 2).setZero();
       (void)sample.gradient(sample.at.positions);
       sample.system.assemble(sample.at, sample.demand, sample.balance, physical::System::Stiffness::exact, sample.work,
@@ -107,7 +107,7 @@ TEST(MixedElements, NegativePivotsAreThoseOfTheShape) {
                              sample.team);
       sample.system.gather(sample.at, sample.balance, sample.work, sample.team);
       sample.system.multiply(sample.at, Eigen::MatrixXd::Identity(size, size), sample.work, whole, sample.team);
-      std::vector<bool> scalar(static_cast<std::size_t>(size));
+      std::vector<bool> scalar(size);
       for (const Index u : sample.system.freedoms().scalar_unknowns()) scalar[u] = true;
       std::vector<Index> moves, own;
       for (Index u = 0; u < size; ++u) (scalar[u] ? own : moves).push_back(u);
@@ -146,13 +146,13 @@ double inf_sup(int cells, bool quadratic, bool smoothed) {
   std::vector<Index> own = system.freedoms().scalar_unknowns(), moves;
   for (Index u = 0; u < size; ++u)
     if (std::find(own.begin(), own.end(), u) == own.end()) moves.push_back(u);
-  const auto count = static_cast<Index>(own.size());
+  const Index count = own.size();
   const double unit = system.pressures()->unit;
   const Eigen::MatrixXd across = whole(moves, own) / unit;
   Eigen::MatrixXd schur = across.transpose() * Eigen::MatrixXd(whole(moves, moves)).ldlt().solve(across);
   if (smoothed) schur -= whole(own, own) / (unit * unit);
   // norm of pressures by place of the unknowns
-  std::vector<Index> place(static_cast<std::size_t>(count));
+  std::vector<Index> place(count);
   Points places = Points::Zero(system.model().rest.rows(), 3);
   for (Index p = 0; p < count; ++p) places(system.pressures()->first + p, 0) = static_cast<double>(p);
   Eigen::VectorXd reduced(size);

@@ -78,7 +78,7 @@ void expect_derivatives(const RobotSpec& spec, const Actuation& actuation, const
     EXPECT_LE((slopes.reactions[p] - expected.reactions).cwiseAbs().maxCoeff(),
               10 * tolerance * expected.reactions.cwiseAbs().maxCoeff() + 1e-8 / numbers[p].size)
         << numbers[p].name;
-    const Eigen::VectorXd multipliers = slopes.multipliers.col(static_cast<Index>(p));
+    const Eigen::VectorXd multipliers = slopes.multipliers.col(p);
     EXPECT_LE((multipliers - expected.multipliers).cwiseAbs().maxCoeff(),
               tolerance * expected.multipliers.cwiseAbs().maxCoeff() + 1e-9 / numbers[p].size)
         << numbers[p].name;
@@ -102,7 +102,7 @@ void expect_gradients(const RobotSpec& spec, const Actuation& actuation, const s
     const NumberDifference by = difference_by(spec, numbers[p], found.state);
     const double places = weights.cwiseProduct(by.positions).sum(), loads = by_loads.dot(by.multipliers);
     const double size = by.positions.cwiseAbs().sum(), load_size = by.multipliers.cwiseAbs().sum();
-    const auto row = slopes.col(static_cast<Eigen::Index>(p));
+    const auto row = slopes.col(p);
     EXPECT_NEAR(row[0], places, tolerance * size) << numbers[p].name;
     EXPECT_NEAR(row[1], loads, tolerance * load_size + 1e-9 / numbers[p].size) << numbers[p].name;
     EXPECT_NEAR(row[2], row[0] + row[1], 1e-7 * (size + load_size)) << numbers[p].name;

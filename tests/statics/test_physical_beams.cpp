@@ -135,13 +135,13 @@ Mesh with_middles(Mesh mesh) {
   for (std::size_t t = mesh.tetrahedra.size(); t-- > 0;)
     for (std::size_t e = 0; e < 6; ++e) {
       const Index from = mesh.tetrahedra[t][edges[e][0]], to = mesh.tetrahedra[t][edges[e][1]];
-      const auto number = static_cast<Index>(mesh.vertices.rows() + places.size());
+      const Index number = mesh.vertices.rows() + places.size();
       const auto [middle, is_new] = middles.try_emplace({from, to}, number);
       if (is_new) places.push_back(0.5 * (mesh.vertices.row(from) + mesh.vertices.row(to)).transpose());
       mesh.edge_nodes[t][e] = middle->second;
     }
-  const Index corners = static_cast<Index>(mesh.vertices.rows());
-  mesh.vertices.conservativeResize(corners + static_cast<Index>(places.size()), 3);
+  const Index corners = mesh.vertices.rows();
+  mesh.vertices.conservativeResize(corners + std::ssize(places), 3);
   for (std::size_t i = 0; i < places.size(); ++i)
     mesh.vertices.row(corners + static_cast<Index>(i)) = places[i].transpose();
   return mesh;
@@ -152,7 +152,7 @@ Mesh with_middles(Mesh mesh) {
 /// Order 2 read from a file is order 2 made from order 1.
 TEST(PhysicalBeams, ElevatedIsTheSameAsRead) {
   RobotSpec made = bending_finger();
-  const Index corners = static_cast<Index>(made.mesh.vertices.rows());
+  const Index corners = made.mesh.vertices.rows();
   RobotSpec read = made;
   made.mesh_options.quadratic = true;
   const std::filesystem::path file = ::testing::TempDir() + "softkin_order_2_" + std::to_string(::getpid()) + ".msh";

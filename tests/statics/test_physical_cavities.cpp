@@ -54,7 +54,7 @@ RobotSpec round_finger() {
     Vec3 p = Vec3::Zero();
     for (const Index v : square.tetrahedra[i]) p += 0.25 * vertex_at(square.vertices, v);
     if (p.x() > 5 && p.x() < 35 && (p.tail<2>().array() - 10).abs().maxCoeff() < 6)
-      mesh.regions.back().tetrahedra.push_back(static_cast<Index>(i));
+      mesh.regions.back().tetrahedra.push_back(i);
   }
   RobotSpec spec = physical_robot(std::move(mesh));
   spec.actuators = {air("chamber")};

@@ -45,7 +45,7 @@ double bent_rod(int corners, int layers, bool curved) {
   end.dimension = 2;
   for (const Triangle& t : boundary_of(spec.mesh.tetrahedra, {}).triangles)
     if (std::all_of(t.begin(), t.end(), [&](Index v) { return spec.mesh.vertices(v, 0) == length; })) {
-      end.triangles.push_back(static_cast<Index>(spec.mesh.triangles.size()));
+      end.triangles.push_back(spec.mesh.triangles.size());
       spec.mesh.triangles.push_back(t);
     }
   spec.mesh.regions.push_back(end);
@@ -92,7 +92,7 @@ double blown_tube(int corners, bool curved) {
     const Tetrahedron& all = mesh.tetrahedra[t];
     const bool inside = std::all_of(all.begin(), all.end(),
                                     [&](Index v) { return mesh.vertices.row(v).tail<2>().norm() < 0.6 * outer_mm; });
-    mesh.regions[inside ? 1 : 0].tetrahedra.push_back(static_cast<Index>(t));
+    mesh.regions[inside ? 1 : 0].tetrahedra.push_back(t);
   }
   for (Index v = 0; v < mesh.vertices.rows(); ++v)
     if (mesh.vertices.row(v).tail<2>().norm() < 0.6 * outer_mm)

@@ -23,7 +23,7 @@ TEST(PhysicalSolve, TheStartDoesNotMatter) {
   State unknown{other.state.positions};
   State with_pressure{other.state.positions, {}, other.state.multipliers};
   State wrong{other.state.positions, values({1, 1})};  // says that it is at rest
-  State shaken{model.rest + noise(static_cast<Index>(model.rest.rows()), 0.3, 1)};
+  State shaken{model.rest + noise(model.rest.rows(), 0.3, 1)};
   for (const State& start : {other.state, unknown, with_pressure, wrong, shaken}) {
     const Equilibrium found = statics.solve(asked, start, tight());
     EXPECT_EQ(found.report.status, Status::converged) << found.report.remark;

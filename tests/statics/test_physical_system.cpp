@@ -26,10 +26,10 @@ RobotSpec full_robot() {
 struct SystemSample : PhysicalEquations {
   explicit SystemSample(const RobotSpec& spec) : PhysicalEquations(compile(spec)) {
     demand = {Actuation::Constant(system.actuators(), 1.2), 1};
-    at.positions = model.rest + noise(static_cast<Index>(model.rest.rows()), 0.1, 1);
+    at.positions = model.rest + noise(model.rest.rows(), 0.1, 1);
     system.freedoms().hold(1, at.positions);
     at.multipliers = Eigen::VectorXd::Constant(system.actuators(), 0.01);
-    active.assign(static_cast<std::size_t>(system.actuators()), true);
+    active.assign(system.actuators(), true);
     for (Index a = 0; a < system.actuators(); ++a) active[a] = system.measures().constrains(a);
   }
 

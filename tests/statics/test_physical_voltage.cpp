@@ -209,7 +209,7 @@ TEST(PhysicalVoltage, SharesOfTheVoltage) {
   const std::size_t count = spec.mesh.prisms.size();
   PrismValues shares;
   for (std::size_t e = count; e-- > 0;) {
-    shares.prisms.push_back(static_cast<Index>(e));
+    shares.prisms.push_back(e);
     shares.values.push_back(0.5);
     shares.origins.push_back({});
   }

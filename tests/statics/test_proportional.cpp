@@ -22,7 +22,7 @@ struct ProportionalCase {
         system(model),
         local(system.make_scratch()),
         out(system.make_scratch()),
-        positions(model.rest + noise(static_cast<Index>(model.rest.rows()), 0.3, 5)) {}
+        positions(model.rest + noise(model.rest.rows(), 0.3, 5)) {}
 
   [[nodiscard]] Points residual_at(const Actuation& actuation, const Points& at) {
     system.local_step(actuation, at, local, alone);
@@ -68,7 +68,7 @@ TEST(Proportional, ResidualChangesAsTheDifferenceQuotientSays) {
   for (const double shape_ratio : {1.0, 0.5}) {
     ProportionalCase c(proportional(mixed_robot(true, shape_ratio)));
     EXPECT_FALSE(c.system.is_gradient());
-    const Points along = noise(static_cast<Index>(c.model.rest.rows()), 1, 9);
+    const Points along = noise(c.model.rest.rows(), 1, 9);
     constexpr double h = 1e-5;
     for (const Actuation& at : {values({1.2, 1.5, 0.85}), values({1, 1, 1}), values({1.3, 0.7, 0.95})}) {
       const Points by_shape =

@@ -60,7 +60,7 @@ TEST(Reference, ThreeChamberFixedPoint) {
   options.anderson = 10;
   const Equilibrium found = statics.solve((Actuation(3) << 2, 1, 1).finished(), statics.rest(), options);
   EXPECT_EQ(found.report.status, Status::converged);
-  const Points reference = read_xyz(folder / "robot3_s_w5_alpha2-1-1.xyz", static_cast<Index>(model.rest.rows()));
+  const Points reference = read_xyz(folder / "robot3_s_w5_alpha2-1-1.xyz", model.rest.rows());
   const double distance = (aligned(reference, found.state.positions) - reference).rowwise().norm().maxCoeff();
   RecordProperty("largest_distance_mm", std::to_string(distance));
   EXPECT_LT(distance, 1e-4);

@@ -42,7 +42,7 @@ TEST(GlobalStep, MinimisesTheQuadraticOverVerticesAndPosesTogether) {
   Team alone(1);
   target_shape::System::Scratch scratch = system.make_scratch();
   for (unsigned seed = 1; seed <= 5; ++seed) {
-    Points positions = model.rest + noise(static_cast<Index>(model.rest.rows()), 2, seed);
+    Points positions = model.rest + noise(model.rest.rows(), 2, seed);
     std::vector<supports::Pose> poses = global.project(model.rest_actuation(), positions);
     system.local_step((Actuation(3) << 1.3, 1.8, 0.8).finished(), positions, scratch, alone);
     const Points residual = scratch.residual, before = positions;

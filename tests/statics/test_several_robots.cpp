@@ -34,12 +34,12 @@ void expect_alike(const RobotSpec& spec, const std::vector<Placement>& places, c
                   double close = 1e-9) {
   const Model alone = compile(spec), all = compile(together(spec, places));
   const Statics one(alone), whole(all);
-  Actuation every(static_cast<Index>(alone.actuators.size() * places.size()));
+  Actuation every(alone.actuators.size() * places.size());
   for (std::size_t i = 0; i < places.size(); ++i)
     every.segment(static_cast<Index>(i) * asked[i].size(), asked[i].size()) = asked[i];
   const Equilibrium found = whole.solve(every, {all.rest}, tight());
   ASSERT_EQ(found.report.status, Status::converged) << found.report.remark;
-  const auto count = static_cast<Index>(alone.rest.rows());
+  const Index count = alone.rest.rows();
   ASSERT_EQ(all.rest.rows(), count * static_cast<Index>(places.size()));
   for (std::size_t i = 0; i < places.size(); ++i) {
     const Equilibrium expected = one.solve(asked[i], {alone.rest}, tight());

@@ -148,7 +148,7 @@ TEST(SheetContact, PillowsThatPressEachOtherAreFlatAsOnAPlate) {
   // mirror images: what is between them is as a plate is; the other plate is too far away to be touched
   constexpr double apart = 60;
   const Pillow made = pillow(disc(radius, 6));
-  const auto count = static_cast<Index>(made.mesh.vertices.rows());
+  const Index count = made.mesh.vertices.rows();
   RobotSpec spec = film_robot(made);
   spec.mesh.vertices.conservativeResize(2 * count, 3);
   spec.mesh.vertices.bottomRows(count) = made.mesh.vertices.rowwise() + Eigen::RowVector3d(0, 0, apart);
@@ -157,8 +157,8 @@ TEST(SheetContact, PillowsThatPressEachOtherAreFlatAsOnAPlate) {
   for (std::size_t t = 0; t < faces; ++t) {
     const Triangle of = made.mesh.triangles[t];
     spec.mesh.triangles.push_back({of[0] + count, of[1] + count, of[2] + count});
-    lower.triangles.push_back(static_cast<Index>(t));
-    upper.triangles.push_back(static_cast<Index>(faces + t));
+    lower.triangles.push_back(t);
+    upper.triangles.push_back(faces + t);
   }
   spec.mesh.regions = {lower, upper};
   spec.fixed.clear();
@@ -217,8 +217,8 @@ TEST(SheetContact, AFilmOnABodyLiftsWhatLiesOnIt) {
     return known->second;
   };
   const auto add = [&](const Triangle& t, Region* region) {
-    if (region != nullptr) region->triangles.push_back(static_cast<Index>(mesh.triangles.size()));
-    pouch.triangles.push_back(static_cast<Index>(mesh.triangles.size()));
+    if (region != nullptr) region->triangles.push_back(mesh.triangles.size());
+    pouch.triangles.push_back(mesh.triangles.size());
     mesh.triangles.push_back(t);
   };
   for (const Triangle& t : below) {

@@ -215,7 +215,7 @@ TEST(Sheets, HangOnABodyAndPullIt) {
   RobotSpec spec = physical_robot(block_mesh({2, 2, 2}, {10, 10, 10}));
   spec.fixed = {{{Selector(Box{{-1, -1, -1}, {11, 11, 11}}), {}}, {true, true, true}}};
   Mesh& mesh = spec.mesh;
-  const Index before = static_cast<Index>(mesh.vertices.rows());
+  const Index before = mesh.vertices.rows();
   const auto corner = [&](double y) {
     for (Index v = 0; v < before; ++v)
       if ((vertex_at(mesh.vertices, v) - Vec3(10, y, 10)).norm() < 1e-9) return v;
@@ -227,7 +227,7 @@ TEST(Sheets, HangOnABodyAndPullIt) {
   for (Index i = 0; i < 2; ++i)
     for (const Triangle& t : {Triangle{corner(5.0 * i), before + i, before + i + 1},
                               Triangle{corner(5.0 * i), before + i + 1, corner(5.0 * i + 5)}}) {
-      flap.triangles.push_back(static_cast<Index>(mesh.triangles.size()));
+      flap.triangles.push_back(mesh.triangles.size());
       mesh.triangles.push_back(t);
     }
   mesh.regions.push_back(flap);
@@ -284,7 +284,7 @@ TEST(Sheets, AreRefusedWithAReason) {
               "order 2");
   expect_says(refusal([](RobotSpec& spec) {  // a mesh of order 2 whose triangles have no nodes on their edges
                 Mesh mesh = elevated(block_mesh({1, 1, 1}, {10, 10, 10}));
-                const auto before = static_cast<Index>(mesh.vertices.rows());
+                const Index before = mesh.vertices.rows();
                 mesh.vertices.conservativeResize(before + 1, 3);
                 mesh.vertices.bottomRows(1) << 20, 0, 0;
                 mesh.regions.push_back({"flap", 2, {}, {}, {static_cast<Index>(mesh.triangles.size())}, {}, {}});

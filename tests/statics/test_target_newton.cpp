@@ -124,7 +124,7 @@ TEST(TargetNewton, FromRandomStarts) {
     const Points expected = statics.solve(values({1.8}), statics.rest(), as_printed()).state.positions;
     for (const double size : {0.3, 1.0, 3.0}) {
       State start = statics.rest();
-      start.positions += noise(static_cast<Index>(model.rest.rows()), size, 17);
+      start.positions += noise(model.rest.rows(), size, 17);
       const Equilibrium found = statics.solve(values({1.8}), start, newton(1e-8));
       EXPECT_EQ(found.report.status, Status::converged);
       EXPECT_LT(largest_move(found.state.positions, expected), 1e-6) << "noise of " << size << " mm";
@@ -214,7 +214,7 @@ TEST(TargetNewton, OverflowEndsAsNotConvergedWithFiniteNumbers) {
   const Model model = compile(finger_robot(true));
   const Statics statics(model);
   State start = statics.rest();
-  start.positions += noise(static_cast<Index>(model.rest.rows()), 1e200, 3);
+  start.positions += noise(model.rest.rows(), 1e200, 3);
   const Equilibrium found = statics.solve(values({1.5}), start);
   EXPECT_EQ(found.report.status, Status::not_converged);
   EXPECT_TRUE(found.state.positions.allFinite());

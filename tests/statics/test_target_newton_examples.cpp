@@ -72,7 +72,7 @@ std::string test_name(const ::testing::TestParamInfo<fs::path>& scene) {
 TEST_P(NewtonExample, FromRestToEveryCornerOfTheRangesInOneCall) {
   const std::size_t count = model_.actuators.size();
   for (unsigned corner = 0; corner < 1u << count; ++corner) {
-    Actuation actuation(static_cast<Index>(count));
+    Actuation actuation(count);
     for (std::size_t a = 0; a < count; ++a)
       actuation[a] = corner >> a & 1 ? model_.actuators[a].high : model_.actuators[a].low;
     expect_solved(actuation);

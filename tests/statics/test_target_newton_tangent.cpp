@@ -18,7 +18,7 @@ Actuation away_from_rest() {
 /// A robot at a shape that is no equilibrium, after a local step.
 struct Case {
   explicit Case(const RobotSpec& spec) : model(compile(spec)), system(model), local(system.make_scratch()) {
-    positions = model.rest + noise(static_cast<Index>(model.rest.rows()), 0.3, 4);
+    positions = model.rest + noise(model.rest.rows(), 0.3, 4);
   }
 
   Points residual_at(const Points& shape) {
@@ -47,7 +47,7 @@ TEST(TargetTangent, ResidualChangesAsTheDifferenceQuotientSays) {
     for (const double shape_ratio : {1.0, 0.5}) {
       Case c(mixed_robot(least_norm, shape_ratio));
       EXPECT_EQ(c.system.is_gradient(), !least_norm && shape_ratio == 1);
-      const Points along = noise(static_cast<Index>(c.model.rest.rows()), 1, 9);
+      const Points along = noise(c.model.rest.rows(), 1, 9);
       c.system.local_step(away_from_rest(), c.positions, c.local, c.alone);
       target_shape::System::Scratch out = c.system.make_scratch();
       c.system.residual_change(c.local, along, out, c.alone);
@@ -61,7 +61,7 @@ TEST(TargetTangent, ResidualChangesAsTheDifferenceQuotientSays) {
 TEST(TargetTangent, MatrixIsTheDerivativeWhereThatIsSymmetric) {
   Case c(mixed_robot(false));
   const target_shape::NewtonMatrix matrix(c.model, c.system);
-  const Points along = noise(static_cast<Index>(c.model.rest.rows()), 1, 9);
+  const Points along = noise(c.model.rest.rows(), 1, 9);
   c.system.local_step(away_from_rest(), c.positions, c.local, c.alone);
   target_shape::System::Scratch out = c.system.make_scratch();
   c.system.residual_change(c.local, along, out, c.alone);
@@ -108,7 +108,7 @@ TEST(TargetTangent, SolvesTheExactDerivative) {
         Case c(rigid ? with_rigid_regions(spec) : spec);
         const target_shape::Unknowns unknowns(c.model, c.system);
         target_shape::Tangent tangent(unknowns);
-        c.positions = c.model.rest + noise(static_cast<Index>(c.model.rest.rows()), 0.1, 4);
+        c.positions = c.model.rest + noise(c.model.rest.rows(), 0.1, 4);
         unknowns.freedoms.hold(1, c.positions);
         c.system.local_step(away_from_rest(), c.positions, c.local, c.alone);
         SolveReport report;
@@ -138,7 +138,7 @@ TEST(TargetTangent, FactorisesAnyShape) {
   target_shape::Tangent tangent(unknowns);
   SolveReport report;
   for (unsigned seed = 1; seed <= 5; ++seed) {
-    c.positions = c.model.rest + noise(static_cast<Index>(c.model.rest.rows()), 5, seed);
+    c.positions = c.model.rest + noise(c.model.rest.rows(), 5, seed);
     c.system.local_step(away_from_rest(), c.positions, c.local, c.alone);
     ASSERT_TRUE(tangent.factorise(c.local, c.positions, false, c.alone, report));
     Eigen::VectorXd right, step;
@@ -158,7 +158,7 @@ TEST(Gmres, SolvesAsADenseFactorDoes) {
       const Eigen::MatrixXd matrix =
           Eigen::MatrixXd::Random(size, size) + 2 * std::sqrt(size) * Eigen::MatrixXd::Identity(size, size);
       const Eigen::VectorXd right = Eigen::VectorXd::Random(size);
-      std::vector<Eigen::VectorXd> basis(static_cast<std::size_t>(columns) + 1);
+      std::vector<Eigen::VectorXd> basis(columns + 1);
       Eigen::VectorXd x;
       const auto product = [&](const Eigen::VectorXd& in, Eigen::VectorXd& out) { out = matrix * in; };
       EXPECT_TRUE(linear::gmres(product, right, 1e-12, 200, basis, x));

@@ -32,7 +32,7 @@ TEST(TargetSensitivity, ResidualChangesWithCommandsAsTheDifferenceQuotientSays) 
       const Model model = compile(mixed_robot(least_norm, shape_ratio));
       const target_shape::System system(model);
       target_shape::System::Scratch local = system.make_scratch(), out = system.make_scratch();
-      const Points positions = model.rest + noise(static_cast<Index>(model.rest.rows()), 0.3, 4);
+      const Points positions = model.rest + noise(model.rest.rows(), 0.3, 4);
       for (const Actuation& at : {values({1.2, 1.5, 0.85}), values({1, 1, 1}), values({1.2, 0.005, 0.85})}) {
         const auto residual_at = [&](Index actuator, double change) {
           Actuation actuation = at;

@@ -173,7 +173,7 @@ RobotSpec fibrous_robot(Split split, bool quadratic) {
 /// The terms of a robot in a shape out of balance.
 struct TermsSample : PhysicalEquations {
   TermsSample(const RobotSpec& spec, double shake, const Vec3& move) : PhysicalEquations(compile(spec)) {
-    active.resize(static_cast<std::size_t>(system.actuators()));
+    active.resize(system.actuators());
     demand = {model.rest_actuation(), 0.7, 0.4};
     std::mt19937 engine(5);
     std::uniform_real_distribution<double> within(0.05, 0.2);
@@ -182,13 +182,13 @@ struct TermsSample : PhysicalEquations {
       const double reach = std::min({high - demand.actuation[a], 1.0});
       demand.actuation[a] += (reach > 0 ? reach : low - demand.actuation[a]) * within(engine);
     }
-    at.positions = model.rest + noise(static_cast<Index>(model.rest.rows()), shake, 1);
+    at.positions = model.rest + noise(model.rest.rows(), shake, 1);
     at.positions.rowwise() += move.transpose();
     system.placement().hold({demand.actuation, 0, 0}, at.positions);
     at.multipliers = Eigen::VectorXd::Zero(system.actuators());
-    work.fading.force = noise(static_cast<Index>(model.rest.rows()), 1, 9);
+    work.fading.force = noise(model.rest.rows(), 1, 9);
     (void)renew_friction(system, at.positions, {at.positions, at.positions}, at, work, team);
-    along = noise(static_cast<Index>(model.rest.rows()), 1, 7);
+    along = noise(model.rest.rows(), 1, 7);
   }
 
   struct Found {

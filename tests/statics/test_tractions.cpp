@@ -213,7 +213,7 @@ TEST(Tractions, AreRefusedWithAReason) {
   middle.dimension = 2;
   const Tetrahedron& t = inside.mesh.tetrahedra[5];
   for (const auto& face : tetrahedron_faces) {
-    middle.triangles.push_back(static_cast<Index>(inside.mesh.triangles.size()));
+    middle.triangles.push_back(inside.mesh.triangles.size());
     inside.mesh.triangles.push_back({t[face[0]], t[face[1]], t[face[2]]});
   }
   inside.mesh.regions.push_back(middle);

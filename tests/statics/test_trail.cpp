@@ -96,7 +96,7 @@ TEST(Trail, LoadsThatAreGivenAreThoseThatAreAskedFor) {
   double farthest = 0;
   for (int step = 0; step < 60; ++step) {
     const double t = 0.1 * step;
-    Actuation loads(static_cast<Index>(model.actuators.size()));
+    Actuation loads(model.actuators.size());
     for (Index a = 0; a < loads.size(); ++a) loads[a] = 20 + 15 * std::sin((1 + 0.4 * a) * t + a);
     loads[loads.size() - 1] = 0.2 + 0.1 * std::cos(1.3 * t);
     const Equilibrium found = tracked.solve(loads, at);

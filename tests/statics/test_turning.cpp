@@ -233,7 +233,7 @@ TEST(TurnedSupport, IsPredictedWithAFactorInDoublePrecision) {
   const physical::Demand here{found.state.actuation, 1};
   const physical::Iterate at = system.iterate(found.state);
   physical::Balance balance;
-  const std::vector<bool> none(static_cast<std::size_t>(system.actuators()));
+  const std::vector<bool> none(system.actuators());
   system.evaluate(at, here, none, work, balance, team);
   (void)system.factorise(at, here, none, balance, {}, work, team);
   ASSERT_TRUE(work.saddle.factor().in_double());

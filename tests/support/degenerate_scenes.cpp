@@ -44,8 +44,8 @@ PressedBody shaped(const Cell& cells, const Place& place, const Keep& keep = {})
     std::sort(distinct.begin(), distinct.end());
     if (std::adjacent_find(distinct.begin(), distinct.end()) == distinct.end()) body.tetrahedra.push_back(t);
   }
-  body.vertices.resize(static_cast<Eigen::Index>(places.size()), 3);
-  for (std::size_t v = 0; v < places.size(); ++v) body.vertices.row(static_cast<Eigen::Index>(v)) = places[v];
+  body.vertices.resize(places.size(), 3);
+  for (std::size_t v = 0; v < places.size(); ++v) body.vertices.row(v) = places[v];
   sort_unique(body.held);
   return body;
 }

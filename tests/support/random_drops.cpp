@@ -20,7 +20,7 @@ using random_robots::Draw;
 
 PressedBody body_of(const std::vector<Vec3>& points, std::vector<Tetrahedron> tetrahedra) {
   PressedBody body{Points(points.size(), 3), std::move(tetrahedra), {}};
-  for (std::size_t i = 0; i < points.size(); ++i) body.vertices.row(static_cast<Eigen::Index>(i)) = points[i];
+  for (std::size_t i = 0; i < points.size(); ++i) body.vertices.row(i) = points[i];
   return body;
 }
 
@@ -124,7 +124,7 @@ bool span_area(const PressedBody& body, double area) {
 void hold_far_side(PressedBody& body, double side) {
   const Eigen::VectorXd height = side * body.vertices.col(2);
   const double extent = height.maxCoeff() - height.minCoeff();
-  std::vector<Index> farthest_first(static_cast<std::size_t>(height.size()));
+  std::vector<Index> farthest_first(height.size());
   std::iota(farthest_first.begin(), farthest_first.end(), 0);
   std::sort(farthest_first.begin(), farthest_first.end(), [&](Index a, Index b) { return height[a] > height[b]; });
   for (const Index v : farthest_first) {
@@ -151,7 +151,7 @@ class Meeting {
   Meeting(const PressedBody& lower, const PressedBody& upper) {
     const Mesh mesh = two_bodies("", lower, upper, Vec3::Zero()).mesh;
     vertices_ = mesh.vertices;
-    upper_ = static_cast<Index>(lower.vertices.rows());
+    upper_ = lower.vertices.rows();
     triangles_ = boundary_of(mesh.tetrahedra, {}).triangles;
     for (const Triangle& t : triangles_) group_.push_back(t[0] < upper_ ? 0 : 1);
   }
@@ -195,7 +195,7 @@ std::optional<Drop> attempt(Draw& draw, const std::string& name) {
   PressedBody upper = draw_body(draw, size, 1);
   const auto height = upper.vertices.col(2);
   Drop drop;
-  drop.upper = static_cast<Index>(lower.vertices.rows());
+  drop.upper = lower.vertices.rows();
   drop.size_mm = height.maxCoeff() - height.minCoeff();
   drop.gap_mm = drop.size_mm * draw.log_between(0.02, 0.5);
   drop.displacement.z() = -drop.size_mm * draw.between(0.2, 0.8);

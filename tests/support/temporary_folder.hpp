@@ -32,7 +32,7 @@ class TemporaryFolder {
   }
   [[nodiscard]] std::size_t files() const {
     const std::filesystem::directory_iterator begin(path_), end;
-    return static_cast<std::size_t>(std::distance(begin, end));
+    return std::distance(begin, end);
   }
 
  private:

@@ -82,7 +82,7 @@ TEST(RandomDrops, LeaveRoomForTheBodies) {
     const double room = *std::min_element(top.begin(), top.end()) - *std::max_element(bottom.begin(), bottom.end());
     least = std::min(least, room / drop.size_mm);
     held += bottom.size() + top.size();
-    all += static_cast<std::size_t>(model.rest.rows());
+    all += model.rest.rows();
   }
   EXPECT_GT(least, 0.299);
   EXPECT_LT(held, all / 2);

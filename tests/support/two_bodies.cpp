@@ -22,7 +22,7 @@ RobotSpec two_bodies(const std::string& name, const PressedBody& lower, const Pr
   RobotSpec spec;
   spec.name = name;
   spec.formulation = Formulation::physical;
-  const auto first = static_cast<Index>(lower.vertices.rows());
+  const Index first = lower.vertices.rows();
   spec.mesh.vertices.resize(first + upper.vertices.rows(), 3);
   spec.mesh.vertices << lower.vertices, upper.vertices;
   spec.mesh.tetrahedra = lower.tetrahedra;

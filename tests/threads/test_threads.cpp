@@ -24,7 +24,7 @@ TEST(Threads, TeamsSideBySideDoEveryPieceOnce) {
       Team team(3);
       for (int round = 0; round < 50; ++round) {
         std::vector<int> done(100, 0);  // not atomic: two threads at one index would be a race
-        team.each(static_cast<Index>(done.size()), [&](Index i) { ++done[i]; });
+        team.each(done.size(), [&](Index i) { ++done[i]; });
         for (const int count : done) ASSERT_EQ(count, 1);
       }
     });
@@ -83,7 +83,7 @@ TEST(Threads, AStoreTakesRecordsOfSeveral) {
   std::vector<int> next(4, 0);
   store.each([&](std::size_t, std::string_view record) {
     const std::string text(record);
-    const auto t = static_cast<std::size_t>(text[0] - '0');
+    const std::size_t t = text[0] - '0';
     EXPECT_EQ(std::stoi(text.substr(2)), next[t]++) << text;
     return true;
   });

@@ -53,7 +53,7 @@ class PlainSocket {
     while (!bytes.empty()) {
       const ssize_t count = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
       if (count <= 0) return false;
-      bytes.remove_prefix(static_cast<std::size_t>(count));
+      bytes.remove_prefix(count);
     }
     return true;
   }
@@ -95,7 +95,7 @@ class PlainSocket {
     char bytes[65536];
     const ssize_t count = ::recv(socket_, bytes, sizeof bytes, 0);
     closed_ = count <= 0;
-    if (count > 0) read_.append(bytes, static_cast<std::size_t>(count));
+    if (count > 0) read_.append(bytes, count);
     return count > 0;
   }
 

@@ -61,8 +61,8 @@ double distance(const runs::PageDocument& document, const std::vector<float>& nu
   double farthest = 0;
   for (std::size_t i = 0; i < document.vertices().size(); ++i)
     for (std::size_t axis = 0; axis < 3; ++axis)
-      farthest = std::max(farthest, std::abs(static_cast<double>(numbers.at(3 * i + axis)) -
-                                             positions(document.vertices()[i], static_cast<Index>(axis))));
+      farthest = std::max(
+          farthest, std::abs(static_cast<double>(numbers.at(3 * i + axis)) - positions(document.vertices()[i], axis)));
   return farthest;
 }
 

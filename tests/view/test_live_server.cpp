@@ -360,8 +360,7 @@ TEST(LiveServer, BendsTheRobotForAll) {
   const Equilibrium wanted = own.solve(Eigen::Vector2d(1.4, 0.97), own.rest(), runs::testing::one_thread());
   for (std::size_t i = 0; i < robot.document.vertices().size(); ++i)
     for (std::size_t axis = 0; axis < 3; ++axis)
-      EXPECT_NEAR(shape->numbers.at(3 * i + axis),
-                  wanted.state.positions(robot.document.vertices()[i], static_cast<Index>(axis)), 2e-6);
+      EXPECT_NEAR(shape->numbers.at(3 * i + axis), wanted.state.positions(robot.document.vertices()[i], axis), 2e-6);
   EXPECT_EQ(shape->head.at("commands"), nlohmann::json(commands));
   const auto seen = watcher.shape(1);
   ASSERT_TRUE(seen.has_value());

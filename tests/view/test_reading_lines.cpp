@@ -14,7 +14,7 @@ struct Lines {
   [[nodiscard]] std::vector<Index> told() const {
     std::vector<Index> indices;
     for (std::size_t a = 0; a < model.actuators.size(); ++a)
-      if (model.actuators[a].is<ForceCommand>()) indices.push_back(static_cast<Index>(a));
+      if (model.actuators[a].is<ForceCommand>()) indices.push_back(a);
     return indices;
   }
   [[nodiscard]] std::string refusal_of(const std::string& text, std::optional<double> after = {}) const {

@@ -34,9 +34,9 @@ inline EstimateSetup pushed_setup(const Model& model, bool place = false, double
 inline Eigen::VectorXd read_at(const Model& model, const Actuation& commands) {
   const Statics statics(model);
   const Equilibrium found = statics.solve(commands, statics.rest(), runs::testing::one_thread());
-  Eigen::VectorXd values(static_cast<Index>(3 * model.markers.size()));
+  Eigen::VectorXd values(3 * model.markers.size());
   for (std::size_t m = 0; m < model.markers.size(); ++m)
-    values.segment<3>(static_cast<Index>(3 * m)) = model.markers[m].at(found.state.positions);
+    values.segment<3>(3 * m) = model.markers[m].at(found.state.positions);
   return values;
 }
 

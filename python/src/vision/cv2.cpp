@@ -39,7 +39,7 @@ std::optional<RgbImage> optional_image(const nb::object& array) {
 
 /// For the time of a call.
 nb::object view_of(const GrayImage& picture) {
-  const std::size_t rows = static_cast<std::size_t>(picture.height), columns = static_cast<std::size_t>(picture.width);
+  const std::size_t rows = picture.height, columns = picture.width;
   return nb::cast(Array<const std::uint8_t, nb::ndim<2>>(picture.bytes.data(), {rows, columns}, nb::handle()),
                   nb::rv_policy::copy);
 }

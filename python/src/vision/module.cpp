@@ -37,7 +37,7 @@ RgbImage image_of(const PictureIn& array, const Text& name) {
 }
 
 PictureOut array_of(RgbImage image) {
-  const std::size_t rows = static_cast<std::size_t>(image.height), columns = static_cast<std::size_t>(image.width);
+  const std::size_t rows = image.height, columns = image.width;
   auto* bytes = new std::vector<std::uint8_t>(std::move(image.bytes));
   const nb::capsule owner(bytes, [](void* memory) noexcept { delete static_cast<std::vector<std::uint8_t>*>(memory); });
   return PictureOut(bytes->data(), {rows, columns, 3}, owner);

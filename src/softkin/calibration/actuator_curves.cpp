@@ -45,7 +45,7 @@ double local_fit(const Samples& samples, double x, double width) {
   for (std::size_t i = 0; i < samples.size(); ++i)
     if (distances[i] < window) inside.push_back(i);
   const Eigen::Index terms = inside.size() >= 5 ? 3 : inside.size() >= 2 ? 2 : 1;
-  Eigen::MatrixXd a(static_cast<Eigen::Index>(inside.size()), terms);
+  Eigen::MatrixXd a(inside.size(), terms);
   Eigen::VectorXd b(a.rows());
   for (Eigen::Index row = 0; row < a.rows(); ++row) {
     const auto& [input, ratio] = samples[inside[row]];

@@ -36,8 +36,7 @@ bool holds(const std::vector<double>& ascending, double value) {
 /// Spread at a place of the branch, straight between points.
 double spread_at(const CurveBranch& branch, double input) {
   const std::vector<double>& x = branch.ratio.x();
-  const auto i =
-      static_cast<std::size_t>(std::max<std::ptrdiff_t>(1, std::lower_bound(x.begin(), x.end(), input) - x.begin()));
+  const std::size_t i = std::max<std::ptrdiff_t>(1, std::lower_bound(x.begin(), x.end(), input) - x.begin());
   const double share = (input - x[i - 1]) / (x[i] - x[i - 1]);
   return (1 - share) * branch.spread[i - 1] + share * branch.spread[i];
 }

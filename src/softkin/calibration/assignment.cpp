@@ -64,11 +64,10 @@ std::vector<Index> least_assignment(const Eigen::MatrixXd& costs, double alone) 
   all.leftCols(columns) = costs.cwiseMin(2 * alone + 1);
   all.rightCols(rows).setConstant(alone);
   Pairs pairs(all);
-  for (Eigen::Index row = 0; row < rows; ++row) pairs.add(static_cast<std::size_t>(row) + 1);
-  std::vector<Index> of_row(static_cast<std::size_t>(rows), -1);
+  for (Eigen::Index row = 0; row < rows; ++row) pairs.add(row + 1);
+  std::vector<Index> of_row(rows, -1);
   for (Eigen::Index c = 0; c < columns; ++c)
-    if (const std::size_t row = pairs.row_at(static_cast<std::size_t>(c) + 1); row > 0)
-      of_row[row - 1] = static_cast<Index>(c);
+    if (const std::size_t row = pairs.row_at(c + 1); row > 0) of_row[row - 1] = c;
   return of_row;
 }
 

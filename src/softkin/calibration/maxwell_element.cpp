@@ -88,8 +88,8 @@ struct Imposed {
         slope = step.by_log_a * slope + step.by_log_time;
         value = step.log_a;
       }
-      ends[static_cast<std::size_t>(parts) - 1] = value;
-      slopes[static_cast<std::size_t>(parts) - 1] = slope;
+      ends[parts - 1] = value;
+      slopes[parts - 1] = slope;
     }
     if (std::abs(fourth_order(ends) - third_order(ends)) <= tolerance || halvings >= most_halvings) {
       log_a = fourth_order(ends);
@@ -114,7 +114,7 @@ class Loaded {
  public:
   Loaded(const MaxwellElement& element, const LawSlopes& law_slopes, double tolerance)
       : element_(element), law_slopes_(law_slopes), tolerance_(tolerance) {
-    const Eigen::Index branches = static_cast<Eigen::Index>(element.branches.size());
+    const Eigen::Index branches = element.branches.size();
     law_columns_ = law_slopes ? law_slopes(1).size() : 0;
     now_.logs = Eigen::VectorXd::Zero(branches + 1);
     now_.slopes = Eigen::MatrixXd::Zero(branches + 1, law_slopes ? law_columns_ + 2 * branches : 0);
@@ -139,8 +139,8 @@ class Loaded {
         const LoadedState before = state;
         found = balance(before, state, h / parts, begin + (end - begin) * i / parts);
       }
-      logs[static_cast<std::size_t>(parts) - 1] = std::move(state.logs);
-      slopes[static_cast<std::size_t>(parts) - 1] = std::move(state.slopes);
+      logs[parts - 1] = std::move(state.logs);
+      slopes[parts - 1] = std::move(state.slopes);
     }
     if (found) {
       const Eigen::VectorXd better = fourth_order(logs);
@@ -171,8 +171,7 @@ class Loaded {
       if (!std::isfinite(step) || !(pull.slope > 0)) return false;
       after.logs[0] += within_limit(l, std::clamp(step, -longest, longest));
       if (std::abs(step) > enough) continue;
-      for (std::size_t b = 0; b < pull.steps.size(); ++b)
-        after.logs[static_cast<Eigen::Index>(b) + 1] = pull.steps[b].log_a;
+      for (std::size_t b = 0; b < pull.steps.size(); ++b) after.logs[b + 1] = pull.steps[b].log_a;
       if (after.slopes.cols() > 0) derive(before, after, pull);
       return true;
     }
@@ -186,7 +185,7 @@ class Loaded {
     Pull pull{of_law(l), (of_law(l + nudge) - of_law(l - nudge)) / (2 * nudge), {}};
     for (std::size_t b = 0; b < element_.branches.size(); ++b) {
       const ViscousBranch& branch = element_.branches[b];
-      Stepped step{before.logs[static_cast<Eigen::Index>(b) + 1]};
+      Stepped step{before.logs[b + 1]};
       if (h > 0) step = stepped(Relaxing(h / branch.time_s), step.log_a, begin, l);
       const BranchStress stress(step.log_a, l);
       pull.stress += branch.modulus_MPa * stress.value;

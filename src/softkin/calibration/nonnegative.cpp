@@ -32,9 +32,8 @@ using Passive = std::vector<Eigen::Index>;
 
 /// Least squares over these columns alone; the others 0.
 Eigen::VectorXd solve_over(const Compressed& problem, const Passive& passive) {
-  Eigen::MatrixXd columns(problem.matrix.rows(), static_cast<Eigen::Index>(passive.size()));
-  for (std::size_t i = 0; i < passive.size(); ++i)
-    columns.col(static_cast<Eigen::Index>(i)) = problem.matrix.col(passive[i]);
+  Eigen::MatrixXd columns(problem.matrix.rows(), passive.size());
+  for (std::size_t i = 0; i < passive.size(); ++i) columns.col(i) = problem.matrix.col(passive[i]);
   Eigen::VectorXd x = Eigen::VectorXd::Zero(problem.matrix.cols());
   if (passive.empty()) return x;
   const Eigen::VectorXd some = least_squares(columns, problem.right).solution;

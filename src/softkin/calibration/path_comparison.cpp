@@ -54,7 +54,7 @@ std::optional<Vec3> point_at(const Track& track, const std::vector<double>& plac
   const auto above = std::lower_bound(places.begin(), places.end(), place);
   if (above == places.begin()) return track.points.front();
   if (above == places.end()) return track.points.back();
-  const auto i = static_cast<std::size_t>(above - places.begin());
+  const std::size_t i = above - places.begin();
   const double share = (place - places[i - 1]) / (places[i] - places[i - 1]);
   return track.points[i - 1] + share * (track.points[i] - track.points[i - 1]);
 }
@@ -73,7 +73,7 @@ void align(PathComparison& comparison) {
   // axes that are not compared stay as they are: their singular value is above all others
   const double scale = 1 + covariance.cwiseAbs().sum();
   for (std::size_t a = 0; a < 3; ++a)
-    if (!comparison.axes[a]) covariance(static_cast<Index>(a), static_cast<Index>(a)) = 10 * scale;
+    if (!comparison.axes[a]) covariance(a, a) = 10 * scale;
   const NearestRotation nearest = nearest_rotation(covariance);
   comparison.rotation = nearest.rotation;
   comparison.translation = mean_reference - comparison.rotation * mean_other;

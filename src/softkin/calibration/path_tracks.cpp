@@ -94,7 +94,7 @@ ReportedSweep read_sweep(const std::string& file, const std::string& marker) {
   ReportedSweep result{runs::read_reported_path(file), "", {}};
   for (const auto& [name, value] : result.path.steps.front().actuation) {
     const std::vector<double> commands = commands_of(result.path, name);
-    if (std::count(commands.begin(), commands.end(), value) == static_cast<std::ptrdiff_t>(commands.size())) continue;
+    if (std::count(commands.begin(), commands.end(), value) == std::ssize(commands)) continue;
     if (!result.actuator.empty())
       throw InvalidInput({file}, "'" + result.actuator + "' and '" + name +
                                      "' both move: a sum is of reports in which one actuator moves");
@@ -156,7 +156,7 @@ TrackPlane parse_plane(const std::string& text) {
     if (text[at] == '-') ++at;
     const std::size_t axis = at < text.size() ? std::string("xyz").find(text[at]) : std::string::npos;
     if (axis == std::string::npos) break;
-    plane.axes[found] = static_cast<Index>(axis);
+    plane.axes[found] = axis;
     ++at;
   }
   if (found < 2 || at != text.size() || plane.axes[0] == plane.axes[1])

@@ -117,7 +117,7 @@ PressureComparison compare_with_physics(RobotSpec spec, std::size_t chamber, con
   prepare(spec, chamber, high);
   PressureComparison result{spec.actuators[chamber].name, {}, {}, {}};
   for (int i = 1; i <= compared; ++i) result.ratios.push_back(i == compared ? high : low + (high - low) * i / compared);
-  result.predicted = predicted_pressures(compile(spec), static_cast<Index>(chamber), result.ratios, threads, progress);
+  result.predicted = predicted_pressures(compile(spec), chamber, result.ratios, threads, progress);
   add_check(Branch::loading, curve.loading.ratio, result);
   if (curve.unloading) add_check(Branch::unloading, curve.unloading->ratio, result);
   return result;

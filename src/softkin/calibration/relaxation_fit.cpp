@@ -62,8 +62,8 @@ struct Start {
 class Starts {
  public:
   Starts(const RelaxationProblem& problem, const std::vector<double>& grid) : problem_(problem), grid_(grid) {
-    columns_.resize(problem.rows(), static_cast<Eigen::Index>(grid.size()));
-    for (std::size_t i = 0; i < grid.size(); ++i) columns_.col(static_cast<Eigen::Index>(i)) = problem.column(grid[i]);
+    columns_.resize(problem.rows(), grid.size());
+    for (std::size_t i = 0; i < grid.size(); ++i) columns_.col(i) = problem.column(grid[i]);
     choose_limit();
   }
 
@@ -79,16 +79,16 @@ class Starts {
   [[nodiscard]] Start with_one_more(const std::vector<double>& constants,
                                     const std::vector<ViscousBranch>& branches) const {
     std::vector<double> times;
-    Eigen::MatrixXd columns(columns_.rows(), static_cast<Eigen::Index>(branches.size()) + 1);
+    Eigen::MatrixXd columns(columns_.rows(), std::ssize(branches) + 1);
     for (const ViscousBranch& branch : branches) {
-      columns.col(static_cast<Eigen::Index>(times.size())) = problem_.column(branch.time_s);
+      columns.col(times.size()) = problem_.column(branch.time_s);
       times.push_back(branch.time_s);
     }
     times.push_back(0);
     std::pair<Start, double> best{{}, std::numeric_limits<double>::infinity()};
     for (std::size_t i = 0; i < grid_.size(); ++i) {
       times.back() = grid_[i];
-      columns.rightCols(1) = columns_.col(static_cast<Eigen::Index>(i));
+      columns.rightCols(1) = columns_.col(i);
       std::pair<Start, double> tried = solve(constants, times, columns);
       if (tried.second < best.second) best = std::move(tried);
     }
@@ -184,9 +184,7 @@ class Growth {
   [[nodiscard]] double variance(std::size_t n) const {
     return minima_[n].squares / static_cast<double>(problem_.rows() - unknowns_with(n));
   }
-  [[nodiscard]] Eigen::Index unknowns_with(std::size_t n) const {
-    return problem_.free_constants() + 2 * static_cast<Eigen::Index>(n);
-  }
+  [[nodiscard]] Eigen::Index unknowns_with(std::size_t n) const { return problem_.free_constants() + 2 * n; }
 
  private:
   bool add(std::size_t n, const Starts& starts) {
@@ -216,7 +214,7 @@ std::optional<double> rms_left(const RelaxationProblem& problem, const VectorXd&
   double squares = 0, rows = 0;
   Eigen::Index at = 0;
   for (const RelaxationRun& run : problem.runs()) {
-    const auto size = static_cast<Eigen::Index>(run.time_s.size());
+    const Eigen::Index size = run.time_s.size();
     if (run.load_imposed == load_imposed) {
       squares += residuals.segment(at, size).squaredNorm();
       rows += static_cast<double>(size);
@@ -330,7 +328,7 @@ RelaxationFit fit_relaxation(const std::vector<RelaxationRun>& runs, const Relax
   const auto loaded =
       std::count_if(runs.begin(), runs.end(), [](const RelaxationRun& run) { return run.load_imposed; });
   if (growth->minima().empty()) throw InvalidInput("no constants of the law bear the stresses of the tests");
-  if (loaded > 0 && loaded < static_cast<std::ptrdiff_t>(runs.size())) {
+  if (loaded > 0 && loaded < std::ssize(runs)) {
     weigh(problem, *growth);
     growth.emplace(problem, grid, options.branches);
   }

@@ -29,7 +29,7 @@ struct NormalEquations {
       const bool held = (unknowns[u] <= low && full[u] > 0) || (unknowns[u] >= high && full[u] < 0);
       if (!held && slopes.col(u).squaredNorm() > 0) moving.push_back(u);
     }
-    const auto count = static_cast<Eigen::Index>(moving.size());
+    const Eigen::Index count = moving.size();
     Eigen::MatrixXd some(slopes.rows(), count);
     scale.resize(count);
     for (Eigen::Index i = 0; i < count; ++i) {

@@ -14,7 +14,7 @@ namespace {
 using Eigen::VectorXd;
 
 VectorXd vector_of(const std::vector<double>& values) {
-  return Eigen::Map<const VectorXd>(values.data(), static_cast<Eigen::Index>(values.size()));
+  return Eigen::Map<const VectorXd>(values.data(), values.size());
 }
 
 bool is_limit(const std::string& constant) {
@@ -98,7 +98,7 @@ RelaxationProblem::RelaxationProblem(std::vector<RelaxationRun> runs, Law law,
   }
   for (const auto& value : held_) free_constants_ += value ? 0 : 1;
   for (const RelaxationRun& run : runs_) {
-    rows_ += static_cast<Eigen::Index>(run.time_s.size());
+    rows_ += run.time_s.size();
     for (const double stretch : run.stretch) most_excess_ = std::max(most_excess_, excess_of(stretch));
   }
   if (law_ == Law::gent && held_[1] && !(*held_[1] > most_excess_))
@@ -108,7 +108,7 @@ RelaxationProblem::RelaxationProblem(std::vector<RelaxationRun> runs, Law law,
 
 VectorXd RelaxationProblem::unknowns(const std::vector<double>& constants,
                                      const std::vector<ViscousBranch>& branches) const {
-  VectorXd all(free_constants_ + 2 * static_cast<Eigen::Index>(branches.size()));
+  VectorXd all(free_constants_ + 2 * std::ssize(branches));
   Eigen::Index at = 0;
   for (std::size_t c = 0; c < names_.size(); ++c) {
     if (held_[c]) continue;
@@ -176,7 +176,7 @@ std::optional<VectorXd> RelaxationProblem::residuals(const VectorXd& unknowns) c
 
 VectorXd RelaxationProblem::law_stress(const RelaxationRun& run, const std::vector<double>& constants) const {
   const IncompressibleLaw law = law_of_constants(law_, constants);
-  VectorXd stress(static_cast<Eigen::Index>(run.stretch.size()));
+  VectorXd stress(run.stretch.size());
   for (Eigen::Index i = 0; i < stress.size(); ++i) stress[i] = uniaxial_stress(law, run.stretch[i] - 1);
   return stress;
 }
@@ -217,7 +217,7 @@ void RelaxationProblem::fill_stress_slopes(const RelaxationRun& run, const Vecto
   const std::vector<ViscousBranch> branches = element(unknowns).branches;
   for (std::size_t b = 0; b < branches.size(); ++b) {
     const UnitBranch unit = unit_branch(imposed_in(run), branches[b].time_s);
-    const Eigen::Index first = free_constants_ + 2 * static_cast<Eigen::Index>(b);
+    const Eigen::Index first = free_constants_ + 2 * b;
     part.col(first) = unit.stress;
     part.col(first + 1) = branches[b].modulus_MPa * unit.by_log_time;
   }
@@ -232,7 +232,7 @@ Eigen::MatrixXd RelaxationProblem::slopes(const VectorXd& unknowns) const {
   Eigen::MatrixXd all(rows_, unknowns.size());
   Eigen::Index at = 0;
   for (const RelaxationRun& run : runs_) {
-    Part part = all.middleRows(at, static_cast<Eigen::Index>(run.time_s.size()));
+    Part part = all.middleRows(at, run.time_s.size());
     run.load_imposed ? fill_stretch_slopes(run, unknowns, part) : fill_stress_slopes(run, unknowns, part);
     part /= scale(run.load_imposed);
     at += part.rows();
@@ -246,19 +246,18 @@ RelaxationProblem::Linear RelaxationProblem::linear(const std::vector<double>& c
     for (std::size_t c = 0; c < names_.size(); ++c)
       if (!held_[c] && !is_limit(names_[c]) && is_signless(names_[c]) == signless) linear.constants.push_back(c);
   for (const std::size_t c : linear.constants) linear.signless += is_signless(names_[c]) ? 1 : 0;
-  linear.columns.resize(rows_, static_cast<Eigen::Index>(linear.constants.size()));
+  linear.columns.resize(rows_, linear.constants.size());
   linear.right.resize(rows_);
   std::vector<double> rest = constants;
   for (const std::size_t c : linear.constants) rest[c] = 0;
   Eigen::Index at = 0;
   for (const RelaxationRun& run : runs_) {
-    const auto size = static_cast<Eigen::Index>(run.time_s.size());
+    const Eigen::Index size = run.time_s.size();
     linear.right.segment(at, size) = (vector_of(run.stress_MPa) - law_stress(run, rest)) / scale(false);
     for (std::size_t k = 0; k < linear.constants.size(); ++k) {
       std::vector<double> unit = rest;
       unit[linear.constants[k]] = 1;
-      linear.columns.col(static_cast<Eigen::Index>(k)).segment(at, size) =
-          (law_stress(run, unit) - law_stress(run, rest)) / scale(false);
+      linear.columns.col(k).segment(at, size) = (law_stress(run, unit) - law_stress(run, rest)) / scale(false);
     }
     at += size;
   }

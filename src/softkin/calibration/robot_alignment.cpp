@@ -62,13 +62,13 @@ RobotProblem::MarkerMisses RobotProblem::marker_misses(const RobotPoint& point,
     less.push_back(robot_.frame(values));
   }
   MarkerMisses misses;
-  for (Index pose = 0; pose < static_cast<Index>(poses_.commands.size()); ++pose)
-    for (Index c = 0; c < static_cast<Index>(poses_.columns.size()); ++c) {
+  for (Index pose = 0; pose < std::ssize(poses_.commands); ++pose)
+    for (Index c = 0; c < std::ssize(poses_.columns); ++c) {
       const PoseColumn& column = poses_.columns[c];
       const Equilibrium& found = point.equilibria[pose];
       if (column.marker < 0 || !fits(pose) || !read(pose, c) || found.report.status != Status::converged) continue;
       const Vec3 place = point.model->markers[column.marker].at(found.state.positions);
-      Eigen::RowVectorXd slope(static_cast<Index>(numbers.size()));
+      Eigen::RowVectorXd slope(numbers.size());
       for (std::size_t i = 0; i < numbers.size(); ++i)
         slope[i] = ((more[i].rotation - less[i].rotation) * place + more[i].place - less[i].place)[column.axis] /
                    (2 * frame_step);
@@ -82,8 +82,8 @@ RobotProblem::MarkerMisses RobotProblem::marker_misses(const RobotPoint& point,
 void RobotProblem::put(RobotPoint& point, const Eigen::VectorXd& values) const {
   point.values = values;
   point.frame = robot_.frame(values);
-  for (Index pose = 0; pose < static_cast<Index>(poses_.commands.size()); ++pose)
-    for (Index c = 0; c < static_cast<Index>(poses_.columns.size()); ++c) {
+  for (Index pose = 0; pose < std::ssize(poses_.commands); ++pose)
+    for (Index c = 0; c < std::ssize(poses_.columns); ++c) {
       const PoseColumn& column = poses_.columns[c];
       const Equilibrium& found = point.equilibria[pose];
       if (column.marker < 0 || found.report.status != Status::converged) continue;
@@ -95,7 +95,7 @@ void RobotProblem::put(RobotPoint& point, const Eigen::VectorXd& values) const {
 Eigen::VectorXd RobotProblem::aligned(const RobotPoint& start) {
   std::vector<Index> numbers;
   for (std::size_t i = 0; i < robot_.numbers().size(); ++i)
-    if (robot_.of_frame(i)) numbers.push_back(static_cast<Index>(i));
+    if (robot_.of_frame(i)) numbers.push_back(i);
   if (!dots_.any() || numbers.empty()) return start.values;
   RobotPoint point = start;
   (void)match(point, false);

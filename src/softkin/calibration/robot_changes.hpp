@@ -29,10 +29,10 @@ struct RobotProblem::Changes {
   }
 
   Changes(const NumberedRobot& robot, const RobotPoint& point) {
-    const auto count = static_cast<Index>(robot.numbers().size());
+    const Index count = robot.numbers().size();
     models.reserve(2 * robot.numbers().size());
     for (Index i = 0; i < count; ++i) {
-      const double half = perturbed_by * robot.size(static_cast<std::size_t>(i));
+      const double half = perturbed_by * robot.size(i);
       Eigen::VectorXd above = point.values, below = point.values;
       const FittedNumber& number = robot.numbers()[i];
       above[i] = std::min(number.high, above[i] + half);
@@ -40,7 +40,7 @@ struct RobotProblem::Changes {
       differences.push_back(above[i] - below[i]);
       more.push_back(robot.frame(above));
       less.push_back(robot.frame(below));
-      if (robot.of_camera(static_cast<std::size_t>(i))) continue;
+      if (robot.of_camera(i)) continue;
       const Model& larger = models.emplace_back(robot.model(above));
       const Model& smaller = models.emplace_back(robot.model(below));
       perturbed.push_back({larger, smaller, differences.back()});

@@ -29,8 +29,7 @@ struct DotMatcher::Costs {
   }
   [[nodiscard]] double sum(const std::vector<Index>& columns, double alone) const {
     double all = 0;
-    for (std::size_t row = 0; row < columns.size(); ++row)
-      all += columns[row] < 0 ? alone : squares(static_cast<Index>(row), columns[row]);
+    for (std::size_t row = 0; row < columns.size(); ++row) all += columns[row] < 0 ? alone : squares(row, columns[row]);
     return all;
   }
 };
@@ -50,11 +49,11 @@ DotMatcher::DotMatcher(const MeasuredPoses& poses, const Model& model, double wi
       const auto same = std::find_if(named_.columns.begin(), named_.columns.end(), [&](const PoseColumn& column) {
         return column.marker == static_cast<Index>(m) && column.axis == axis;
       });
-      columns_[m].push_back(static_cast<Index>(same - named_.columns.begin()));
+      columns_[m].push_back(same - named_.columns.begin());
       if (same == named_.columns.end())
         named_.columns.push_back({model.markers[m].name + "_" + axis_names[axis] + "_mm", static_cast<Index>(m), axis});
     }
-  named_.values.setConstant(poses.values.rows(), static_cast<Index>(named_.columns.size()), dot_nan);
+  named_.values.setConstant(poses.values.rows(), named_.columns.size(), dot_nan);
   named_.values.leftCols(poses.values.cols()) = poses.values;
   markers_.assign(poses.commands.size(), std::vector<Index>(poses.dots.names.size(), -1));
 }
@@ -62,30 +61,28 @@ DotMatcher::DotMatcher(const MeasuredPoses& poses, const Model& model, double wi
 std::size_t DotMatcher::seen(Index pose) const {
   std::size_t count = 0;
   for (std::size_t d = 0; d < seen_.dots.names.size(); ++d)
-    count += !std::isnan(seen_.dots.places(pose, static_cast<Index>(d * seen_.dots.axes.size())));
+    count += !std::isnan(seen_.dots.places(pose, d * seen_.dots.axes.size()));
   return count;
 }
 
 DotMatcher::Costs DotMatcher::costs(const Eigen::MatrixXd& computed, Index pose) const {
-  const auto axes = static_cast<Index>(seen_.dots.axes.size());
+  const Index axes = seen_.dots.axes.size();
   Costs costs;
   for (std::size_t d = 0; d < seen_.dots.names.size(); ++d)
     if (!std::isnan(seen_.dots.places(pose, static_cast<Index>(d) * axes))) costs.dots.push_back(d);
   for (std::size_t m = 0; m < columns_.size(); ++m) {
     bool named = std::isnan(computed(pose, columns_[m][0]));
     for (std::size_t c = 0; c < seen_.columns.size(); ++c)
-      named = named || (seen_.columns[c].marker == static_cast<Index>(m) &&
-                        !std::isnan(seen_.values(pose, static_cast<Index>(c))));
-    if (!named) costs.markers.push_back(static_cast<Index>(m));
+      named = named || (seen_.columns[c].marker == static_cast<Index>(m) && !std::isnan(seen_.values(pose, c)));
+    if (!named) costs.markers.push_back(m);
   }
-  costs.squares.setZero(static_cast<Index>(costs.dots.size()), static_cast<Index>(costs.markers.size()));
+  costs.squares.setZero(costs.dots.size(), costs.markers.size());
   for (std::size_t d = 0; d < costs.dots.size(); ++d)
     for (std::size_t m = 0; m < costs.markers.size(); ++m)
       for (Index axis = 0; axis < axes; ++axis)
-        costs.squares(static_cast<Index>(d), static_cast<Index>(m)) +=
-            std::pow(seen_.dots.places(pose, static_cast<Index>(costs.dots[d]) * axes + axis) -
-                         computed(pose, columns_[costs.markers[m]][axis]),
-                     2);
+        costs.squares(d, m) += std::pow(seen_.dots.places(pose, static_cast<Index>(costs.dots[d]) * axes + axis) -
+                                            computed(pose, columns_[costs.markers[m]][axis]),
+                                        2);
   return costs;
 }
 
@@ -93,10 +90,10 @@ double DotMatcher::typical_mm(const Eigen::MatrixXd& computed, const std::vector
   std::vector<double> distances;
   for (std::size_t pose = 0; pose < markers_.size(); ++pose) {
     if (!counts[pose]) continue;
-    const Costs all = costs(computed, static_cast<Index>(pose));
+    const Costs all = costs(computed, pose);
     const std::vector<Index> columns = least_assignment(all.squares, all.any());
     for (std::size_t row = 0; row < columns.size(); ++row)
-      if (columns[row] >= 0) distances.push_back(std::sqrt(all.squares(static_cast<Index>(row), columns[row])));
+      if (columns[row] >= 0) distances.push_back(std::sqrt(all.squares(row, columns[row])));
   }
   if (distances.empty()) return 0;
   const auto middle = distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2);
@@ -110,15 +107,15 @@ bool DotMatcher::match(const Eigen::MatrixXd& computed, const std::vector<bool>*
   const std::vector<std::vector<Index>> before = markers_;
   within_mm_ = within;
   for (std::size_t pose = 0; pose < markers_.size(); ++pose) {
-    const Costs all = costs(computed, static_cast<Index>(pose));
-    name(static_cast<Index>(pose), all, least_assignment(all.squares, within * within));
+    const Costs all = costs(computed, pose);
+    name(pose, all, least_assignment(all.squares, within * within));
   }
   return markers_ != before;
 }
 
 /// Makes dots readings of their markers.
 void DotMatcher::name(Index pose, const Costs& costs, const std::vector<Index>& columns) {
-  const auto axes = static_cast<Index>(seen_.dots.axes.size());
+  const Index axes = seen_.dots.axes.size();
   named_.values.row(pose).setConstant(dot_nan);
   named_.values.row(pose).head(seen_.values.cols()) = seen_.values.row(pose);
   std::vector<Index>& markers = markers_[pose];
@@ -148,9 +145,9 @@ std::optional<Index> DotMatcher::rival(const Costs& costs, Eigen::Index row, dou
 DotMatches DotMatcher::matches(const Eigen::MatrixXd& computed, double deviation_mm) const {
   DotMatches all(markers_.size(), std::vector<DotMatch>(seen_.dots.names.size()));
   for (std::size_t pose = 0; pose < markers_.size(); ++pose) {
-    const Costs of = costs(computed, static_cast<Index>(pose));
+    const Costs of = costs(computed, pose);
     for (std::size_t r = 0; r < of.dots.size(); ++r) {
-      const auto row = static_cast<Eigen::Index>(r);
+      const Eigen::Index row = r;
       DotMatch& match = all[pose][of.dots[r]];
       match.seen = true;
       match.marker = match.nearest = markers_[pose][of.dots[r]];

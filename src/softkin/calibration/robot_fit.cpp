@@ -43,14 +43,14 @@ struct RobotEquations {
   RobotEquations(const NumberedRobot& robot, const VectorXd& values, const Linearised& at)
       : size(values.size()), scales(values.size()) {
     const VectorXd gradient = at.slopes.transpose() * at.residuals;
-    for (Index u = 0; u < static_cast<Index>(size); ++u) scales[u] = robot.size(static_cast<std::size_t>(u));
+    for (Index u = 0; u < static_cast<Index>(size); ++u) scales[u] = robot.size(u);
     const VectorXd effects = scales.cwiseProduct(at.slopes.colwise().norm().transpose());
     for (Index u = 0; u < static_cast<Index>(size); ++u) {
       const int bound = side(robot.numbers()[u], values[u]);
       const bool held = bound != 0 && bound * gradient[u] < 0;
       if (!held && effects[u] > no_effect * effects.maxCoeff()) moving.push_back(u);
     }
-    const auto count = static_cast<Index>(moving.size());
+    const Index count = moving.size();
     Eigen::MatrixXd some(at.slopes.rows(), count);
     for (Index i = 0; i < count; ++i) some.col(i) = scales[moving[i]] * at.slopes.col(moving[i]);
     matrix = some.transpose() * some;
@@ -78,13 +78,13 @@ void tell_deviations(const RobotEquations& equations, RobotFit& fit) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN(), singular = 1e-12, part = 1e-2;
   fit.deviations = VectorXd::Constant(equations.size, nan);
   fit.correlations = Eigen::MatrixXd::Identity(equations.size, equations.size);
-  const auto count = static_cast<Index>(equations.moving.size());
+  const Index count = equations.moving.size();
   if (count == 0) return;
   const VectorXd root = equations.matrix.diagonal().cwiseSqrt().cwiseInverse();
   const SymmetricEigen eigen = symmetric_eigen(root.asDiagonal() * equations.matrix * root.asDiagonal());
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(count, count);
-  std::vector<bool> told(static_cast<std::size_t>(count), true);
-  for (Index k = 0; k < static_cast<Index>(eigen.values.size()); ++k) {
+  std::vector<bool> told(count, true);
+  for (Index k = 0; k < std::ssize(eigen.values); ++k) {
     if (eigen.values[k] > singular * eigen.values.maxCoeff()) {
       covariance += eigen.vectors.col(k) * eigen.vectors.col(k).transpose() / eigen.values[k];
       continue;
@@ -106,8 +106,8 @@ void tell_deviations(const RobotEquations& equations, RobotFit& fit) {
 
 /// Numbers that readings alone tell.
 std::size_t free_numbers(const NumberedRobot& robot) {
-  return static_cast<std::size_t>(std::count_if(robot.numbers().begin(), robot.numbers().end(),
-                                                [](const FittedNumber& n) { return !n.deviation; }));
+  return std::count_if(robot.numbers().begin(), robot.numbers().end(),
+                       [](const FittedNumber& n) { return !n.deviation; });
 }
 
 void check(const NumberedRobot& robot, const MeasuredPoses& poses, const RobotProblem& problem, bool fits) {

@@ -170,7 +170,7 @@ std::vector<OutlineReading> RobotOutlines::readings(Index pose, const std::vecto
 Eigen::VectorXd outline_slopes(const std::vector<OutlineMiss>& misses, const Points& positions,
                                const MeasuringFrame& frame, const Mat3& turns, const Vec3& shifts,
                                const Points* moves) {
-  Eigen::VectorXd slopes = Eigen::VectorXd::Zero(static_cast<Index>(misses.size()));
+  Eigen::VectorXd slopes = Eigen::VectorXd::Zero(misses.size());
   for (std::size_t k = 0; k < misses.size(); ++k) {
     if (!std::isfinite(misses[k].off_mm)) continue;
     const OutlinePlace& place = misses[k].nearest;

@@ -152,7 +152,7 @@ void NumberedRobot::check_names() const {
 }
 
 Eigen::VectorXd NumberedRobot::start() const {
-  Eigen::VectorXd values(static_cast<Index>(numbers_.size()));
+  Eigen::VectorXd values(numbers_.size());
   for (std::size_t i = 0; i < numbers_.size(); ++i) values[i] = *numbers_[i].start;
   return values;
 }

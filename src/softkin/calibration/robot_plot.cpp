@@ -26,7 +26,7 @@ std::vector<PlotSeries> seen_along(const RobotFitReport& r, int across, int up) 
   if (!has_dots(r)) measured.push_back(points("measured"));
   for (const Index m : markers_of(r)) {
     if (has_dots(r)) measured.push_back(points(marker_name(r, m)));
-    for (Index pose = 0; pose < static_cast<Index>(r.poses.commands.size()); ++pose) {
+    for (Index pose = 0; pose < std::ssize(r.poses.commands); ++pose) {
       const auto& [there, here] = places_of(r, pose, m);
       if (!std::isfinite(there[across] + there[up] + here[across] + here[up])) continue;
       add(measured.back(), there);
@@ -35,7 +35,7 @@ std::vector<PlotSeries> seen_along(const RobotFitReport& r, int across, int up) 
       add(apart, here);
     }
   }
-  for (Index pose = 0; pose < static_cast<Index>(r.poses.commands.size()); ++pose)
+  for (Index pose = 0; pose < std::ssize(r.poses.commands); ++pose)
     for (std::size_t d = 0; d < r.poses.dots.names.size(); ++d) {
       const Vec3 place = dot_place(r, pose, d);
       const bool is_none = r.fit.dots[pose][d].marker < 0;

@@ -28,7 +28,7 @@ RobotProblem::RobotProblem(const NumberedRobot& robot, const MeasuredPoses& pose
       dots_(poses, *first_model_, options.match_within_mm),
       outlines_(poses, *first_model_, options.outlines),
       poses_(dots_.poses()) {
-  for (Index c = 0; c < static_cast<Index>(poses_.columns.size()); ++c) {
+  for (Index c = 0; c < std::ssize(poses_.columns); ++c) {
     const PoseColumn& column = poses_.columns[c];
     const auto same = std::find_if(groups_.begin(), groups_.end(), [&](const Group& group) {
       return column.marker >= 0 && group.marker == column.marker;
@@ -42,7 +42,7 @@ RobotProblem::RobotProblem(const NumberedRobot& robot, const MeasuredPoses& pose
     throw InvalidInput({.file = first_model_->name},
                        "a robot is fitted in the physical formulation; this scene is of target shapes");
   first_statics_ = std::make_shared<const Statics>(*first_model_);
-  for (Index pose = 0; pose < static_cast<Index>(poses_.commands.size()); ++pose)
+  for (Index pose = 0; pose < std::ssize(poses_.commands); ++pose)
     if (fits(pose)) dots_seen_ += dots_.seen(pose);
   count();
 }
@@ -53,7 +53,7 @@ void RobotProblem::count() {
     ++readings_;
     for (const Index c : group.columns) reading_rows_ += read(pose, c);
   });
-  for (Index pose = 0; pose < static_cast<Index>(poses_.commands.size()); ++pose)
+  for (Index pose = 0; pose < std::ssize(poses_.commands); ++pose)
     if (fits(pose)) outline_rows_ += outlines_.points(pose);
   rows_ = reading_rows_ + outline_rows_;
   for (const FittedNumber& number : robot_.numbers()) rows_ += number.deviation.has_value();
@@ -62,7 +62,7 @@ void RobotProblem::count() {
 bool RobotProblem::match(const RobotPoint& point, bool strict) {
   strict_ = strict_ || strict;
   std::vector<bool> counts(poses_.commands.size());
-  for (std::size_t pose = 0; pose < counts.size(); ++pose) counts[pose] = fits(static_cast<Index>(pose));
+  for (std::size_t pose = 0; pose < counts.size(); ++pose) counts[pose] = fits(pose);
   const bool dots = dots_.match(point.computed, strict_ ? nullptr : &counts),
              outlines = outlines_.match(point.outline_misses, strict_ ? nullptr : &counts);
   count();
@@ -82,20 +82,20 @@ Eigen::VectorXd RobotProblem::miss(const RobotPoint& point, Index pose, const Gr
   std::vector<double> all;
   for (const Index c : group.columns)
     if (read(pose, c)) all.push_back(point.computed(pose, c) - poses_.values(pose, c));
-  return Eigen::Map<const Eigen::VectorXd>(all.data(), static_cast<Index>(all.size()));
+  return Eigen::Map<const Eigen::VectorXd>(all.data(), all.size());
 }
 
 template <class Visit>
 void RobotProblem::each_reading(const Visit& visit) const {
   Index row = 0;
-  for (Index pose = 0; pose < static_cast<Index>(poses_.commands.size()); ++pose) {
+  for (Index pose = 0; pose < std::ssize(poses_.commands); ++pose) {
     if (!fits(pose)) continue;
     for (const Group& group : groups_) {
       const auto count =
           std::count_if(group.columns.begin(), group.columns.end(), [&](Index column) { return read(pose, column); });
       if (count == 0) continue;
       visit(pose, group, row);
-      row += static_cast<Index>(count);
+      row += count;
     }
   }
 }
@@ -111,7 +111,7 @@ double RobotProblem::scale(const RobotPoint& point, Reading kind) const {
     const Eigen::VectorXd off = miss(point, pose, group);
     if (!off.allFinite()) return;
     squares += off.squaredNorm();
-    count += static_cast<std::size_t>(off.size());
+    count += off.size();
     distances.push_back(off.norm() / medians[std::min<Eigen::Index>(off.size(), 3) - 1]);
   });
   if (count == 0) return 0;
@@ -144,25 +144,25 @@ double RobotProblem::share_by_loss(double distance) const {
 }
 
 Eigen::VectorXd RobotProblem::residuals(const RobotPoint& point, const Eigen::VectorXd& weights) const {
-  Eigen::VectorXd all(static_cast<Index>(rows_));
+  Eigen::VectorXd all(rows_);
   each_reading([&](Index pose, const Group& group, Index row) {
     const Eigen::VectorXd off = miss(point, pose, group);
     all.segment(row, off.size()) = off;
   });
   each_outline_point([&](Index pose, std::size_t k, Index row) { all[row] = off_outline(point, pose, k); });
-  auto rows = static_cast<Index>(reading_rows_ + outline_rows_);
+  Index rows = reading_rows_ + outline_rows_;
   for (std::size_t i = 0; i < robot_.numbers().size(); ++i)
     if (robot_.numbers()[i].deviation) all[rows++] = point.values[i] - *robot_.numbers()[i].start;
-  for (Index i = 0; i < static_cast<Index>(all.size()); ++i)
+  for (Index i = 0; i < std::ssize(all); ++i)
     if (!std::isfinite(all[i])) all[i] = 0;  // of a pose without equilibrium, which is told apart
   return weights.cwiseSqrt().cwiseProduct(all);
 }
 
 Linearised RobotProblem::linearised(const RobotPoint& point) const {
   Linearised linear;
-  const auto count = static_cast<Index>(robot_.numbers().size());
-  linear.weights.setZero(static_cast<Index>(rows_));
-  linear.slopes.setZero(static_cast<Index>(rows_), count);
+  const Index count = robot_.numbers().size();
+  linear.weights.setZero(rows_);
+  linear.slopes.setZero(rows_, count);
   const Scales of = scales(point);
   each_reading([&](Index pose, const Group& group, Index row) {
     const Eigen::VectorXd off = miss(point, pose, group);
@@ -178,11 +178,11 @@ Linearised RobotProblem::linearised(const RobotPoint& point) const {
     }
   });
   linearise_outlines(point, linear);
-  auto rows = static_cast<Index>(reading_rows_ + outline_rows_);
+  Index rows = reading_rows_ + outline_rows_;
   for (std::size_t i = 0; i < robot_.numbers().size(); ++i)
     if (robot_.numbers()[i].deviation) {
       linear.weights[rows] = 1 / (*robot_.numbers()[i].deviation * *robot_.numbers()[i].deviation);
-      linear.slopes(rows++, static_cast<Index>(i)) = 1;
+      linear.slopes(rows++, i) = 1;
     }
   linear.slopes = linear.weights.cwiseSqrt().asDiagonal() * linear.slopes;
   linear.residuals = residuals(point, linear.weights);
@@ -196,7 +196,7 @@ double RobotProblem::cost(const RobotPoint& point, const Eigen::VectorXd& weight
 Misfit RobotProblem::marker_misfit(const RobotPoint& point, bool kept) const {
   Misfit misfit;
   double squares = 0;
-  for (Index pose = 0; pose < static_cast<Index>(poses_.commands.size()); ++pose) {
+  for (Index pose = 0; pose < std::ssize(poses_.commands); ++pose) {
     if (fits(pose) == kept) continue;
     for (const Group& group : groups_) {
       const Eigen::VectorXd off = miss(point, pose, group);
@@ -212,8 +212,8 @@ Misfit RobotProblem::marker_misfit(const RobotPoint& point, bool kept) const {
 
 template <class Visit>
 void RobotProblem::each_outline_point(const Visit& visit) const {
-  auto row = static_cast<Index>(reading_rows_);
-  for (Index pose = 0; pose < static_cast<Index>(poses_.commands.size()); ++pose)
+  Index row = reading_rows_;
+  for (Index pose = 0; pose < std::ssize(poses_.commands); ++pose)
     for (std::size_t k = 0; fits(pose) && k < outlines_.points(pose); ++k) visit(pose, k, row++);
 }
 
@@ -251,7 +251,7 @@ void RobotProblem::linearise_outlines(const RobotPoint& point, Linearised& linea
     const double off = off_outline(point, pose, k);
     if (!outlines_.counts(pose, k) || !std::isfinite(off)) return;
     linear.weights[row] = share_by_loss(std::abs(off) / scale) / (scale * scale);
-    linear.slopes.row(row) = point.outline_slopes[pose].row(static_cast<Index>(k));
+    linear.slopes.row(row) = point.outline_slopes[pose].row(k);
   });
 }
 
@@ -261,8 +261,8 @@ OutlineFit RobotProblem::outline_fit(const RobotPoint& point) const {
   fit.within_mm = outlines_.asked_mm();
   fit.scale_mm = outline_scale(point);
   double squares[2] = {0, 0};
-  for (Index pose = 0; pose < static_cast<Index>(poses_.commands.size()); ++pose) {
-    const auto p = static_cast<std::size_t>(pose);
+  for (Index pose = 0; pose < std::ssize(poses_.commands); ++pose) {
+    const std::size_t p = pose;
     fit.poses.push_back(outlines_.readings(pose, point.outline_misses[p]));
     const bool drawn = !point.outline_misses[p].empty();
     fit.lines.push_back(drawn ? outlines_.lines(point.equilibria[p].state.positions, point.frame) : OutlineLines());
@@ -355,7 +355,7 @@ std::optional<RobotPoint> RobotProblem::solve(const Eigen::VectorXd& values, con
   point.slopes.resize(slopes ? count : 0);
   point.outline_misses.resize(count);
   point.outline_slopes.resize(slopes ? count : 0);
-  point.computed.resize(static_cast<Index>(count), static_cast<Index>(poses_.columns.size()));
+  point.computed.resize(count, poses_.columns.size());
   StaticsOptions solver = options_.solver;
   solver.threads = 1;
   solver.keep_history = false;
@@ -364,7 +364,7 @@ std::optional<RobotPoint> RobotProblem::solve(const Eigen::VectorXd& values, con
   if (chained) solver.threads = options_.threads;
   const bool whole =
       each_pose(chained ? 1 : static_cast<int>(count), [&](Index pose, const ProgressCallback& progress) {
-        const auto p = static_cast<std::size_t>(pose);
+        const std::size_t p = pose;
         const Equilibrium* from = chained               ? (p > 0 ? &point.equilibria[p - 1] : nullptr)
                                   : way_counts || !near ? nullptr
                                                         : &near->equilibria[p];

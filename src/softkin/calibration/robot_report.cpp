@@ -18,7 +18,7 @@ constexpr double vague = 0.5;   // deviation over the value from which a number 
 double marker_error(const RobotFitReport& r, Index pose, Index marker) {
   double squares = 0;
   bool any = false;
-  for (Index c = 0; c < static_cast<Index>(r.fit.named.columns.size()); ++c) {
+  for (Index c = 0; c < std::ssize(r.fit.named.columns); ++c) {
     const double measured = r.fit.named.values(pose, c);
     if (r.fit.named.columns[c].marker != marker || std::isnan(measured)) continue;
     squares += std::pow(r.fit.computed.values(pose, c) - measured, 2);
@@ -48,7 +48,7 @@ std::string numbers_text(const RobotFitReport& r) {
   int untold = 0;
   for (std::size_t i = 0; i < r.robot.numbers().size(); ++i) {
     const FittedNumber& number = r.robot.numbers()[i];
-    const auto k = static_cast<Index>(i);
+    const Index k = i;
     untold += r.fit.at_bound[i] == 0 && !std::isfinite(r.fit.deviations[k]);
     const double value = r.fit.values[k], deviation = r.fit.deviations[k];
     std::string remark;
@@ -65,7 +65,7 @@ std::string numbers_text(const RobotFitReport& r) {
     text +=
         "what the poses do not tell may be told by them where one of these numbers is known: leave one out of the "
         "fit\n";
-  for (Index i = 0; i < static_cast<Index>(r.fit.correlations.rows()); ++i)
+  for (Index i = 0; i < r.fit.correlations.rows(); ++i)
     for (Index j = 0; j < i; ++j)
       if (std::abs(r.fit.correlations(i, j)) > alike)
         text += "not told apart: " + r.robot.numbers()[j].name + " and " + r.robot.numbers()[i].name +
@@ -83,8 +83,8 @@ std::string errors_by_pose(const RobotFitReport& r, const std::vector<Index>& ma
     table.columns.push_back({.key = "points"});
   }
   table.columns.push_back({.key = "", .left = true});
-  for (Index pose = 0; pose < static_cast<Index>(r.poses.commands.size()); ++pose) {
-    const auto p = static_cast<std::size_t>(pose);
+  for (Index pose = 0; pose < std::ssize(r.poses.commands); ++pose) {
+    const std::size_t p = pose;
     Row row{static_cast<std::int64_t>(pose + 1), count_cell(r.poses.lines[p])};
     for (const double command : r.poses.commands[p]) row.emplace_back(command);
     for (const Index m : markers) row.push_back(known_cell(marker_error(r, pose, m)));
@@ -106,7 +106,7 @@ std::string errors_text(const RobotFitReport& r) {
   int seen = 0;
   for (const Index m : markers) {
     std::vector<double> errors;
-    for (Index pose = 0; pose < static_cast<Index>(r.poses.commands.size()); ++pose)
+    for (Index pose = 0; pose < std::ssize(r.poses.commands); ++pose)
       if (!kept(r, pose)) errors.push_back(marker_error(r, pose, m));
     const double rms = rms_of(errors);
     if (std::isnan(rms)) continue;  // in poses that were kept aside alone
@@ -143,11 +143,11 @@ Json finite(double value) {
 Json numbers_json(const RobotFitReport& r) {
   Json numbers = Json::array();
   for (std::size_t i = 0; i < r.robot.numbers().size(); ++i) {
-    const auto k = static_cast<Index>(i);
+    const Index k = i;
     const bool told = r.fit.deviations.size() > 0;
     Json correlations = Json::object();
     for (std::size_t j = 0; told && j < r.robot.numbers().size(); ++j)
-      if (j != i) correlations[r.robot.numbers()[j].name] = r.fit.correlations(k, static_cast<Index>(j));
+      if (j != i) correlations[r.robot.numbers()[j].name] = r.fit.correlations(k, j);
     numbers.push_back({{"name", r.robot.numbers()[i].name},
                        {"value", r.fit.values[k]},
                        {"deviation", told ? finite(r.fit.deviations[k]) : Json()},
@@ -160,8 +160,8 @@ Json numbers_json(const RobotFitReport& r) {
 
 Json poses_json(const RobotFitReport& r) {
   Json poses = Json::array();
-  for (Index pose = 0; pose < static_cast<Index>(r.poses.commands.size()); ++pose) {
-    const auto p = static_cast<std::size_t>(pose);
+  for (Index pose = 0; pose < std::ssize(r.poses.commands); ++pose) {
+    const std::size_t p = pose;
     Json errors = Json::object(), commands = Json::object();
     for (const Index m : markers_of(r)) errors[marker_name(r, m)] = finite(marker_error(r, pose, m));
     for (std::size_t a = 0; a < r.model.actuators.size(); ++a)
@@ -187,7 +187,7 @@ Row& add_reading(const RobotFitReport& r, Index pose, Table& table, const std::s
 }
 
 void add_columns_of(const RobotFitReport& r, Index pose, Table& table) {
-  for (Index c = 0; c < static_cast<Index>(r.poses.columns.size()); ++c) {
+  for (Index c = 0; c < std::ssize(r.poses.columns); ++c) {
     const PoseColumn& column = r.poses.columns[c];
     if (std::isnan(r.poses.values(pose, c))) continue;
     Row& row = add_reading(r, pose, table, column.name, r.poses.values(pose, c), r.fit.computed.values(pose, c));
@@ -211,7 +211,7 @@ void add_dots_of(const RobotFitReport& r, Index pose, Table& table) {
 }
 
 void add_outline_of(const RobotFitReport& r, Index pose, Table& table) {
-  for (const OutlineRow& outline : outline_rows(r, static_cast<std::size_t>(pose))) {
+  for (const OutlineRow& outline : outline_rows(r, pose)) {
     Row& row = add_reading(r, pose, table, outline.name, outline.measured, outline.computed);
     row.resize(table.columns.size() - 2);
     for (const Cell& cell : outline_cells(*outline.reading)) row.push_back(cell);
@@ -266,7 +266,7 @@ Table robot_fit_table(const RobotFitReport& r) {
     for (const char* key : {"marker", "may_be"}) table.columns.push_back({.key = key});
   if (has_outlines(r))
     for (const char* key : {"outline_off_mm", "counts"}) table.columns.push_back({.key = key});
-  for (Index pose = 0; pose < static_cast<Index>(r.poses.commands.size()); ++pose) {
+  for (Index pose = 0; pose < std::ssize(r.poses.commands); ++pose) {
     add_columns_of(r, pose, table);
     add_dots_of(r, pose, table);
     add_outline_of(r, pose, table);

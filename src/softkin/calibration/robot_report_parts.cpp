@@ -22,7 +22,7 @@ const std::string& marker_name(const RobotFitReport& r, Index marker) {
 
 std::pair<Vec3, Vec3> places_of(const RobotFitReport& r, Index pose, Index marker) {
   Vec3 there = Vec3::Constant(std::nan("")), here = there;
-  for (Index c = 0; c < static_cast<Index>(r.fit.named.columns.size()); ++c) {
+  for (Index c = 0; c < std::ssize(r.fit.named.columns); ++c) {
     const PoseColumn& column = r.fit.named.columns[c];
     if (column.marker != marker) continue;
     there[column.axis] = r.fit.named.values(pose, c);
@@ -35,7 +35,7 @@ Vec3 dot_place(const RobotFitReport& r, Index pose, std::size_t dot) {
   const UnnamedDots& dots = r.poses.dots;
   Vec3 place = Vec3::Constant(std::nan(""));
   for (std::size_t axis = 0; axis < dots.axes.size(); ++axis)
-    place[dots.axes[axis]] = dots.places(pose, static_cast<Index>(dot * dots.axes.size() + axis));
+    place[dots.axes[axis]] = dots.places(pose, dot * dots.axes.size() + axis);
   return place;
 }
 

@@ -68,7 +68,7 @@ void RobotProblem::compute(RobotPoint& point, const Changes* changes, Index pose
   const Equilibrium& found = point.equilibria[pose];
   ElementDeformation reactions;
   if (reads_forces() && found.report.status == Status::converged) reactions = point.statics->measured(found.state);
-  for (Index c = 0; c < static_cast<Index>(poses_.columns.size()); ++c) {
+  for (Index c = 0; c < std::ssize(poses_.columns); ++c) {
     const PoseColumn& column = poses_.columns[c];
     double& value = point.computed(pose, c);
     if (found.report.status != Status::converged)
@@ -89,7 +89,7 @@ void RobotProblem::compute(RobotPoint& point, const Changes* changes, Index pose
 /// Numbers change what acts of commands, too, where there is backlash.
 void RobotProblem::add_changes_of_acting(ParameterSensitivity& found, const RobotPoint& point, const Changes& changes,
                                          Index pose) const {
-  const auto p = static_cast<std::size_t>(pose);
+  const std::size_t p = pose;
   std::vector<Actuation> along;
   std::vector<std::size_t> of;
   for (std::size_t k = 0; k < changes.acting.size(); ++k) {
@@ -104,7 +104,7 @@ void RobotProblem::add_changes_of_acting(ParameterSensitivity& found, const Robo
       point.statics->sensitivity_along(point.equilibria[p].state, along, solver, slopes_accuracy, reads_forces());
   for (std::size_t i = 0; i < of.size(); ++i) {
     found.positions[of[i]] += more.positions[i];
-    found.multipliers.col(static_cast<Index>(of[i])) += more.multipliers.col(static_cast<Index>(i));
+    found.multipliers.col(of[i]) += more.multipliers.col(i);
     if (reads_forces()) found.reactions[of[i]] += more.reactions[i];
   }
   found.regular = more.regular;
@@ -114,16 +114,16 @@ void RobotProblem::add_changes_of_acting(ParameterSensitivity& found, const Robo
 void RobotProblem::add_slopes_of_frame(RobotPoint& point, const Changes& changes, Index pose,
                                        const Points& reactions) const {
   const State& state = point.equilibria[pose].state;
-  const auto count = static_cast<Index>(robot_.numbers().size());
+  const Index count = robot_.numbers().size();
   Eigen::MatrixXd& slopes = point.slopes[pose];
-  slopes.setZero(static_cast<Index>(poses_.columns.size()), count);
-  for (Index c = 0; c < static_cast<Index>(slopes.rows()); ++c) {
+  slopes.setZero(poses_.columns.size(), count);
+  for (Index c = 0; c < slopes.rows(); ++c) {
     const PoseColumn& column = poses_.columns[c];
     if (!turns(column)) continue;
     const bool marker = column.marker >= 0;
     const Vec3 place = vector_of(*point.model, column, state.positions, reactions);
     for (Index i = 0; i < count; ++i) {
-      const auto k = static_cast<std::size_t>(i);
+      const std::size_t k = i;
       const Vec3 shift = marker ? changes.shift(k) : Vec3(Vec3::Zero());
       slopes(c, i) = (changes.turn(k) * place + shift)[column.axis];
     }
@@ -133,14 +133,14 @@ void RobotProblem::add_slopes_of_frame(RobotPoint& point, const Changes& changes
 /// Of the distances of outlines, by the frame and, where the robot moves with numbers, by its moves.
 void RobotProblem::add_outline_slopes(RobotPoint& point, const Changes& changes, Index pose,
                                       const ParameterSensitivity& found) const {
-  const auto p = static_cast<std::size_t>(pose);
+  const std::size_t p = pose;
   const std::vector<OutlineMiss>& misses = point.outline_misses[p];
-  const auto count = static_cast<Index>(robot_.numbers().size());
-  point.outline_slopes[p].setZero(static_cast<Index>(misses.size()), count);
+  const Index count = robot_.numbers().size();
+  point.outline_slopes[p].setZero(misses.size(), count);
   for (Index i = 0; i < count && !misses.empty(); ++i) {
     const auto own = std::find(changes.numbers.begin(), changes.numbers.end(), i);
     const bool moves = found.regular && own != changes.numbers.end();
-    const auto k = static_cast<std::size_t>(i);
+    const std::size_t k = i;
     point.outline_slopes[p].col(i) = calibration::outline_slopes(
         misses, point.equilibria[p].state.positions, point.frame, changes.turn(k), changes.shift(k),
         moves ? &found.positions[own - changes.numbers.begin()] : nullptr);
@@ -159,8 +159,8 @@ void RobotProblem::add_slopes(RobotPoint& point, const Changes& changes, Index p
   if (!found.regular) return;
   for (std::size_t k = 0; k < changes.numbers.size(); ++k) {
     const Index i = changes.numbers[k];
-    const auto p = static_cast<Index>(k);
-    for (Index c = 0; c < static_cast<Index>(slopes.rows()); ++c) {
+    const Index p = k;
+    for (Index c = 0; c < slopes.rows(); ++c) {
       const PoseColumn& column = poses_.columns[c];
       if (measures(column)) {
         const Perturbed& number = changes.perturbed[k];
@@ -174,12 +174,12 @@ void RobotProblem::add_slopes(RobotPoint& point, const Changes& changes, Index p
         slopes(c, i) += found.multipliers(column.actuator, p);
         continue;
       }
-      const Vec3 moved = points_along(column) ? direction_slope(changes.perturbed[k], *point.model, column,
-                                                                state.positions, found.positions[k])
-                         : column.support >= 0
-                             ? force_of(*point.model, column, state.positions, found.reactions[k])
-                             : marker_slope(*point.model, changes.perturbed[k], static_cast<std::size_t>(column.marker),
-                                            state.positions, found.positions[k]);
+      const Vec3 moved =
+          points_along(column)
+              ? direction_slope(changes.perturbed[k], *point.model, column, state.positions, found.positions[k])
+          : column.support >= 0
+              ? force_of(*point.model, column, state.positions, found.reactions[k])
+              : marker_slope(*point.model, changes.perturbed[k], column.marker, state.positions, found.positions[k]);
       slopes(c, i) += (point.frame.rotation * moved)[column.axis];
     }
   }

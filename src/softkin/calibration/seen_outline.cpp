@@ -83,8 +83,7 @@ void SeenOutline::fill_grid() {
     const Vector2d a = at(triangles[t][0]), b = at(triangles[t][1]), c = at(triangles[t][2]);
     const Vector2d least = a.cwiseMin(b).cwiseMin(c), largest = a.cwiseMax(b).cwiseMax(c);
     for (std::size_t i = cell(least.x(), 0); i <= cell(largest.x(), 0); ++i)
-      for (std::size_t j = cell(least.y(), 1); j <= cell(largest.y(), 1); ++j)
-        grid_[i * cells_[1] + j].push_back(static_cast<Index>(t));
+      for (std::size_t j = cell(least.y(), 1); j <= cell(largest.y(), 1); ++j) grid_[i * cells_[1] + j].push_back(t);
   }
 }
 

@@ -19,7 +19,7 @@ struct Grid {
   std::size_t before = 0;  // cells along x before the interface
 
   [[nodiscard]] Index vertex(std::size_t i, std::size_t j, std::size_t k) const {
-    return static_cast<Index>(i + x.size() * (j + y.size() * k));
+    return i + x.size() * (j + y.size() * k);
   }
 };
 
@@ -79,7 +79,7 @@ void append_cells(const Grid& grid, Mesh& mesh) {
         const std::size_t first = mesh.tetrahedra.size();
         append_cell(corners, (i + j + k) % 2 != 0, mesh.tetrahedra);
         Region& region = i < grid.before ? a : b;
-        for (std::size_t t = first; t < mesh.tetrahedra.size(); ++t) region.tetrahedra.push_back(static_cast<Index>(t));
+        for (std::size_t t = first; t < mesh.tetrahedra.size(); ++t) region.tetrahedra.push_back(t);
       }
   mesh.regions.push_back(std::move(a));
   mesh.regions.push_back(std::move(b));
@@ -99,7 +99,7 @@ void append_face(const std::string& name, double x, Mesh& mesh) {
       const int apex = 6 - face[0] - face[1] - face[2];
       const bool element_before = mesh.vertices(t[apex], 0) < x;
       if (element_before != last) continue;  // an inner face counts with the element beyond it
-      region.triangles.push_back(static_cast<Index>(mesh.triangles.size()));
+      region.triangles.push_back(mesh.triangles.size());
       mesh.triangles.push_back({t[face[0]], t[face[1]], t[face[2]]});
     }
   mesh.regions.push_back(std::move(region));
@@ -113,7 +113,7 @@ Mesh bar_mesh(const BarShape& shape) {
   check(shape);
   const Grid grid = grid_of(shape);
   Mesh mesh;
-  mesh.vertices.resize(static_cast<Index>(grid.x.size() * grid.y.size() * grid.z.size()), 3);
+  mesh.vertices.resize(grid.x.size() * grid.y.size() * grid.z.size(), 3);
   for (std::size_t k = 0; k < grid.z.size(); ++k)
     for (std::size_t j = 0; j < grid.y.size(); ++j)
       for (std::size_t i = 0; i < grid.x.size(); ++i)

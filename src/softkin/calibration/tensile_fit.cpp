@@ -61,7 +61,7 @@ Points2 points_of(const TensileCurve& curve, double most) {
   if (curve.strain.size() != curve.stress.size()) throw InvalidInput("a tensile test needs a stress for every strain");
   std::size_t count = 0;
   while (count < curve.strain.size() && (most == 0 || curve.strain[count] <= most)) ++count;
-  const auto size = static_cast<Index>(count);
+  const Index size = count;
   return {Eigen::Map<const Eigen::VectorXd>(curve.strain.data(), size),
           Eigen::Map<const Eigen::VectorXd>(curve.stress.data(), size)};
 }
@@ -71,7 +71,7 @@ Eigen::MatrixXd columns_of(Law law, const Eigen::VectorXd& strain) {
   std::vector<IncompressibleLaw> units{{law, 1, 0, 0, 0}};
   if (law == Law::mooney_rivlin) units.push_back({law, 0, 1, 0, 0});
   if (law == Law::yeoh) units.insert(units.end(), {{law, 0, 0, 1, 0}, {law, 0, 0, 0, 1}});
-  Eigen::MatrixXd columns(strain.size(), static_cast<Index>(units.size()));
+  Eigen::MatrixXd columns(strain.size(), units.size());
   for (Index c = 0; c < columns.cols(); ++c)
     for (Index i = 0; i < strain.size(); ++i) columns(i, c) = uniaxial_stress(units[c], strain[i]);
   return columns;
@@ -157,17 +157,17 @@ double uniaxial_stress(const ElasticLaw& law, double strain) {
 
 LinearRange linear_range(const TensileCurve& curve, double tolerance) {
   const Points2 points = points_of(curve, 0);
-  const auto total = static_cast<std::size_t>(points.strain.size());
+  const std::size_t total = points.strain.size();
   if (total < least_points) throw InvalidInput("a tensile test needs at least five points");
   LinearRange range;
   double x = 0, y = 0, xx = 0, xy = 0;
   for (std::size_t n = 1; n <= total; ++n) {
-    const auto last = static_cast<Index>(n - 1);
+    const Index last = n - 1;
     const double strain = points.strain[last], stress = points.stress[last];
     x += strain, y += stress, xx += strain * strain, xy += strain * stress;
     if (n < least_points || !(xx > 0)) continue;
     const Line line = line_of(x, y, xx, xy, static_cast<double>(n));
-    const auto count = static_cast<Index>(n);
+    const Index count = n;
     const double off = (points.stress.head(count) - line.slope * points.strain.head(count)).cwiseAbs().maxCoeff();
     if (!(line.slope > 0 && off <= tolerance * line.slope * strain)) continue;
     range.modulus_mpa = line.slope;
@@ -179,7 +179,7 @@ LinearRange linear_range(const TensileCurve& curve, double tolerance) {
     throw InvalidInput(
         "the tensile test has no linear range: no line through the origin passes its first five points "
         "or more within the tolerance; was the test zeroed?");
-  const auto count = static_cast<Index>(range.points);
+  const Index count = range.points;
   range.whole = range.points == total;
   range.quality = quality_of(points.stress.head(count), range.modulus_mpa * points.strain.head(count));
   return range;
@@ -202,7 +202,7 @@ LawFit fit_law(const TensileCurve& curve, Law law, double most) {
   fit.law = law_of(law, constants);
   fit.falls_at = falls_at(fit.law, points.strain[points.strain.size() - 1]);
   fit.quality = quality_of(points.stress, columns * constants);
-  fit.points = static_cast<std::size_t>(points.strain.size());
+  fit.points = points.strain.size();
   return fit;
 }
 

@@ -18,7 +18,7 @@ std::string name_of(const FittedLaw& law) {
 std::string choose(const TensileResults& results) {
   constexpr double enough = 0.01;
   const std::vector<double>& stress = results.curve.stress;
-  const auto points = static_cast<std::ptrdiff_t>(results.laws.front().fit.points);
+  const std::ptrdiff_t points = results.laws.front().fit.points;
   const double largest = *std::max_element(stress.begin(), stress.begin() + points);
   const FittedLaw* best = &results.laws.front();
   for (const FittedLaw& each : results.laws) {

@@ -19,11 +19,10 @@ const std::array<Index, N>& vertices_of(const std::array<Index, N>& vertices) {
 
 template <class Items>
 Points centres_of(const Items& items, const Points& rest) {
-  Points centres = Points::Zero(static_cast<Eigen::Index>(items.size()), 3);
+  Points centres = Points::Zero(items.size(), 3);
   for (std::size_t i = 0; i < items.size(); ++i) {
     const auto& vertices = vertices_of(items[i]);
-    for (const Index v : vertices)
-      centres.row(static_cast<Eigen::Index>(i)) += rest.row(v) / static_cast<double>(vertices.size());
+    for (const Index v : vertices) centres.row(i) += rest.row(v) / static_cast<double>(vertices.size());
   }
   return centres;
 }
@@ -51,7 +50,7 @@ MovingBox enlarged(MovingBox box, double reach) {
 }  // namespace
 
 Lists neighbours_of(const Surface& surface, Index rows, int edges) {
-  std::vector<std::vector<Index>> next(static_cast<std::size_t>(rows));
+  std::vector<std::vector<Index>> next(rows);
   for (const auto& [a, b] : surface.edges) {
     next[a].push_back(b);
     next[b].push_back(a);
@@ -70,7 +69,7 @@ Lists neighbours_of(const Surface& surface, Index rows, int edges) {
       reached.erase(std::unique(reached.begin(), reached.end()), reached.end());
     }
     lists.items.insert(lists.items.end(), reached.begin(), reached.end());
-    lists.begin.push_back(static_cast<Index>(lists.items.size()));
+    lists.begin.push_back(lists.items.size());
   }
   return lists;
 }
@@ -78,7 +77,7 @@ Lists neighbours_of(const Surface& surface, Index rows, int edges) {
 template <int vertices>
 template <class Items>
 BroadPhase::Features<vertices>::Features(const Items& items, const Points& rest)
-    : tree(centres_of(items, rest)), nodes(static_cast<std::size_t>(tree.groups())) {
+    : tree(centres_of(items, rest)), nodes(tree.groups()) {
   for (Index place = 0; place < tree.size(); ++place) {
     const auto& of_item = vertices_of(items[tree.item(place / 8, place % 8)]);
     for (std::size_t k = 0; k < vertices; ++k) nodes[place / 8].node[k][place % 8] = of_item[k];
@@ -95,7 +94,7 @@ BroadPhase::BroadPhase(const Surface& surface, const Points& rest, Exclusions ex
 bool BroadPhase::neighbours(Index a, Index b) const {
   const auto* items = exclusions_.neighbours.items.data();
   const auto& begin = exclusions_.neighbours.begin;
-  return std::binary_search(items + begin[a], items + begin[static_cast<std::size_t>(a) + 1], b);
+  return std::binary_search(items + begin[a], items + begin[a + 1], b);
 }
 
 bool BroadPhase::left_out(const Index* a, int of_a, const Index* b, int of_b) const {
@@ -122,7 +121,7 @@ void BroadPhase::pair_up(const Features<of_query>& queries, const Features<of_ot
   if (tree.size() == 0) return;
   const TreeLevels levels = tree.levels(others.nodes.data());
   const Index pieces = (query_tree.groups() + groups_a_piece - 1) / groups_a_piece;
-  if (found_.size() < static_cast<std::size_t>(pieces)) found_.resize(static_cast<std::size_t>(pieces));
+  if (found_.size() < static_cast<std::size_t>(pieces)) found_.resize(pieces);
   const auto pair_group = [&](Index group, std::vector<Pair>& found) {
     EightBoxes boxes;
     const int lanes = static_cast<int>(std::min<Index>(8, query_tree.size() - 8 * group));

@@ -113,7 +113,7 @@ double least_of(const Surface& surface, const Candidates& candidates, double mos
     }
   };
   const auto look = [&](const std::vector<Pair>& pairs, auto nodes_of, bool edges) {
-    team.pieces(static_cast<Index>(pairs.size()), [&](Index begin, Index end) {
+    team.pieces(pairs.size(), [&](Index begin, Index end) {
       for (Index i = begin; i < end; ++i)
         lower(value(nodes_of(surface, pairs[i]), edges, least.load(std::memory_order_relaxed)));
     });

@@ -21,7 +21,7 @@ void sort_unique(std::vector<Value>& values) {
 
 template <class Value>
 Index place_of(const Value& value, const std::vector<Value>& sorted) {
-  return static_cast<Index>(std::lower_bound(sorted.begin(), sorted.end(), value) - sorted.begin());
+  return std::lower_bound(sorted.begin(), sorted.end(), value) - sorted.begin();
 }
 
 /// For each of `count` things the triangles that name it.
@@ -29,12 +29,12 @@ Lists triangles_of(const std::vector<std::array<Index, 3>>& named, std::size_t c
   Lists lists;
   lists.begin.assign(count + 1, 0);
   for (const auto& three : named)
-    for (const Index i : three) ++lists.begin[static_cast<std::size_t>(i) + 1];
+    for (const Index i : three) ++lists.begin[i + 1];
   for (std::size_t i = 0; i < count; ++i) lists.begin[i + 1] += lists.begin[i];
   lists.items.resize(3 * named.size());
   std::vector<Index> next(lists.begin);
   for (std::size_t t = 0; t < named.size(); ++t)
-    for (const Index i : named[t]) lists.items[next[i]++] = static_cast<Index>(t);
+    for (const Index i : named[t]) lists.items[next[i]++] = t;
   return lists;
 }
 
@@ -60,7 +60,7 @@ void check(const std::vector<Corners>& triangles, Index vertices) {
 }  // namespace
 
 Surface make_surface(std::vector<Corners> triangles, const Points& rest) {
-  check(triangles, static_cast<Index>(rest.rows()));
+  check(triangles, rest.rows());
   Surface surface;
   surface.triangles = std::move(triangles);
   for (const Corners& t : surface.triangles) {

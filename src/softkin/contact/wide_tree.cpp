@@ -4,7 +4,7 @@
 
 namespace softkin::contact {
 
-WideTree::WideTree(const Points& centres) : items_(static_cast<std::size_t>(centres.rows())) {
+WideTree::WideTree(const Points& centres) : items_(centres.rows()) {
   std::iota(items_.begin(), items_.end(), 0);
   sort(centres, 0, size());
   std::size_t blocks = items_.size();

@@ -58,9 +58,9 @@ class WideTree {
   /// centres  of the items at rest; those that are near each other come to stand together
   explicit WideTree(const Points& centres);
 
-  [[nodiscard]] Index size() const { return static_cast<Index>(items_.size()); }
+  [[nodiscard]] Index size() const { return items_.size(); }
   /// Groups of eight items that stand together.
-  [[nodiscard]] Index groups() const { return static_cast<Index>(levels_[0].size()); }
+  [[nodiscard]] Index groups() const { return levels_[0].size(); }
   /// Item in a lane of a group; only lanes of items.
   [[nodiscard]] Index item(Index group, int lane) const { return items_[8 * group + lane]; }
   [[nodiscard]] const EightBoxes& boxes(Index group) const { return levels_[0][group]; }

@@ -40,7 +40,7 @@ std::vector<std::thread> start_threads(int count, const std::function<void()>& w
                        " more threads could be started (" + why + "): ask for fewer threads");
   };
   try {
-    threads.reserve(static_cast<std::size_t>(count));
+    threads.reserve(count);
     for (int i = 0; i < count; ++i) threads.emplace_back(work);
   } catch (const std::system_error& error) {
     give_up(error.code().message());

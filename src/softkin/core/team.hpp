@@ -44,7 +44,7 @@ class Team {
   void pieces(Index count, const Body& body) {
     // more pieces than threads: who is interrupted leaves the rest to the others
     const std::int64_t parts = size() == 1 ? 1 : std::min<std::int64_t>(count, 4 * size());
-    each(static_cast<Index>(parts),
+    each(parts,
          [&](Index i) { body(static_cast<Index>(count * i / parts), static_cast<Index>(count * (i + 1) / parts)); });
   }
 

@@ -256,18 +256,15 @@ Machine assemble(const Model& model, const HardwareSpec& hardware, const Command
                      commands.file);
   for (const TendonSpec& spec : hardware.tendons) {
     const std::size_t a = find<CableDrive>(model, spec.actuator, spec.origin, "tendons", "cable");
-    if (actuators[a].control == Control::ratio)
-      machine.tendons.push_back(tendon_of(spec, actuators[a], static_cast<Index>(a), machine));
+    if (actuators[a].control == Control::ratio) machine.tendons.push_back(tendon_of(spec, actuators[a], a, machine));
   }
   for (const SyringeSpec& spec : hardware.syringes) {
     const std::size_t a = find<ChamberDrive>(model, spec.actuator, spec.origin, "syringes", "chamber");
-    if (is_driven(a))
-      machine.syringes.push_back(
-          syringe_of(spec, actuators[a], static_cast<Index>(a), hardware.atmosphere_kPa, machine));
+    if (is_driven(a)) machine.syringes.push_back(syringe_of(spec, actuators[a], a, hardware.atmosphere_kPa, machine));
   }
   for (const ChamberSpec& spec : hardware.chambers) {
     const std::size_t a = find<ChamberDrive>(model, spec.actuator, spec.origin, "chambers", "chamber");
-    if (is_driven(a)) machine.chambers.push_back(chamber_of(spec, static_cast<Index>(a), machine));
+    if (is_driven(a)) machine.chambers.push_back(chamber_of(spec, a, machine));
   }
   for (std::size_t a = 0; a < actuators.size(); ++a)
     if (is_driven(a)) check_described(actuators[a], machine, commands.file);

@@ -35,7 +35,7 @@ std::optional<std::vector<std::pair<char, double>>> coordinates(std::string_view
     if (failure != std::errc() || !std::isfinite(value) || (end != text.data() + text.size() && *end != ' '))
       return std::nullopt;
     position.emplace_back(text[0], value);
-    text.remove_prefix(static_cast<std::size_t>(end - text.data()));
+    text.remove_prefix(end - text.data());
   }
   return position;
 }

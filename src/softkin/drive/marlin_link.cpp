@@ -160,7 +160,7 @@ class Session {
     }
     foreign_ = 0;
     if (static_cast<std::size_t>(index) > cursor_) failures_ = 0;
-    cursor_ = static_cast<std::size_t>(index);
+    cursor_ = index;
     return true;
   }
 

@@ -110,7 +110,7 @@ class Writer {
   }
 
   [[nodiscard]] double longest_ahead() const {
-    const auto count = static_cast<std::ptrdiff_t>(std::min(moves_ahead, durations_.size()));
+    const std::ptrdiff_t count = std::min(moves_ahead, durations_.size());
     return count == 0 ? 0 : *std::max_element(durations_.end() - count, durations_.end());
   }
   [[nodiscard]] double drain() const {

@@ -80,7 +80,7 @@ bool SerialPort::write(std::string_view bytes, double timeout_s) {
   while (!bytes.empty()) {
     const ssize_t count = ::write(file_, bytes.data(), bytes.size());
     if (count > 0) {
-      bytes.remove_prefix(static_cast<std::size_t>(count));
+      bytes.remove_prefix(count);
       deadline = seconds_now() + timeout_s;
     } else if (count < 0 && errno != EAGAIN && errno != EINTR) {
       return false;
@@ -112,7 +112,7 @@ SerialPort::Read SerialPort::read_line(std::string& line, double timeout_s) {
     char bytes[1024];
     const ssize_t count = ::read(file_, bytes, sizeof bytes);
     if (count > 0) {
-      pending_.append(bytes, static_cast<std::size_t>(count));
+      pending_.append(bytes, count);
       continue;
     }
     if (count < 0 && errno != EAGAIN && errno != EINTR) return Read::lost;

@@ -48,7 +48,7 @@ std::string read_beginning(const fs::path& path, std::size_t most) {
   std::string content(most, '\0');
   if (!stream.read(content.data(), static_cast<std::streamsize>(most)) && !stream.eof())
     throw InvalidInput({path.string()}, "cannot be read");
-  content.resize(static_cast<std::size_t>(stream.gcount()));
+  content.resize(stream.gcount());
   return content;
 }
 

@@ -21,8 +21,8 @@ double Estimate::misfit() const {
 }
 
 Vec3 Estimate::vertex_deviation(Index vertex) const {
-  Eigen::MatrixXd by(3, static_cast<Index>(moves.size()));
-  for (std::size_t c = 0; c < moves.size(); ++c) by.col(static_cast<Index>(c)) = vertex_at(moves[c], vertex);
+  Eigen::MatrixXd by(3, moves.size());
+  for (std::size_t c = 0; c < moves.size(); ++c) by.col(c) = vertex_at(moves[c], vertex);
   return (by * near_covariance * by.transpose()).diagonal().cwiseMax(0).cwiseSqrt();
 }
 
@@ -82,7 +82,7 @@ void Estimator::Parts::check(const Actuation& commands, const Eigen::VectorXd& v
                        std::to_string(deviations.size()));
   if (values.array().isInf().any()) throw InvalidInput("a reading is infinite");
   if (!(elapsed_s >= 0)) throw InvalidInput("the time since the last readings must be 0 s or more");
-  if (commands.size() != static_cast<Index>(model.actuators.size()))
+  if (commands.size() != std::ssize(model.actuators))
     throw InvalidInput("there are " + std::to_string(commands.size()) + " commands, the robot has " +
                        std::to_string(model.actuators.size()));
 }
@@ -137,7 +137,7 @@ void Estimator::Parts::tell_numbers(const Fit& found) {
   estimate.numbers.clear();
   for (std::size_t i = 0; i < variables.size(); ++i) {
     const Variable& v = variables[i];
-    const auto at = static_cast<Index>(i);
+    const Index at = i;
     const double value = found.told.values[at];
     estimate.numbers.push_back(
         estimate::told_number(model, v, value, std::sqrt(std::max(0.0, estimate.covariance(at, at)))));
@@ -152,7 +152,7 @@ void Estimator::Parts::tell_places(const Fit& found) {
     const Patch& patch = *forces[f].patch;
     const Place& place = found.told.places[f];
     const auto tangents = patch.tangents(place);
-    const Index first = problem.variables().numbers() + 2 * static_cast<Index>(f);
+    const Index first = problem.variables().numbers() + 2 * f;
     estimate.places.push_back({forces[f].name, patch.at(place, model.rest), patch.at(place, estimate.state.positions),
                                tangents * estimate.covariance.block(first, first, 2, 2) * tangents.transpose(),
                                patch.covariance()});
@@ -181,7 +181,7 @@ void Estimator::Parts::tell(const Fit& found, const Readings& read, const Actuat
   estimate.actuation = commands;
   tell_numbers(found);
   tell_places(found);
-  const auto own = static_cast<Index>(model.actuators.size());
+  const Index own = model.actuators.size();
   estimate.state.actuation = problem.variables().actuation(commands, found.told.values, found.told.places).head(own);
   estimate.state.multipliers = estimate.state.multipliers.head(own).eval();
   estimate.moves = problem.moves(*found.nearby, found.told);
@@ -190,7 +190,7 @@ void Estimator::Parts::tell(const Fit& found, const Readings& read, const Actuat
 Estimator::Estimator(const Model& model, const std::vector<EstimatedUnknown>& unknowns,
                      const std::vector<PoseColumn>& columns, Eigen::VectorXd deviations, EstimatorOptions options) {
   if (columns.empty()) throw InvalidInput("there is no reading");
-  if (deviations.size() != static_cast<Index>(columns.size())) throw InvalidInput("each reading needs a deviation");
+  if (deviations.size() != std::ssize(columns)) throw InvalidInput("each reading needs a deviation");
   for (std::size_t r = 0; r < columns.size(); ++r)
     if (const double d = deviations[r]; !(d > 0 && std::isfinite(d)))
       throw InvalidInput("reading '" + columns[r].name + "' needs a deviation above 0, not " + number(d));
@@ -252,7 +252,7 @@ std::vector<Index> Estimator::told_actuators() const {
 
 std::vector<ReadingGroup> reading_groups(const Model& model, const std::vector<PoseColumn>& columns) {
   std::vector<ReadingGroup> groups;
-  for (Index c = 0; c < static_cast<Index>(columns.size()); ++c) {
+  for (Index c = 0; c < std::ssize(columns); ++c) {
     const PoseColumn& column = columns[c];
     std::string name = column.marker >= 0                  ? "marker " + model.markers[column.marker].name
                        : column.support >= 0               ? "force of " + model.held.supports[column.support].name

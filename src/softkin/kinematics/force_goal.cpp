@@ -25,7 +25,7 @@ bool touches(Index part, const std::vector<PairForces>& pairs) {
 
 /// Of every command, a unit of it.
 std::vector<Actuation> unit_changes(const Model& model) {
-  const auto m = static_cast<Index>(model.actuators.size());
+  const Index m = model.actuators.size();
   std::vector<Actuation> changes;
   for (Index a = 0; a < m; ++a) changes.emplace_back(Actuation::Unit(m, a));
   return changes;
@@ -136,7 +136,7 @@ std::vector<ExertionSlopes> inverse::exertion_slopes(const Statics& statics, con
     sensitivity = {std::move(all.positions), std::move(all.multipliers), all.regular};
   }
   if (!sensitivity.regular) return slopes;
-  const auto m = static_cast<Index>(sensitivity.positions.size());
+  const Index m = sensitivity.positions.size();
   std::vector<std::vector<Vec3>> pressed;
   for (std::size_t i = 0; i < goals.size(); ++i) {
     ExertionSlopes& slope = slopes.emplace_back();
@@ -146,7 +146,7 @@ std::vector<ExertionSlopes> inverse::exertion_slopes(const Statics& statics, con
     slope.gap.setZero(m);
     if (is_part(*force) && pressed.empty()) pressed = statics.pressing_changes(state, sensitivity.positions);
     for (Index a = 0; a < m; ++a) {
-      const auto by = static_cast<std::size_t>(a);
+      const std::size_t by = a;
       slope.force.col(a) = is_part(*force) ? pressed[by][force->index] : on_support(model, force->index, held[by]);
       if (at.exertions[i].gap) slope.gap[a] = change_of(*at.exertions[i].gap, model, sensitivity.positions[by]);
     }

@@ -116,7 +116,7 @@ Eigen::VectorXd joined(const std::vector<Goal>& goals, const Each& each) {
     const Eigen::VectorXd terms = std::sqrt(goals[i].weight) * each(i);
     all.insert(all.end(), terms.data(), terms.data() + terms.size());
   }
-  return Eigen::Map<Eigen::VectorXd>(all.data(), static_cast<Index>(all.size()));
+  return Eigen::Map<Eigen::VectorXd>(all.data(), all.size());
 }
 
 class Check {
@@ -145,7 +145,7 @@ class Check {
       refuse("a force is found in the physical formulation alone: target shapes have no forces");
     const std::vector<ContactPart>& parts = model_.contact.parts;
     const std::size_t count = goal.on == ForceGoal::On::support ? model_.held.supports.size() : parts.size();
-    const auto place = static_cast<std::size_t>(goal.index);
+    const std::size_t place = goal.index;
     const bool there = goal.index >= 0 && place < count;
     if (!there || (goal.on == ForceGoal::On::part && parts[place].rank == ContactRank::robot))
       refuse("the robot has no support, obstacle or body number " + std::to_string(goal.index) + " to press on");
@@ -160,7 +160,7 @@ class Check {
  private:
   [[noreturn]] void refuse(const std::string& why) const { throw InvalidInput(name_ + ": " + why); }
   void marker(Index index) const {
-    if (index < 0 || index >= static_cast<Index>(model_.markers.size()))
+    if (index < 0 || index >= std::ssize(model_.markers))
       refuse("the robot has no marker number " + std::to_string(index));
   }
   void finite(const Vec3& vector, const std::string& what) const {
@@ -227,7 +227,7 @@ std::vector<std::string> doubts_about(const Model& model, const std::vector<Goal
 
 Eigen::VectorXd inverse::errors_of(const Model& model, const std::vector<Goal>& goals, const Points& positions,
                                    const std::vector<Exertion>& exertions) {
-  Eigen::VectorXd errors(static_cast<Index>(goals.size()));
+  Eigen::VectorXd errors(goals.size());
   for (std::size_t i = 0; i < goals.size(); ++i) {
     const Exertion found{exertions.empty() ? Vec3(Vec3::Zero()) : exertions[i].force, std::nullopt};
     errors[i] = terms_of(model, goals[i], positions, found).stableNorm();
@@ -245,14 +245,13 @@ Eigen::VectorXd inverse::goal_terms(const Model& model, const std::vector<Goal>&
 Eigen::MatrixXd inverse::goal_slopes(const Model& model, const std::vector<Goal>& goals, const Points& positions,
                                      const Sensitivity& sensitivity, const std::vector<Exertion>& exertions,
                                      const std::vector<ExertionSlopes>& changes) {
-  Eigen::MatrixXd slopes(inverse::goal_terms(model, goals, positions, exertions).size(),
-                         static_cast<Index>(sensitivity.positions.size()));
+  Eigen::MatrixXd slopes(inverse::goal_terms(model, goals, positions, exertions).size(), sensitivity.positions.size());
   const Exertion nothing;
   const ExertionSlopes no_change;
   for (std::size_t a = 0; a < sensitivity.positions.size(); ++a)
-    slopes.col(static_cast<Index>(a)) = joined(goals, [&](std::size_t i) {
+    slopes.col(a) = joined(goals, [&](std::size_t i) {
       return change_of(model, goals[i], positions, sensitivity.positions[a], exertions.empty() ? nothing : exertions[i],
-                       changes.empty() ? no_change : changes[i], static_cast<Index>(a));
+                       changes.empty() ? no_change : changes[i], a);
     });
   return slopes;
 }

@@ -16,7 +16,7 @@ constexpr double accuracy = 1e-3;     // of the largest pull
 constexpr double nearly = 0.9;        // of the friction that there can be: where so much is used, the body slips
 
 const FreeBody& body_at(const Model& model, Index body) {
-  if (body < 0 || body >= static_cast<Index>(model.bodies.size()))
+  if (body < 0 || body >= std::ssize(model.bodies))
     throw InvalidInput("the robot has no body " + std::to_string(body) + " (from 0)");
   return model.bodies[body];
 }

@@ -47,7 +47,7 @@ class Qhull {
       std::vector<Index> corners;
       for (int i = 0; i < qh_setsize(&qh_, facet->vertices); ++i) {
         const auto* vertex = static_cast<const vertexT*>(facet->vertices->e[i].p);
-        corners.push_back(static_cast<Index>(qh_pointid(&qh_, vertex->point)));
+        corners.push_back(qh_pointid(&qh_, vertex->point));
       }
       all.push_back(std::move(corners));
     }
@@ -97,7 +97,7 @@ void keep_corners(const Points& points, Hull& hull) {
   for (const Triangle& triangle : hull.triangles)
     for (const Index corner : triangle) numbers.emplace(corner, 0);
   Index count = 0;
-  hull.vertices.resize(static_cast<Index>(numbers.size()), 3);
+  hull.vertices.resize(numbers.size(), 3);
   for (auto& [point, number] : numbers) {
     hull.vertices.row(count) = points.row(point);
     number = count++;

@@ -26,14 +26,14 @@ void check_size(const Model& model, const Sensitivity& given) {
 }
 
 void check_options(const Model& model, const State& start, const InverseOptions& options) {
-  const auto m = static_cast<Index>(model.actuators.size());
+  const Index m = model.actuators.size();
   if (m == 0) throw InvalidInput("inverse kinematics needs a robot with an actuator");
   if (!(options.tolerance_mm > 0) || !std::isfinite(options.tolerance_mm) || !(options.preferred_tolerance > 0) ||
       options.max_equilibria < 1 || options.max_iterations < 1 || options.other_starts < 0)
     throw InvalidInput(
         "options of inverse kinematics out of range: tolerances > 0, equilibria and iterations >= 1, other starts >= "
         "0");
-  if (!options.free.empty() && static_cast<Index>(options.free.size()) != m)
+  if (!options.free.empty() && std::ssize(options.free) != m)
     throw InvalidInput("the list of free actuators has " + std::to_string(options.free.size()) +
                        " entries, the robot " + std::to_string(m) + " actuators");
   if (options.preferred.size() > 0) check_actuation(model, options.preferred);
@@ -44,7 +44,7 @@ void check_options(const Model& model, const State& start, const InverseOptions&
 std::vector<Index> free_actuators(const Model& model, const InverseOptions& options) {
   std::vector<Index> free;
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
-    if ((options.free.empty() || options.free[a]) && varies(model.actuators[a])) free.push_back(static_cast<Index>(a));
+    if ((options.free.empty() || options.free[a]) && varies(model.actuators[a])) free.push_back(a);
   return free;
 }
 
@@ -96,7 +96,7 @@ class Inverse {
   /// The start as an equilibrium; it is taken for one where it says all that solve() says; where a stable one is asked
   /// for, only if its report tells that it is.
   bool settle(const State& start, Equilibrium& first) {
-    const auto m = static_cast<Index>(model_.actuators.size());
+    const Index m = model_.actuators.size();
     const StaticsOptions& statics = options_.statics;
     const bool same_time =
         !statics_.viscous() || (start.history == statics.history && start.elapsed_s == statics.elapsed_s);

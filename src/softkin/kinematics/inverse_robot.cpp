@@ -30,7 +30,7 @@ RobotResponse::RobotResponse(const Statics& statics, const std::vector<Goal>& go
       least_error_(none),
       most_(options.max_equilibria) {
   for (std::size_t i = 0; i < free_.size(); ++i)
-    if (pulls(free_[i])) cables_.push_back(static_cast<Index>(i));
+    if (pulls(free_[i])) cables_.push_back(i);
 }
 
 bool RobotResponse::pulls(Index actuator) const {
@@ -44,7 +44,7 @@ double RobotResponse::width(Index actuator) const {
 }
 
 Eigen::VectorXd RobotResponse::shares_of(const Actuation& actuation) const {
-  Eigen::VectorXd shares(static_cast<Index>(free_.size()));
+  Eigen::VectorXd shares(free_.size());
   for (Index i = 0; i < shares.size(); ++i) {
     const Index a = free_[i];
     shares[i] = (actuation[a] - model_.actuators[a].low) / width(a);
@@ -80,8 +80,8 @@ Pose RobotResponse::pose_of(Equilibrium equilibrium, bool taut) const {
   pose.terms = goal_terms(model_, goals_, positions, pose.exertions);
   pose.miss = errors_of(model_, goals_, positions, pose.exertions).maxCoeff() / options_.tolerance_mm;
   pose.equilibrium = std::move(equilibrium);
-  pose.idle.setZero(static_cast<Index>(free_.size()));
-  pose.tensions.setZero(static_cast<Index>(cables_.size()));
+  pose.idle.setZero(free_.size());
+  pose.tensions.setZero(cables_.size());
   if (taut) tauten(pose);
   pose.shares = shares_of(pose.equilibrium.state.actuation);
   return pose;
@@ -126,7 +126,7 @@ bool RobotResponse::release(Pose& pose, const Slopes& slopes, const Eigen::Vecto
   for (std::size_t k = 0; k < cables_.size(); ++k) {
     const Index i = cables_[k], a = free_[i];
     const double tension = pose.tensions[k];
-    const double rate = std::abs(slopes.tensions(static_cast<Index>(k), i));
+    const double rate = std::abs(slopes.tensions(k, i));
     if (!(tension > 0) || !(longer[a] > state.actuation[a])) continue;
     if (tension * slopes.terms.col(i).norm() < resolution_mm * rate) released[a] = longer[a];
   }
@@ -172,14 +172,14 @@ bool RobotResponse::slopes(const Pose& at, Slopes& slopes) {
       exertion_slopes(statics_, goals_, at, options_.statics, slope_accuracy, slopes.sensitivity);
   if (!slopes.sensitivity.regular) return false;
   const Eigen::MatrixXd all = goal_slopes(model_, goals_, state.positions, slopes.sensitivity, at.exertions, exertions);
-  const auto free = static_cast<Index>(free_.size());
+  const Index free = free_.size();
   slopes.terms.resize(all.rows(), free);
-  slopes.tensions.resize(static_cast<Index>(cables_.size()), free);
+  slopes.tensions.resize(cables_.size(), free);
   for (Index i = 0; i < free; ++i) {
     const Index a = free_[i];
     slopes.terms.col(i) = width(a) * all.col(a);
     for (std::size_t k = 0; k < cables_.size(); ++k)
-      slopes.tensions(static_cast<Index>(k), i) = width(a) * slopes.sensitivity.multipliers(free_[cables_[k]], a);
+      slopes.tensions(k, i) = width(a) * slopes.sensitivity.multipliers(free_[cables_[k]], a);
   }
   return slopes.terms.allFinite() && slopes.tensions.allFinite();
 }

@@ -134,7 +134,7 @@ class SmallProgram {
   /// Directions of s and of the multipliers of the rows held, per multiplier of a new row.
   void directions(const Eigen::VectorXd& row, Eigen::VectorXd& step, Eigen::VectorXd& relief) const {
     step = factor_.solve(row);
-    const auto count = static_cast<Eigen::Index>(held_.size());
+    const Eigen::Index count = held_.size();
     if (count == 0) return relief.resize(0);
     Eigen::MatrixXd face(count, row.size());
     for (Eigen::Index i = 0; i < count; ++i) face.row(i) = rows_.row(held_[i]);

@@ -5,14 +5,13 @@ namespace softkin {
 
 Eigen::MatrixXd jacobian(const Model& model, const Points& positions, const Sensitivity& sensitivity,
                          const std::vector<Index>& markers) {
-  Eigen::MatrixXd result(3 * static_cast<Index>(markers.size()), static_cast<Index>(sensitivity.positions.size()));
+  Eigen::MatrixXd result(3 * std::ssize(markers), sensitivity.positions.size());
   for (std::size_t p = 0; p < markers.size(); ++p) {
-    if (markers[p] < 0 || markers[p] >= static_cast<Index>(model.markers.size()))
+    if (markers[p] < 0 || markers[p] >= std::ssize(model.markers))
       throw InvalidInput("the robot has no marker number " + std::to_string(markers[p]));
     const Marker& marker = model.markers[markers[p]];
     for (std::size_t a = 0; a < sensitivity.positions.size(); ++a)
-      result.block<3, 1>(3 * static_cast<Index>(p), static_cast<Index>(a)) =
-          marker.velocity(positions, sensitivity.positions[a]);
+      result.block<3, 1>(3 * p, a) = marker.velocity(positions, sensitivity.positions[a]);
   }
   return result;
 }

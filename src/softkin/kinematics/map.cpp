@@ -16,10 +16,10 @@ void check(bool fits, const char* what) {
 }
 
 void check_cell(const MapData& data, const MapPiece& piece, const MapCell& cell) {
-  const auto variables = static_cast<Index>(piece.inputs.size());
+  const Index variables = piece.inputs.size();
   check(cell.low.size() == variables && cell.high.size() == variables && (cell.low.array() < cell.high.array()).all(),
         "a cell has no box");
-  check(cell.outputs.variables() == variables && cell.outputs.count() == static_cast<Index>(data.outputs.size()),
+  check(cell.outputs.variables() == variables && cell.outputs.count() == std::ssize(data.outputs),
         "a cell has other outputs");
   const Index modes = data.shape ? static_cast<Index>(data.shape->units.size()) : 0;
   check(cell.modes.count() == modes && (modes == 0 || cell.modes.variables() == variables),
@@ -28,11 +28,11 @@ void check_cell(const MapData& data, const MapPiece& piece, const MapCell& cell)
 
 void check_tree(const MapPiece& piece) {
   check(!piece.tree.empty(), "a piece has no cells");
-  const auto nodes = static_cast<Index>(piece.tree.size());
+  const Index nodes = piece.tree.size();
   for (Index n = 0; n < nodes; ++n) {
     const MapNode& node = piece.tree[n];
     if (node.variable < 0) {
-      check(node.cell >= -1 && node.cell < static_cast<Index>(piece.cells.size()), "a cell is missing");
+      check(node.cell >= -1 && node.cell < std::ssize(piece.cells), "a cell is missing");
       continue;
     }
     check(node.variable < static_cast<int>(piece.inputs.size()), "a cell is divided along nothing");
@@ -46,7 +46,7 @@ using Scaled = std::array<double, maps::most_variables>;
 Scaled scaled(const MapPiece& piece, const MapCell& cell, const double* commands) {
   Scaled x{};
   for (std::size_t j = 0; j < piece.inputs.size(); ++j) {
-    const auto at = static_cast<Index>(j);
+    const Index at = j;
     x[j] = (2 * commands[piece.inputs[j]] - cell.low[at] - cell.high[at]) / (cell.high[at] - cell.low[at]);
   }
   return x;
@@ -69,8 +69,7 @@ KinematicMap::KinematicMap(MapData data) : data_(std::move(data)) {
               data_.shape->modes.cols() == data_.shape->units.size(),
           "its shape has other modes");
   for (const MapInput& input : data_.inputs)
-    check(in_range(input.actuator, static_cast<std::size_t>(data_.actuation.size())) && input.low < input.high,
-          "an input has no range");
+    check(in_range(input.actuator, data_.actuation.size()) && input.low < input.high, "an input has no range");
   pieces_.assign(std::size_t{1} << cables, -1);
   for (std::size_t p = 0; p < data_.pieces.size(); ++p) {
     const MapPiece& piece = data_.pieces[p];
@@ -78,7 +77,7 @@ KinematicMap::KinematicMap(MapData data) : data_(std::move(data)) {
     for (const Index input : piece.inputs) check(in_range(input, data_.inputs.size()), "a piece has another input");
     check_tree(piece);
     for (const MapCell& cell : piece.cells) check_cell(data_, piece, cell);
-    pieces_[maps::bits_of(piece.taut)] = static_cast<Index>(p);
+    pieces_[maps::bits_of(piece.taut)] = p;
   }
 }
 
@@ -99,7 +98,7 @@ void KinematicMap::evaluate(const MapPiece& piece, const MapCell& cell, const do
   // the piece's rows first, then to where they belong, from the last on: inputs ascend
   const Index size = outputs();
   cell.outputs.evaluate(x.data(), values, slopes);
-  for (Index input = inputs(), j = static_cast<Index>(variables); input-- > 0;) {
+  for (Index input = inputs(), j = variables; input-- > 0;) {
     double* row = slopes + input * size;
     if (j == 0 || piece.inputs[j - 1] != input) {
       std::fill_n(row, size, 0.0);
@@ -215,10 +214,10 @@ std::vector<Points> KinematicMap::shape_slopes(const double* commands, const Pla
   const MapPiece& piece = data_.pieces[place.piece];
   const MapCell& cell = piece.cells[place.cell];
   Eigen::VectorXd amplitudes(data_.shape->units.size());
-  maps::RowMatrix slopes(static_cast<Index>(piece.inputs.size()), amplitudes.size());
+  maps::RowMatrix slopes(piece.inputs.size(), amplitudes.size());
   cell.modes.evaluate(scaled(piece, cell, commands).data(), amplitudes.data(), slopes.data());
   std::vector<Points> all(data_.inputs.size(), Points::Zero(data_.shape->mean.size() / 3, 3));
-  for (Index j = 0; j < static_cast<Index>(slopes.rows()); ++j)
+  for (Index j = 0; j < slopes.rows(); ++j)
     all[piece.inputs[j]] = sum_of_modes(2 / (cell.high[j] - cell.low[j]) * slopes.row(j).transpose());
   return all;
 }

@@ -94,9 +94,9 @@ class KinematicMap {
   /// What it was made of.
   [[nodiscard]] const MapData& data() const { return data_; }
   /// How many commands it takes.
-  [[nodiscard]] Index inputs() const { return static_cast<Index>(data_.inputs.size()); }
+  [[nodiscard]] Index inputs() const { return data_.inputs.size(); }
   /// How many numbers it gives.
-  [[nodiscard]] Index outputs() const { return static_cast<Index>(data_.outputs.size()); }
+  [[nodiscard]] Index outputs() const { return data_.outputs.size(); }
 
   /// Where commands lead: a cell of a piece.
   struct Place {

@@ -34,7 +34,7 @@ std::vector<Index> spread_vertices(const Model& model, Index count) {
   Eigen::VectorXd away = Eigen::VectorXd::Constant(model.robot_vertices(), std::numeric_limits<double>::infinity());
   for (Index v = 0; v < model.robot_vertices(); ++v)
     if (!model.elements.used[v]) away[v] = -1;
-  while (static_cast<Index>(chosen.size()) < count) {
+  while (std::ssize(chosen) < count) {
     Index farthest = 0;
     if (!(away.maxCoeff(&farthest) > 0)) break;
     chosen.push_back(farthest);
@@ -49,7 +49,7 @@ class Builder {
   Builder(const Model& model, const MapOptions& options, MapDesk* desk, const MapCallback& progress)
       : model_(model), options_(options), crew_(options.threads, desk, progress), statics_(model) {
     result_.data = maps::outline_of(model);
-    wanted_.accuracy.resize(static_cast<Index>(data().outputs.size()));
+    wanted_.accuracy.resize(data().outputs.size());
     wanted_.probes = spread_vertices(model, 24);
     wanted_.most = options.most_equilibria;
   }
@@ -100,7 +100,7 @@ class Builder {
     for (std::size_t c = 0; c < taut.size(); ++c)
       if (!taut[c] && data().cables[c].input >= 0) slack[data().cables[c].input] = true;
     for (std::size_t i = 0; i < slack.size(); ++i)
-      if (!slack[i]) piece.made.inputs.push_back(static_cast<Index>(i));
+      if (!slack[i]) piece.made.inputs.push_back(i);
     piece.solver = std::make_unique<PieceSolver>(model_, data(), piece.made);
     piece.fit = std::make_unique<PieceFit>(data(), wanted_, piece.made);
     for (;;) {
@@ -130,7 +130,7 @@ class Builder {
       double load = std::abs(first.values[q]);
       for (std::size_t j = 0; j < piece.made.inputs.size(); ++j) {
         const MapInput& input = data().inputs[piece.made.inputs[j]];
-        load += 0.5 * (input.high - input.low) * std::abs(first.slopes(static_cast<Index>(j), static_cast<Index>(q)));
+        load += 0.5 * (input.high - input.low) * std::abs(first.slopes(j, q));
       }
       largest = std::max(largest, load);
     }
@@ -150,7 +150,7 @@ class Builder {
   [[nodiscard]] std::optional<Sample> from_earlier(const std::vector<bool>& taut, Index number,
                                                    const Eigen::VectorXd& commands) const {
     const auto found = earlier_.find(taut);
-    if (found == earlier_.end() || number >= static_cast<Index>(found->second.size())) return std::nullopt;
+    if (found == earlier_.end() || number >= std::ssize(found->second)) return std::nullopt;
     const Sample& sample = found->second[number];
     return sample.commands == commands ? std::optional(sample) : std::nullopt;
   }
@@ -158,8 +158,8 @@ class Builder {
   /// Every equilibrium is a function of those before this call, its commands and nothing else.
   bool solve(Piece& piece, const maps::RowMatrix& commands, std::vector<Sample>& found) {
     const Index key = maps::bits_of(piece.made.taut);
-    const auto before = static_cast<Index>(piece.fit->samples().size());
-    found.resize(static_cast<std::size_t>(commands.rows()));
+    const Index before = piece.fit->samples().size();
+    found.resize(commands.rows());
     const auto solve_one = [&](Index i) {
       const Eigen::VectorXd at = commands.row(i);
       std::optional<Sample> sample = from_earlier(piece.made.taut, before + i, at);
@@ -172,7 +172,7 @@ class Builder {
       return true;
     };
     const MapProgress from{equilibria_, 0, piece.fit->error(), doing(piece.made)};
-    const bool done = crew_.each(static_cast<Index>(commands.rows()), from, &MapProgress::equilibria, solve_one);
+    const bool done = crew_.each(commands.rows(), from, &MapProgress::equilibria, solve_one);
     equilibria_ = crew_.told().equilibria;
     return done;
   }
@@ -219,7 +219,7 @@ class Builder {
   /// The nearest equilibrium of the piece that the commands lead to.
   [[nodiscard]] State start_of(const KinematicMap::Place& place, const Eigen::VectorXd& commands) const {
     const Piece& piece = *pieces_[place.piece];
-    Eigen::VectorXd own(static_cast<Index>(piece.made.inputs.size()));
+    Eigen::VectorXd own(piece.made.inputs.size());
     for (Index j = 0; j < own.size(); ++j) own[j] = commands[piece.made.inputs[j]];
     const Sample* nearest = piece.fit->nearest(own);
     return nearest ? of_robot(nearest->state, piece.made.taut) : statics_.rest();

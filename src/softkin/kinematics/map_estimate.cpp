@@ -108,7 +108,7 @@ class MapProblem {
   }
 
  private:
-  [[nodiscard]] Index count() const { return static_cast<Index>(unknowns_.size()); }
+  [[nodiscard]] Index count() const { return unknowns_.size(); }
   [[nodiscard]] const MapUnknown& unknown(Index i) const { return unknowns_[i]; }
   [[nodiscard]] Eigen::VectorXd off(const Eigen::VectorXd& commands) const {
     Eigen::VectorXd off(count());

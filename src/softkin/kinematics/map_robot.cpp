@@ -16,7 +16,7 @@ std::vector<Index> loads_of(const Model& model, const MapData& data) {
     loads.push_back(-1);
     for (const char* load : {"_pressure", "_tension"})
       for (std::size_t q = 0; q < data.outputs.size(); ++q)
-        if (data.outputs[q].name == actuator.name + load) loads.back() = static_cast<Index>(q);
+        if (data.outputs[q].name == actuator.name + load) loads.back() = q;
   }
   return loads;
 }
@@ -65,7 +65,7 @@ class OfMap : public GivenEquilibria {
     Eigen::VectorXd values(map_.outputs());
     maps::RowMatrix slopes(map_.inputs(), map_.outputs());
     const Eigen::VectorXd commands = map_.commands(at.actuation);
-    Sensitivity found = no_sensitivity(static_cast<Index>(model_.rest.rows()), static_cast<Index>(at.actuation.size()));
+    Sensitivity found = no_sensitivity(model_.rest.rows(), at.actuation.size());
     auto place = map_.evaluate_taut(taut, commands.data(), values.data(), slopes.data());
     if (!place) place = map_.evaluate(commands.data(), values.data(), slopes.data());
     if (!place) return found;
@@ -74,7 +74,7 @@ class OfMap : public GivenEquilibria {
     for (Index i = 0; i < map_.inputs(); ++i) {
       const Index a = data.inputs[i].actuator;
       for (std::size_t k = 0; k < loads_.size(); ++k)
-        if (loads_[k] >= 0) found.multipliers(static_cast<Index>(k), a) = slopes(i, loads_[k]);
+        if (loads_[k] >= 0) found.multipliers(k, a) = slopes(i, loads_[k]);
       if (is_load(model_.actuators[a])) found.multipliers(a, a) = 1;
     }
     return found;
@@ -102,7 +102,7 @@ class OfMap : public GivenEquilibria {
   [[nodiscard]] Eigen::VectorXd loads(const Actuation& actuation, const Eigen::VectorXd& values) const {
     Eigen::VectorXd loads = Eigen::VectorXd::Zero(actuation.size());
     for (std::size_t a = 0; a < loads_.size(); ++a) {
-      const auto at = static_cast<Index>(a);
+      const Index at = a;
       if (loads_[a] >= 0)
         loads[at] = values[loads_[a]];
       else if (is_load(model_.actuators[a]))
@@ -124,7 +124,7 @@ Model markers_alone(const Model& model, const MapData& data) {
   seen.actuators = model.actuators;
   seen.markers = model.markers;
   seen.diagonal_mm = model.diagonal_mm;
-  const auto markers = static_cast<Index>(model.markers.size()), cables = static_cast<Index>(data.cables.size());
+  const Index markers = model.markers.size(), cables = data.cables.size();
   seen.rest = Points::Zero(markers + 2 * cables, 3);
   for (Index p = 0; p < markers; ++p) {
     Marker& marker = seen.markers[p];
@@ -141,9 +141,9 @@ Model markers_alone(const Model& model, const MapData& data) {
   }
   seen.held.at = seen.rest;
   seen.loads.dead = Points::Zero(seen.rest.rows(), 3);
-  seen.held.fixed.assign(static_cast<std::size_t>(seen.rest.rows()), {false, false, false});
-  seen.elements.used.assign(static_cast<std::size_t>(seen.rest.rows()), true);
-  seen.held.support_of.assign(static_cast<std::size_t>(seen.rest.rows()), {-1, -1, -1});
+  seen.held.fixed.assign(seen.rest.rows(), {false, false, false});
+  seen.elements.used.assign(seen.rest.rows(), true);
+  seen.held.support_of.assign(seen.rest.rows(), {-1, -1, -1});
   return seen;
 }
 
@@ -155,7 +155,7 @@ class MarkersOfMap : public OfMap {
   [[nodiscard]] Points positions(const Eigen::VectorXd& values, const Eigen::VectorXd&,
                                  const KinematicMap::Place&) const override {
     Points positions = Points::Zero(model_.rest.rows(), 3);
-    const auto markers = static_cast<Index>(model_.markers.size());
+    const Index markers = model_.markers.size();
     for (Index p = 0; p < markers; ++p) positions.row(p) = values.segment<3>(3 * p).transpose();
     Index end = markers + 1;
     for (const MapCable& cable : map_.data().cables) {

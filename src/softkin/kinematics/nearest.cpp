@@ -10,7 +10,7 @@ namespace softkin {
 struct NearestPoints::Tree {
   using Search = nanoflann::KDTreeEigenMatrixAdaptor<Rows>;
 
-  explicit Tree(Rows rows) : points(std::move(rows)), search(static_cast<std::size_t>(points.cols()), points) {}
+  explicit Tree(Rows rows) : points(std::move(rows)), search(points.cols(), points) {}
 
   Rows points;
   Search search;
@@ -70,7 +70,7 @@ Eigen::VectorXd scaled(const std::vector<double>& scales, const Points& markers)
 }
 
 Points targets_of(const Model& model, const std::vector<Goal>& goals) {
-  Points targets = Points::Zero(static_cast<Index>(model.markers.size()), 3);
+  Points targets = Points::Zero(model.markers.size(), 3);
   for (const Goal& goal : goals) {
     const auto& position = std::get<PositionGoal>(goal.what);
     for (Index axis = 0; axis < 3; ++axis)
@@ -108,7 +108,7 @@ double squared_error(const std::vector<Goal>& goals, const Points& markers) {
 NearestSamples::NearestSamples(const Model& model, std::vector<WorkspaceSample> samples) : model_(model) {
   for (WorkspaceSample& sample : samples) {
     if (sample.status != Status::converged) continue;
-    if (sample.markers.rows() != static_cast<Index>(model.markers.size()) || !sample.markers.allFinite())
+    if (sample.markers.rows() != std::ssize(model.markers) || !sample.markers.allFinite())
       throw InvalidInput("sample " + std::to_string(sample.number) + " of the workspace has not the robot's markers");
     samples_.push_back(std::move(sample));
   }
@@ -126,8 +126,8 @@ std::vector<Index> NearestSamples::find(const std::vector<Goal>& goals, Index co
       NearestPoints::Rows rows;
       for (std::size_t i = 0; i < samples_.size(); ++i) {
         const Eigen::VectorXd row = scaled(scales, samples_[i].markers);
-        if (i == 0) rows.resize(static_cast<Index>(samples_.size()), row.size());
-        rows.row(static_cast<Index>(i)) = row;
+        if (i == 0) rows.resize(samples_.size(), row.size());
+        rows.row(i) = row;
       }
       tree_ = std::make_unique<NearestPoints>(std::move(rows));
       scales_ = scales;
@@ -145,7 +145,7 @@ std::vector<Index> NearestSamples::find(const std::vector<Goal>& goals, Index co
     const double left = errors[a], right = errors[b];
     return left < right || (left == right && a < b);
   });
-  best.resize(static_cast<std::size_t>(most));
+  best.resize(most);
   return best;
 }
 

@@ -40,17 +40,17 @@ class Candidates {
   Candidates(const Model& model, const PlanOptions& options) : model_(model), options_(options) {
     const double marker = options.deviations[static_cast<std::size_t>(Reading::coordinate)];
     for (const Index v : options.vertices) {
-      if (v < 0 || v >= static_cast<Index>(model.rest.rows()))
+      if (v < 0 || v >= model.rest.rows())
         throw InvalidInput("a further marker cannot be at vertex " + std::to_string(v) + ": the robot has " +
                            std::to_string(model.rest.rows()));
       if (marker > 0) all_.push_back({"marker", v, {}, marker});
     }
-    for (Index m = 0; m < static_cast<Index>(model.markers.size()); ++m) {
+    for (Index m = 0; m < std::ssize(model.markers); ++m) {
       std::vector<PoseColumn> columns;
       for (int axis = 0; axis < 3; ++axis) columns.push_back({"", m, axis});
       add(model.markers[m].name, std::move(columns));
     }
-    for (Index s = 0; s < static_cast<Index>(model.sensors.size()); ++s) {
+    for (Index s = 0; s < std::ssize(model.sensors); ++s) {
       const Sensor& sensor = *model.sensors[s];
       std::vector<PoseColumn> columns;
       if (sensor.kind == SensorKind::direction)
@@ -59,7 +59,7 @@ class Candidates {
         columns = {{"", -1, -1, -1, sensor.kind == SensorKind::length ? Reading::length : Reading::angle, -1, s}};
       add(sensor.name, std::move(columns));
     }
-    for (Index a = 0; a < static_cast<Index>(model.actuators.size()); ++a) add_measure(a);
+    for (Index a = 0; a < std::ssize(model.actuators); ++a) add_measure(a);
   }
   [[nodiscard]] const std::vector<Candidate>& all() const { return all_; }
 
@@ -87,17 +87,17 @@ class Candidates {
 
 /// Of a candidate's coordinates, by the unknowns, over the deviation.
 Eigen::MatrixXd slopes_of(const Model& model, const Candidate& candidate, const PlanBasis& at) {
-  const auto columns = static_cast<Index>(at.moves.size());
+  const Index columns = at.moves.size();
   const bool vertex = candidate.vertex >= 0;
   Eigen::MatrixXd slopes(vertex ? 3 : static_cast<Index>(candidate.columns.size()), columns);
   State state;
   if (!vertex) state.positions = at.positions;
-  const Eigen::VectorXd none = Eigen::VectorXd::Zero(static_cast<Index>(model.actuators.size()));
+  const Eigen::VectorXd none = Eigen::VectorXd::Zero(model.actuators.size());
   const Points nothing;
   for (Index c = 0; c < columns; ++c) {
     const Points& moves = at.moves[c];
     if (vertex) slopes.col(c) = vertex_at(moves, candidate.vertex);
-    for (Index r = 0; !vertex && r < static_cast<Index>(slopes.rows()); ++r)
+    for (Index r = 0; !vertex && r < slopes.rows(); ++r)
       slopes(r, c) = estimate::reading_change(model, candidate.columns[r], state, {moves, none, nothing});
   }
   return slopes / candidate.deviation;

@@ -60,12 +60,12 @@ Shares sobol_shares(Index samples, std::size_t dimensions) {
     throw InvalidInput("Sobol's sequence is for " + std::to_string(most_sobol_actuators) +
                        " actuators at most, and this robot has " + std::to_string(dimensions) +
                        " whose range is more than one value; sample at random");
-  Shares shares(samples, static_cast<Index>(dimensions));
+  Shares shares(samples, dimensions);
   for (std::size_t d = 0; d < dimensions; ++d) {
     const Directions v = directions_of(d);
     std::uint32_t x = 0;
     for (Index i = 0; i < samples; ++i) {
-      shares(i, static_cast<Index>(d)) = std::ldexp(static_cast<double>(x), -sobol_bits);
+      shares(i, d) = std::ldexp(static_cast<double>(x), -sobol_bits);
       x ^= v[std::countr_one(static_cast<std::uint32_t>(i))];
     }
   }
@@ -75,7 +75,7 @@ Shares sobol_shares(Index samples, std::size_t dimensions) {
 /// std::uniform_real_distribution differs between standard libraries.
 Shares random_shares(Index samples, std::size_t dimensions, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
-  Shares shares(samples, static_cast<Index>(dimensions));
+  Shares shares(samples, dimensions);
   for (Index i = 0; i < shares.size(); ++i) shares.data()[i] = std::ldexp(static_cast<double>(generator() >> 11), -53);
   return shares;
 }
@@ -97,7 +97,7 @@ Shares grid_shares(const Model& model, Index samples, std::size_t dimensions) {
     throw InvalidInput(std::to_string(samples) + " samples fill no grid over " + std::to_string(dimensions) +
                        " actuators; the nearest grid has " + std::to_string(values) + " values each, " +
                        std::to_string(std::llround(grid_samples(values, dimensions))) + " samples");
-  Shares shares(samples, static_cast<Index>(dimensions));
+  Shares shares(samples, dimensions);
   for (Index i = 0; i < samples; ++i)
     for (Index d = shares.cols(), rest = i; d-- > 0; rest /= values)
       shares(i, d) = static_cast<double>(rest % values) / (values - 1);
@@ -152,7 +152,7 @@ std::vector<std::uint64_t> hilbert_places(const Model& model, const Actuations& 
 std::vector<Index> varied_actuators(const Model& model) {
   std::vector<Index> varied;
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
-    if (varies(model.actuators[a])) varied.push_back(static_cast<Index>(a));
+    if (varies(model.actuators[a])) varied.push_back(a);
   return varied;
 }
 
@@ -179,7 +179,7 @@ Actuations sample_actuations(const Model& model, const SamplingOptions& options)
   const Shares shares = options.kind == Sampling::grid    ? grid_shares(model, options.samples, dimensions)
                         : options.kind == Sampling::sobol ? sobol_shares(options.samples, dimensions)
                                                           : random_shares(options.samples, dimensions, options.seed);
-  Actuations actuations(options.samples, static_cast<Index>(model.actuators.size()));
+  Actuations actuations(options.samples, model.actuators.size());
   Index d = 0;
   for (Index a = 0; a < actuations.cols(); ++a) {
     const Actuator& actuator = model.actuators[a];
@@ -201,7 +201,7 @@ StaticsOptions one_of_many(StaticsOptions options) {
 }
 
 std::vector<Index> order_of_neighbours(const Model& model, const Actuations& actuations) {
-  std::vector<Index> order(static_cast<std::size_t>(actuations.rows()));
+  std::vector<Index> order(actuations.rows());
   std::iota(order.begin(), order.end(), 0);
   const std::vector<std::uint64_t> places = hilbert_places(model, actuations);
   std::stable_sort(order.begin(), order.end(), [&](Index a, Index b) { return places[a] < places[b]; });

@@ -18,7 +18,7 @@ constexpr double largest_stretch = 2;  // of the last move, over which its curva
 constexpr double least_move = 1e-6;    // shares, over which a change of slopes can be told
 
 Eigen::VectorXd widths(const Model& model) {
-  Eigen::VectorXd widths(static_cast<Index>(model.actuators.size()));
+  Eigen::VectorXd widths(model.actuators.size());
   for (Index a = 0; a < widths.size(); ++a) {
     const Actuator& actuator = model.actuators[a];
     widths[a] = drives(actuator) ? actuator.high - actuator.low : 0;
@@ -230,7 +230,7 @@ void PathFollower::learn(const std::vector<Goal>& goals, const InverseResult& fo
   if (!sensitivity_.regular) return;
   slopes_ = inverse::goal_slopes(model_, goals, state_.positions, sensitivity_) * widths(model_).asDiagonal();
   for (std::size_t a = 0; a < options_.inverse.free.size(); ++a)
-    if (!options_.inverse.free[a]) slopes_.col(static_cast<Index>(a)).setZero();
+    if (!options_.inverse.free[a]) slopes_.col(a).setZero();
   move_ = shares_of(state_.actuation) - before;
   if (slopes_before_.size() > 0 && !(move_.norm() > least_move)) slopes_before_.resize(0, 0);
 }

@@ -17,7 +17,7 @@ class SampleDesk : public GroupDesk {
 
   [[nodiscard]] std::optional<GroupTask> take() override {
     const std::lock_guard lock(mutex_);
-    if (next_ == static_cast<Index>(plan_.groups.size())) return std::nullopt;
+    if (next_ == std::ssize(plan_.groups)) return std::nullopt;
     const std::size_t size = plan_.groups[next_].size();
     return GroupTask{next_++, std::vector<std::optional<Status>>(size)};
   }

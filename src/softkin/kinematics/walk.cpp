@@ -60,7 +60,7 @@ void check_holds(const Model& model, const Vec3& direction) {
     for (Index axis = 0; axis < 3; ++axis)
       held = held || (model.held.fixed[v][axis] && std::abs(direction[axis]) > straight);
     if (!held) continue;
-    const bool near_front = direction.dot(model.rest.row(static_cast<Index>(v))) > (rear + front) / 2;
+    const bool near_front = direction.dot(model.rest.row(v)) > (rear + front) / 2;
     (near_front ? at_front : at_rear) = true;
   }
   if (at_rear && at_front)
@@ -126,7 +126,7 @@ struct Walker::Parts {
         statics((check_holds(robot, direction), check_loads(robot, direction), check_fields(robot),
                  check_surroundings(robot), model)),
         options(solver),
-        actuators(static_cast<Index>(robot.actuators.size())),
+        actuators(robot.actuators.size()),
         state(statics.rest()) {
     origin = direction.dot(point_of(robot, robot.feet[0]).at(robot.rest));
   }

@@ -16,12 +16,11 @@ constexpr double most_correction = 0.5, least_snap = 0.01;
 /// Moves the sample nearest to the mean to the front; distances in shares of the ranges.
 void begin_with_the_middle(const Model& model, const Actuations& actuations, std::vector<Index>& group) {
   const std::vector<Index> varied = varied_actuators(model);
-  Eigen::MatrixXd shares(static_cast<Index>(varied.size()), static_cast<Index>(group.size()));
+  Eigen::MatrixXd shares(varied.size(), group.size());
   for (std::size_t d = 0; d < varied.size(); ++d) {
     const Actuator& actuator = model.actuators[varied[d]];
     for (std::size_t i = 0; i < group.size(); ++i)
-      shares(static_cast<Index>(d), static_cast<Index>(i)) =
-          (actuations(group[i], varied[d]) - actuator.low) / (actuator.high - actuator.low);
+      shares(d, i) = (actuations(group[i], varied[d]) - actuator.low) / (actuator.high - actuator.low);
   }
   const Eigen::VectorXd mean = shares.rowwise().mean();
   Index middle = 0;
@@ -83,9 +82,9 @@ class Group {
     if (sample.status != Status::converged && !limit) return sample;
     sample.reached = limit ? found.report.reached : 1;
     sample.multipliers = found.state.multipliers;
-    sample.markers.resize(static_cast<Index>(model_.markers.size()), 3);
+    sample.markers.resize(model_.markers.size(), 3);
     for (std::size_t p = 0; p < model_.markers.size(); ++p)
-      sample.markers.row(static_cast<Index>(p)) = model_.markers[p].at(found.state.positions);
+      sample.markers.row(p) = model_.markers[p].at(found.state.positions);
     return sample;
   }
 

@@ -16,7 +16,7 @@ struct WorkspacePlan {
   std::vector<std::vector<Index>> groups;  // sample numbers in the order in which they are solved, each in one group
 
   /// How many there are.
-  [[nodiscard]] Index samples() const { return static_cast<Index>(actuations.rows()); }
+  [[nodiscard]] Index samples() const { return actuations.rows(); }
 };
 
 /// Samples of a group, of so many samples in all: 8 to 64, a fiftieth. The first solve, from rest, is to cost little in

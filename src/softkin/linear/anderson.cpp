@@ -29,7 +29,7 @@ Points Anderson::next(const Points& x, const Points& image) {
   last_step_ = step;
   last_image_ = image;
 
-  const Index count = static_cast<Index>(step_changes_.size());
+  const Index count = step_changes_.size();
   if (count == 0) return image;
   Eigen::MatrixXd normal(count, count);
   Eigen::VectorXd right(count);

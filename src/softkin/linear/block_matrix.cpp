@@ -32,10 +32,10 @@ BlockPattern::BlockPattern(Index vertices, const Cliques& cliques) {
         }
     }
   };
-  std::vector<std::int64_t> row_starts(static_cast<std::size_t>(vertices) + 1, 0);
+  std::vector<std::int64_t> row_starts(vertices + 1, 0);
   each_slot([&](Index row, Index, std::int64_t) { ++row_starts[row + 1]; });
   std::partial_sum(row_starts.begin(), row_starts.end(), row_starts.begin());
-  std::vector<std::pair<Index, std::int64_t>> sorted(static_cast<std::size_t>(row_starts.back()));
+  std::vector<std::pair<Index, std::int64_t>> sorted(row_starts.back());
   std::vector<std::int64_t> next(row_starts.begin(), row_starts.end() - 1);
   each_slot([&](Index row, Index column, std::int64_t source) { sorted[next[row]++] = {column, source}; });
 
@@ -54,10 +54,10 @@ BlockPattern::BlockPattern(Index vertices, const Cliques& cliques) {
   }
   source_starts_.push_back(static_cast<std::int64_t>(sources_.size()));
 
-  across_starts_.assign(static_cast<std::size_t>(vertices) + 1, 0);
+  across_starts_.assign(vertices + 1, 0);
   each([&](std::int64_t, Index row, Index column) { across_starts_[column + 1] += row != column; });
   std::partial_sum(across_starts_.begin(), across_starts_.end(), across_starts_.begin());
-  across_.resize(static_cast<std::size_t>(across_starts_.back()));
+  across_.resize(across_starts_.back());
   next.assign(across_starts_.begin(), across_starts_.end() - 1);
   each([&](std::int64_t entry, Index row, Index column) {
     if (row != column) across_[next[column]++] = {entry, row};
@@ -116,7 +116,7 @@ void subtract_block(const double* block, Height height, Width width, const doubl
 
 void subtract_product(const BlockColumns& pattern, const LargeVector<double>& values,
                       const Eigen::Ref<const Eigen::MatrixXd>& x, Eigen::MatrixXd& left, Team& team) {
-  const Index count = static_cast<Index>(pattern.pieces.size()) - 1, size = pattern.size();
+  const Index count = std::ssize(pattern.pieces) - 1, size = pattern.size();
   const Index top = pattern.unknowns[pattern.pieces.back()];
   const auto subtract = [&](Index node, Index column, double* below, Index from) {  // rows from `from` on: `below`
     using Three = std::integral_constant<Index, 3>;
@@ -134,7 +134,7 @@ void subtract_product(const BlockColumns& pattern, const LargeVector<double>& va
         subtract_block(block, height, width, xs + row, xs + begin, to, across);
     }
   };
-  for (Index column = 0; column < static_cast<Index>(x.cols()); ++column) {
+  for (Index column = 0; column < x.cols(); ++column) {
     Eigen::MatrixXd above = Eigen::MatrixXd::Zero(size - top, count);  // of each piece
     team.each(count, [&](Index p) {
       for (Index node = pattern.pieces[p]; node < pattern.pieces[p + 1]; ++node)

@@ -19,7 +19,7 @@ struct Cliques {
   std::vector<std::int64_t> slots{0};   // first of each set, then their number
 
   void add(std::span<const Index> set);
-  [[nodiscard]] Index count() const { return static_cast<Index>(starts.size()) - 1; }
+  [[nodiscard]] Index count() const { return std::ssize(starts) - 1; }
   /// Differs where the sets do (FNV-1a of 64 bits).
   [[nodiscard]] std::uint64_t fingerprint() const;
 };
@@ -49,7 +49,7 @@ class BlockPattern {
   /// result = A x, both 3 values per vertex.
   void multiply(const LargeVector<double>& blocks, const Points& x, Points& result, Team& team) const;
 
-  [[nodiscard]] Index vertices() const { return static_cast<Index>(starts_.size()) - 1; }
+  [[nodiscard]] Index vertices() const { return std::ssize(starts_) - 1; }
   [[nodiscard]] std::int64_t entries() const { return static_cast<std::int64_t>(columns_.size()); }
 
   /// visit(slot, transposed) for the slots whose sum the block of an entry is.
@@ -84,7 +84,7 @@ struct BlockColumns {
   std::vector<std::int64_t> offsets{0};  // of each entry's values, then their number; a diagonal block is square
   std::vector<Index> pieces{0};          // nodes that begin whole, independent subtrees; the last: their ancestors
 
-  [[nodiscard]] Index nodes() const { return static_cast<Index>(unknowns.size()) - 1; }
+  [[nodiscard]] Index nodes() const { return std::ssize(unknowns) - 1; }
   [[nodiscard]] Index size() const { return unknowns.back(); }
   [[nodiscard]] Index width(Index node) const { return unknowns[node + 1] - unknowns[node]; }
 };

@@ -59,7 +59,7 @@ class Symbolic {
     });
     if (longest != children.end())
       for (const Index node : groups_[*longest].below) add(node);
-    const auto sorted = static_cast<std::ptrdiff_t>(rows.size());
+    const std::ptrdiff_t sorted = rows.size();
     for (Index e = pattern_.starts[j]; e < pattern_.starts[j + 1]; ++e) add(pattern_.rows[e]);
     for (const Index child : children)
       for (const Index node : groups_[child].below) add(node);
@@ -80,14 +80,13 @@ class Symbolic {
         last->end = j + 1;
         // it waited for j, and now waits for its new first row
         for (const Index child : waiting[j])
-          if (child != static_cast<Index>(groups_.size()) - 1)
-            groups_[child].parent = static_cast<Index>(groups_.size()) - 1;
+          if (child != std::ssize(groups_) - 1) groups_[child].parent = std::ssize(groups_) - 1;
         last->below = std::move(rows);
       } else {
-        for (const Index child : waiting[j]) groups_[child].parent = static_cast<Index>(groups_.size());
+        for (const Index child : waiting[j]) groups_[child].parent = groups_.size();
         groups_.push_back({j, j + 1, std::move(rows)});
       }
-      const Index current = static_cast<Index>(groups_.size()) - 1;
+      const Index current = std::ssize(groups_) - 1;
       if (!groups_[current].below.empty()) waiting[groups_[current].below.front()].push_back(current);
       waiting[j] = {};
     }
@@ -96,7 +95,7 @@ class Symbolic {
   /// Joins a group to the one right before it, its child, where that stores few zeros.
   void amalgamate() {
     std::vector<Index> stack;  // groups that are kept so far
-    for (Index g = 0; g < static_cast<Index>(groups_.size()); ++g) {
+    for (Index g = 0; g < std::ssize(groups_); ++g) {
       while (!stack.empty() && parent_of(stack.back()) == g && groups_[stack.back()].end == groups_[g].begin &&
              !begins_piece(groups_[g].begin) && worthwhile(groups_[stack.back()], groups_[g])) {
         const Index child = stack.back();
@@ -182,7 +181,7 @@ std::int64_t place_of(const Front& front) {
 
 /// Offsets of the fronts. Those of a piece's roots, which outlive the piece, stand in the top's arena.
 void plan_arenas(FrontTree& tree) {
-  const Index pieces = static_cast<Index>(tree.pieces.size()) - 2;
+  const Index pieces = std::ssize(tree.pieces) - 2;
   const Index top = tree.pieces[pieces];
   Arena above;
   for (Index p = 0; p <= pieces; ++p) {
@@ -203,7 +202,7 @@ void plan_arenas(FrontTree& tree) {
 
 void place_rows(const BlockColumns& pattern, FrontTree& tree) {
   tree.entry_places.resize(pattern.rows.size());
-  std::vector<Index> place(static_cast<std::size_t>(pattern.size()));
+  std::vector<Index> place(pattern.size());
   const auto place_in = [&](const Front& front) {
     for (Index u = front.begin; u < front.end; ++u) place[u] = u - front.begin;
     for (Index r = 0; r < front.below; ++r) place[tree.rows[front.first_row + r]] = front.pivots() + r;
@@ -225,9 +224,9 @@ FrontTree make_front_tree(BlockColumns columns, Fill fill) {
   tree.pattern = std::move(columns);
   const BlockColumns& pattern = tree.pattern;
   const std::vector<Group> groups = Symbolic(pattern, fill).groups();
-  std::vector<Index> front_of(static_cast<std::size_t>(pattern.nodes()));
+  std::vector<Index> front_of(pattern.nodes());
   for (std::size_t g = 0; g < groups.size(); ++g)
-    for (Index node = groups[g].begin; node < groups[g].end; ++node) front_of[node] = static_cast<Index>(g);
+    for (Index node = groups[g].begin; node < groups[g].end; ++node) front_of[node] = g;
   tree.first_child.assign(groups.size(), -1);
   tree.next_sibling.assign(groups.size(), -1);
   for (const Group& group : groups) {
@@ -239,7 +238,7 @@ FrontTree make_front_tree(BlockColumns columns, Fill fill) {
     front.first_row = static_cast<std::int64_t>(tree.rows.size());
     for (const Index node : group.below)
       for (Index u = pattern.unknowns[node]; u < pattern.unknowns[node + 1]; ++u) tree.rows.push_back(u);
-    front.below = static_cast<Index>(static_cast<std::int64_t>(tree.rows.size()) - front.first_row);
+    front.below = static_cast<std::int64_t>(tree.rows.size()) - front.first_row;
     if (!group.below.empty()) front.parent = front_of[group.below.front()];
     front.first_value = tree.values;
     tree.values += static_cast<std::int64_t>(front.size()) * front.pivots();
@@ -249,14 +248,14 @@ FrontTree make_front_tree(BlockColumns columns, Fill fill) {
     }
     tree.fronts.push_back(front);
   }
-  for (Index f = static_cast<Index>(tree.fronts.size()) - 1; f >= 0; --f)
+  for (Index f = std::ssize(tree.fronts) - 1; f >= 0; --f)
     if (const Index parent = tree.fronts[f].parent; parent >= 0) {
       tree.next_sibling[f] = tree.first_child[parent];
       tree.first_child[parent] = f;
     }
   for (const Index node : pattern.pieces)
     tree.pieces.push_back(node < pattern.nodes() ? front_of[node] : static_cast<Index>(groups.size()));
-  tree.pieces.push_back(static_cast<Index>(groups.size()));
+  tree.pieces.push_back(groups.size());
   plan_arenas(tree);
   place_rows(pattern, tree);
   return tree;

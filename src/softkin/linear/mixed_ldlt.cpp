@@ -36,7 +36,7 @@ void MixedLdlt::distrust() {
 /// be trusted.
 bool MixedLdlt::solve_trusted(const LargeVector<double>& values, bool by_energy, const Eigen::MatrixXd& right_sides,
                               Team& team) {
-  const Index count = static_cast<Index>(right_sides.cols());
+  const Index count = right_sides.cols();
   if (lopsided_.size() != right_sides.rows()) lopsided_ = lopsided(right_sides.rows());
   found_.resize(right_sides.rows(), count + 1);
   found_.leftCols(count) = right_sides;

@@ -22,11 +22,11 @@ Graph graph_of(const Matrix& matrix) {
   const auto each_edge = [&](const auto& visit) {
     for (Index j = 0; j < matrix.cols(); ++j)
       for (Matrix::InnerIterator it(matrix, j); it; ++it)
-        if (it.row() > j) visit(static_cast<Index>(it.row()), j);
+        if (it.row() > j) visit(it.row(), j);
   };
   each_edge([&](Index i, Index j) { ++graph.starts[i + 1], ++graph.starts[j + 1]; });
   std::partial_sum(graph.starts.begin(), graph.starts.end(), graph.starts.begin());
-  graph.neighbours.resize(static_cast<std::size_t>(graph.starts.back()));
+  graph.neighbours.resize(graph.starts.back());
   std::vector<idx_t> next(graph.starts.begin(), graph.starts.end() - 1);
   each_edge([&](Index i, Index j) { graph.neighbours[next[i]++] = j, graph.neighbours[next[j]++] = i; });
   return graph;
@@ -56,9 +56,9 @@ struct Corners {
   Matrix links;
 
   Corners(const Matrix& matrix, const std::vector<std::array<Index, 2>>& ends) : place(ends.size(), -1) {
-    for (Index node = 0; node < static_cast<Index>(ends.size()); ++node) {
+    for (Index node = 0; node < std::ssize(ends); ++node) {
       if (ends[node][0] >= 0 || ends[node][1] >= 0) continue;
-      place[node] = static_cast<Index>(nodes.size());
+      place[node] = nodes.size();
       nodes.push_back(node);
     }
     std::vector<Eigen::Triplet<double>> entries;
@@ -66,7 +66,7 @@ struct Corners {
       for (Matrix::InnerIterator it(matrix, j); it; ++it)
         if (const Index a = place[it.row()], b = place[j]; a >= 0 && b >= 0)
           entries.emplace_back(std::max(a, b), std::min(a, b), 1.0);
-    links.resize(static_cast<Index>(nodes.size()), static_cast<Index>(nodes.size()));
+    links.resize(nodes.size(), nodes.size());
     links.setFromTriplets(entries.begin(), entries.end());
   }
 };
@@ -78,11 +78,11 @@ struct Corners {
 std::vector<Index> with_middles(const Corners& corners, const std::vector<Index>& order,
                                 const std::vector<std::array<Index, 2>>& ends) {
   std::vector<Index> when(order.size());
-  for (std::size_t k = 0; k < order.size(); ++k) when[order[k]] = static_cast<Index>(k);
+  for (std::size_t k = 0; k < order.size(); ++k) when[order[k]] = k;
   std::vector<std::vector<Index>> middles(order.size());
-  for (Index node = 0; node < static_cast<Index>(ends.size()); ++node) {
+  for (Index node = 0; node < std::ssize(ends); ++node) {
     if (corners.place[node] >= 0) continue;
-    Index first = static_cast<Index>(order.size());
+    Index first = order.size();
     for (const Index end : ends[node])
       if (end >= 0) first = std::min(first, when[corners.place[end]]);
     middles[first].push_back(node);
@@ -97,7 +97,7 @@ std::vector<Index> with_middles(const Corners& corners, const std::vector<Index>
 
 /// Parent of every column in the elimination tree, -1 at roots (Liu's algorithm with path compression).
 std::vector<Index> elimination_tree(const Graph& graph, const std::vector<Index>& order) {
-  const Index count = static_cast<Index>(order.size());
+  const Index count = order.size();
   std::vector<Index> place(count), parent(count, -1), ancestor(count, -1);
   for (Index k = 0; k < count; ++k) place[order[k]] = k;
   for (Index k = 0; k < count; ++k)
@@ -115,7 +115,7 @@ std::vector<Index> elimination_tree(const Graph& graph, const std::vector<Index>
 /// Entries of every column of L: walks each row's subtree, O(|L|).
 std::vector<std::int64_t> column_counts(const Graph& graph, const std::vector<Index>& order,
                                         const std::vector<Index>& parent) {
-  const Index count = static_cast<Index>(order.size());
+  const Index count = order.size();
   std::vector<Index> place(count), mark(count, -1);
   std::vector<std::int64_t> counts(count, 1);
   for (Index k = 0; k < count; ++k) place[order[k]] = k;
@@ -148,7 +148,7 @@ Tree tree_of(const std::vector<Index>& parent, std::vector<std::int64_t> counts)
   Tree tree;
   tree.children.resize(parent.size());
   tree.weight = std::move(counts);
-  for (Index i = 0; i < static_cast<Index>(parent.size()); ++i) {
+  for (Index i = 0; i < std::ssize(parent); ++i) {
     if (parent[i] == -1) {
       tree.roots.push_back(i);
     } else {
@@ -206,7 +206,7 @@ Ordering postordered(const Graph& graph, const std::vector<Index>& order) {
   result.pieces.push_back(0);
   for (std::size_t i = 0; i < subtrees.size(); ++i) {
     append_postorder(tree, subtrees[i], places);
-    if (i + 1 < max_pieces || i + 1 == subtrees.size()) result.pieces.push_back(static_cast<Index>(places.size()));
+    if (i + 1 < max_pieces || i + 1 == subtrees.size()) result.pieces.push_back(places.size());
   }
   places.insert(places.end(), top.begin(), top.end());
   for (const Index place : places) result.order.push_back(order[place]);

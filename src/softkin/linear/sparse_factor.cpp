@@ -14,10 +14,10 @@ using Matrix = Eigen::SparseMatrix<double>;
 
 /// The lower triangle in an order of elimination: its pattern, a node per row, and its values.
 BlockColumns in_order(const Matrix& matrix, const Ordering& ordering, LargeVector<double>& values) {
-  const Index n = static_cast<Index>(ordering.order.size());
-  std::vector<Index> place(static_cast<std::size_t>(n));
+  const Index n = ordering.order.size();
+  std::vector<Index> place(n);
   for (Index k = 0; k < n; ++k) place[ordering.order[k]] = k;
-  std::vector<std::vector<std::pair<Index, double>>> columns(static_cast<std::size_t>(n));
+  std::vector<std::vector<std::pair<Index, double>>> columns(n);
   for (Index column = 0; column < n; ++column)
     for (Matrix::InnerIterator it(matrix, column); it; ++it) {
       if (it.row() < column) continue;
@@ -32,7 +32,7 @@ BlockColumns in_order(const Matrix& matrix, const Ordering& ordering, LargeVecto
       values.push_back(value);
       pattern.offsets.push_back(static_cast<std::int64_t>(values.size()));
     }
-    pattern.starts.push_back(static_cast<Index>(pattern.rows.size()));
+    pattern.starts.push_back(pattern.rows.size());
     pattern.unknowns.push_back(k + 1);
   }
   pattern.pieces = ordering.pieces;
@@ -76,7 +76,7 @@ void SparseFactor::add_supernode(const Front& front, const double* lower) {
       values_.push_back(lower[static_cast<std::int64_t>(c) * front.size() + r]);
   nodes_.push_back(node);
   const Index* rows = rows_.data() + node.first_row;
-  nodes_.back().inner_rows = static_cast<Index>(std::lower_bound(rows, rows + node.row_count, top_) - rows);
+  nodes_.back().inner_rows = std::lower_bound(rows, rows + node.row_count, top_) - rows;
 }
 
 SupernodeColumns SparseFactor::columns_of(const Supernode& node) const {
@@ -92,7 +92,7 @@ SupernodeColumns SparseFactor::columns_of(const Supernode& node) const {
 }
 
 void SparseFactor::solve(Points& right_side, Team& team) const {
-  const Index n = size(), above_rows = n - top_, count = static_cast<Index>(piece_nodes_.size()) - 1;
+  const Index n = size(), above_rows = n - top_, count = std::ssize(piece_nodes_) - 1;
   // four numbers a row: three coordinates and a spare
   LargeVector<double> rows(4 * static_cast<std::size_t>(n));
   std::vector<double> above(4 * static_cast<std::size_t>(count) * above_rows);
@@ -108,7 +108,7 @@ void SparseFactor::solve(Points& right_side, Team& team) const {
   for (Index i = 0; i < count; ++i)
     for (Index k = 0; k < 4 * above_rows; ++k)
       rows[4 * static_cast<std::size_t>(top_) + k] += above[4 * static_cast<std::size_t>(i) * above_rows + k];
-  const Index first_of_top = piece_nodes_.back(), end = static_cast<Index>(nodes_.size());
+  const Index first_of_top = piece_nodes_.back(), end = nodes_.size();
   for (Index s = first_of_top; s < end; ++s)
     forward(columns_of(nodes_[s]), rows.data(), rows.data() + 4 * static_cast<std::size_t>(top_));
   for (Index s = end - 1; s >= first_of_top; --s) backward(columns_of(nodes_[s]), rows.data());

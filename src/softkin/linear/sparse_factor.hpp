@@ -22,7 +22,7 @@ class SparseFactor {
   /// right_side, n x 3, becomes the solution.
   void solve(Points& right_side, Team& team) const;
 
-  [[nodiscard]] Index size() const { return static_cast<Index>(order_.size()); }
+  [[nodiscard]] Index size() const { return order_.size(); }
   /// Entries of L, zeros that fill supernodes up included.
   [[nodiscard]] std::int64_t nonzeros() const { return static_cast<std::int64_t>(values_.size()) + size(); }
 

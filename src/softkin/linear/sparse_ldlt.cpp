@@ -58,14 +58,12 @@ SparseLdltOf<Number>::SparseLdltOf(const BlockColumns& pattern)
 
 template <class Number>
 SparseLdltOf<Number>::SparseLdltOf(std::shared_ptr<const FrontTree> tree)
-    : tree_(std::move(tree)),
-      diagonal_(static_cast<std::size_t>(tree_->pattern.size())),
-      pieces_(tree_->arena_sizes.size()) {}
+    : tree_(std::move(tree)), diagonal_(tree_->pattern.size()), pieces_(tree_->arena_sizes.size()) {}
 
 template <class Number>
 void SparseLdltOf<Number>::change(std::shared_ptr<const FrontTree> tree) {
   tree_ = std::move(tree);
-  diagonal_.resize(static_cast<std::size_t>(tree_->pattern.size()));
+  diagonal_.resize(tree_->pattern.size());
   pieces_ = std::vector<Piece>(tree_->arena_sizes.size());
   has_memory_ = false;
 }
@@ -171,7 +169,7 @@ void SparseLdltOf<Number>::add_children(Index index, bool of_pivots, Number* fro
     const RowPack* below = std::partition_point(first, last, [&](const RowPack& p) { return p.to < own.pivots(); });
     const RowPack *begin = of_pivots ? first : below, *end = of_pivots ? below : last;
     const FrontSum<Number> sum{update, front, child_stride, stride, last};
-    each_column(static_cast<Index>(end - begin), child.below, team, [&](Index k) { run_add_columns(sum, begin + k); });
+    each_column(end - begin, child.below, team, [&](Index k) { run_add_columns(sum, begin + k); });
   }
 }
 
@@ -199,7 +197,7 @@ Pivots SparseLdltOf<Number>::factorise(const LargeVector<double>& values, double
                                        LargeVector<double>* spare) {
   if (!has_memory_) take_memory();
   top_.arena = arena_in<Number>(spare ? *spare : top_.memory, tree_->arena_sizes.back());
-  const Index count = static_cast<Index>(pieces_.size()) - 1;
+  const Index count = std::ssize(pieces_) - 1;
   Team alone(1);
   const auto run = [&](Index p, Bench& bench, Team& helpers) {
     pieces_[p].negative = 0;
@@ -213,7 +211,7 @@ Pivots SparseLdltOf<Number>::factorise(const LargeVector<double>& values, double
   run(count, top_, team);
   Pivots pivots;
   for (const Piece& piece : pieces_) pivots.negative += piece.negative;
-  pivots.replaced = static_cast<Index>(std::count(diagonal_.begin(), diagonal_.end(), static_cast<Number>(-least)));
+  pivots.replaced = std::count(diagonal_.begin(), diagonal_.end(), static_cast<Number>(-least));
   return pivots;
 }
 
@@ -222,7 +220,7 @@ Pivots SparseLdltOf<Number>::factorise(const LargeVector<double>& values, double
 template <class Number>
 void SparseLdltOf<Number>::forward(const Front& front, Index begin, Index columns, Piece& piece, Index top) {
   const Index* rows = tree_->rows.data() + front.first_row;
-  const Index stride = static_cast<Index>(piece.rows.rows());
+  const Index stride = piece.rows.rows();
   for (Index c = 0; c < columns; ++c) {
     double* y = piece.rows.col(c).data();
     std::copy_n(solution_.col(begin + c).data() + front.begin, front.pivots(), y);
@@ -244,7 +242,7 @@ void SparseLdltOf<Number>::forward(const Front& front, Index begin, Index column
 template <class Number>
 void SparseLdltOf<Number>::backward(const Front& front, Index begin, Index columns, Piece& piece) {
   const Index* rows = tree_->rows.data() + front.first_row;
-  const Index stride = static_cast<Index>(piece.rows.rows());
+  const Index stride = piece.rows.rows();
   for (Index c = 0; c < columns; ++c) {
     const double* x = solution_.col(begin + c).data();
     double* y = piece.rows.col(c).data();
@@ -259,8 +257,8 @@ void SparseLdltOf<Number>::backward(const Front& front, Index begin, Index colum
 
 template <class Number>
 void SparseLdltOf<Number>::solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team) {
-  const Index count = static_cast<Index>(pieces_.size()) - 1, first_top = top_front();
-  const Index end = static_cast<Index>(tree_->fronts.size());
+  const Index count = std::ssize(pieces_) - 1, first_top = top_front();
+  const Index end = tree_->fronts.size();
   const Index top = first_top < end ? tree_->fronts[first_top].begin : size();
   solution_ = right_sides;
   const auto together = [&](const auto& visit) {

@@ -14,7 +14,7 @@ namespace softkin {
 [[nodiscard]] inline Actuation acting(const Model& model, const Actuation& before, const Actuation& told) {
   Actuation acts = told;
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
-    const auto i = static_cast<Index>(a);
+    const Index i = a;
     const double backlash = model.actuators[a].backlash;
     if (backlash > 0) acts[i] = std::min(std::max(before[i], told[i]), told[i] + backlash);
   }

@@ -86,8 +86,8 @@ Growers growers_of(const Model& model) {
   growers.tetrahedra.assign(model.elements.tetrahedra.size(), -1);
   growers.prisms.assign(model.elements.prisms.size(), -1);
   for (std::size_t g = 0; g < model.growths.size(); ++g) {
-    for (const Index e : model.growths[g]->tetrahedra) growers.tetrahedra[e] = static_cast<Index>(g);
-    for (const Index e : model.growths[g]->prisms) growers.prisms[e] = static_cast<Index>(g);
+    for (const Index e : model.growths[g]->tetrahedra) growers.tetrahedra[e] = g;
+    for (const Index e : model.growths[g]->prisms) growers.prisms[e] = g;
   }
   return growers;
 }

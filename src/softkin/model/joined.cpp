@@ -292,7 +292,7 @@ class Joiner {
   void fill(DeaSpec& dea) const {
     dea.region = full(dea.region);
     if (dea.shares)
-      for (Index& prism : dea.shares->prisms) prism += static_cast<Index>(all_.mesh.prisms.size());
+      for (Index& prism : dea.shares->prisms) prism += all_.mesh.prisms.size();
   }
   void fill(GrowthSpec& growth) const {
     for (GrowthPart& part : growth.parts) {

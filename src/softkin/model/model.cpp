@@ -251,7 +251,7 @@ std::vector<Triangle> flat_triangles(const CavityFace& face) {
 }
 
 std::vector<bool> vertices_of_elements(const Model& model) {
-  std::vector<bool> of_element(static_cast<std::size_t>(model.rest.rows()));
+  std::vector<bool> of_element(model.rest.rows());
   const auto mark = [&](const auto& elements) {
     for (const auto& element : elements)
       for (const Index v : element) of_element[v] = true;
@@ -286,7 +286,7 @@ std::vector<double> connected_volumes(const Actuator& actuator, const Points& po
 }
 
 Eigen::VectorXd Model::rest_actuation() const {
-  Eigen::VectorXd ratios(static_cast<Eigen::Index>(actuators.size()));
+  Eigen::VectorXd ratios(actuators.size());
   for (std::size_t i = 0; i < actuators.size(); ++i)
     ratios[i] = std::clamp(actuators[i].rest, actuators[i].low, actuators[i].high);
   return ratios;
@@ -309,7 +309,7 @@ std::optional<double> spread_by_curve(const Actuator& actuator, double input, Br
   if (curve == nullptr || curve->spread.empty() || !holds(curve->ratio.x(), input)) return std::nullopt;
   const std::vector<double>& x = curve->ratio.x();
   const auto above = std::max<std::ptrdiff_t>(1, std::lower_bound(x.begin(), x.end(), input) - x.begin());
-  const auto i = static_cast<std::size_t>(above);
+  const std::size_t i = above;
   const double share = (input - x[i - 1]) / (x[i] - x[i - 1]);
   return actuator.rest * ((1 - share) * curve->spread[i - 1] + share * curve->spread[i]);
 }

@@ -57,7 +57,7 @@ class Argument {
     std::vector<std::string> names;
     for (const Marker& marker : model_.markers) names.push_back(marker.name);
     const auto found = std::find(names.begin(), names.end(), name);
-    if (found != names.end()) return static_cast<Index>(found - names.begin());
+    if (found != names.end()) return found - names.begin();
     refuse("no marker " + excerpt(name) + (names.empty() ? "; the scene has none" : suggest_name(name, names)));
   }
 

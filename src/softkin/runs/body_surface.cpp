@@ -35,11 +35,11 @@ BodySurface body_surface(const Model& model) {
   for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e) {
     if (!is_solid(model, e)) continue;
     tetrahedra.push_back(model.elements.tetrahedra[e]);
-    numbers.push_back(static_cast<Index>(e));
+    numbers.push_back(e);
     if (!model.elements.edge_nodes.empty()) edge_nodes.push_back(model.elements.edge_nodes[e]);
   }
   for (std::size_t p = 0; p < model.elements.prisms.size(); ++p)
-    numbers.push_back(static_cast<Index>(model.elements.tetrahedra.size() + p));
+    numbers.push_back(model.elements.tetrahedra.size() + p);
   BodySurface surface;
   surface.triangles = boundary_triangles(tetrahedra, edge_nodes, model.elements.prisms, &surface.elements);
   for (Index& element : surface.elements) element = numbers[element];

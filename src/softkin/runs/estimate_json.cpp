@@ -46,7 +46,7 @@ Json left_out_json(const Estimate& told, const std::vector<ReadingGroup>& groups
 Json read_json(const Estimate& told, const std::vector<PoseColumn>& columns, const Eigen::VectorXd& values) {
   Json readings = Json::array();
   for (std::size_t c = 0; c < columns.size(); ++c) {
-    const auto at = static_cast<Index>(c);
+    const Index at = c;
     if (std::isnan(values[at]) || told.computed.size() == 0) continue;
     readings.push_back({{"column", columns[c].name},
                         {"read", values[at]},

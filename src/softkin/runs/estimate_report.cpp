@@ -61,8 +61,7 @@ Json row_json(const EstimateReport& report, std::size_t row) {
   json["freedoms"] = told.freedoms;
   json["misfit"] = told.misfit();
   json["left_out"] = left_out_json(told, report.groups);
-  json["readings"] =
-      read_json(told, report.poses.columns, report.poses.values.row(static_cast<Index>(row)).transpose());
+  json["readings"] = read_json(told, report.poses.columns, report.poses.values.row(row).transpose());
   json["words"] = report.words[row];
   json["equilibria"] = told.equilibria;
   json["seconds"] = told.seconds;
@@ -79,7 +78,7 @@ bool EstimateReport::good() const {
 }
 
 Eigen::VectorXd AskedEstimates::deviations_of_columns() const {
-  Eigen::VectorXd all(static_cast<Index>(poses.columns.size()));
+  Eigen::VectorXd all(poses.columns.size());
   for (std::size_t c = 0; c < poses.columns.size(); ++c) {
     const auto kind = static_cast<std::size_t>(poses.columns[c].kind);
     if (!(deviations[kind] > 0))
@@ -108,8 +107,7 @@ EstimateReport estimate_poses(const AskedEstimates& asked, const EstimatorOption
   report.groups = estimator.groups();
   for (std::size_t r = 0; r < poses.commands.size(); ++r) {
     const double elapsed = r > 0 && !poses.times.empty() ? poses.times[r] - poses.times[r - 1] : 0;
-    const Estimate& told =
-        estimator.update(poses.commands[r], poses.values.row(static_cast<Index>(r)).transpose(), elapsed, progress);
+    const Estimate& told = estimator.update(poses.commands[r], poses.values.row(r).transpose(), elapsed, progress);
     if (told.status == Status::interrupted) {
       report.interrupted = true;
       break;

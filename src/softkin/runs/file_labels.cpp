@@ -16,10 +16,9 @@ bool are_distinct(const Texts& texts) {
 /// The file's name behind so many of its folders.
 std::string with_folders(const std::string& file, std::size_t folders) {
   const std::filesystem::path path(file);
-  const auto parts = static_cast<std::size_t>(std::distance(path.begin(), path.end()));
+  const std::size_t parts = std::distance(path.begin(), path.end());
   std::filesystem::path tail;
-  for (auto part = std::next(path.begin(), static_cast<std::ptrdiff_t>(parts - std::min(parts, folders + 1)));
-       part != path.end(); ++part)
+  for (auto part = std::next(path.begin(), parts - std::min(parts, folders + 1)); part != path.end(); ++part)
     tail /= *part;
   return tail.string();
 }

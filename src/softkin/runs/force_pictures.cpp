@@ -78,7 +78,7 @@ std::vector<ForcePicture> ForcePictures::of(const Estimate& told) const {
     std::array<Index, 3> rows{-1, -1, -1};  // of the covariance
     for (std::size_t n = 0; n < told.numbers.size(); ++n) {
       if (force_of(model_, told.numbers[n]) != name) continue;
-      rows[command_of(told.numbers[n]).axis] = static_cast<Index>(n);
+      rows[command_of(told.numbers[n]).axis] = n;
     }
     Mat3 covariance = Mat3::Zero();
     for (int i = 0; i < 3; ++i) {

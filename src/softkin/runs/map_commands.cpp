@@ -13,7 +13,7 @@ Index pressure_of(const MapData& data, const Actuator& chamber, const std::strin
   if (found == data.outputs.end())
     throw InvalidInput({map_file}, "it has no pressure of '" + chamber.name +
                                        "': those come from the physical formulation, and from chambers that vary");
-  return static_cast<Index>(found - data.outputs.begin());
+  return found - data.outputs.begin();
 }
 
 }  // namespace

@@ -87,15 +87,14 @@ class MapRows {
     for (const MapUnknown& unknown : unknowns_) commands[unknown.input] = unknown.mean;
     values.setConstant(std::nan(""));
     spreads.setZero();
-    for (Index c = 0; c < static_cast<Index>(read_.size()); ++c) {
+    for (Index c = 0; c < std::ssize(read_); ++c) {
       const ReadOutput& read = read_[c];
-      values[read.output] = asked_.poses.values(static_cast<Index>(row), c) / read.size;
+      values[read.output] = asked_.poses.values(row, c) / read.size;
       spreads[read.output] = deviations_[c] / read.size;
     }
     Estimate told;
     told.actuation = given;
-    told.computed = told.deviations =
-        Eigen::VectorXd::Constant(static_cast<Index>(read_.size()), std::numeric_limits<double>::quiet_NaN());
+    told.computed = told.deviations = Eigen::VectorXd::Constant(read_.size(), std::numeric_limits<double>::quiet_NaN());
     const std::optional<MapEstimate> found = estimate_by_map(map_, unknowns_, commands, values, spreads);
     if (found)
       fill(*found, told);
@@ -113,15 +112,15 @@ class MapRows {
     for (std::size_t i = 0; i < unknowns_.size(); ++i) {
       const double value = found.commands[unknowns_[i].input];
       const estimate::Variable& variable = variables_.all()[i];
-      const auto at = static_cast<Index>(i);
+      const Index at = i;
       told.numbers.push_back(estimate::told_number(asked_.model, variable, value, std::sqrt(found.covariance(at, at))));
       told.actuation[variable.actuator] = value;
     }
     Eigen::VectorXd outputs(map_.outputs());
     maps::RowMatrix slopes(map_.inputs(), map_.outputs());
     (void)map_.evaluate(found.commands.data(), outputs.data(), slopes.data());
-    Eigen::VectorXd by(static_cast<Index>(unknowns_.size()));
-    for (Index c = 0; c < static_cast<Index>(read_.size()); ++c) {
+    Eigen::VectorXd by(unknowns_.size());
+    for (Index c = 0; c < std::ssize(read_); ++c) {
       const ReadOutput& read = read_[c];
       told.computed[c] = read.size * found.computed[read.output];
       for (Index i = 0; i < by.size(); ++i) by[i] = slopes(unknowns_[i].input, read.output);

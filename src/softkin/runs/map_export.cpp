@@ -13,11 +13,11 @@ void add_sums(const maps::Polynomials& sums, Index before, FlatSums& flat) {
   const maps::Terms& terms = sums.terms();
   const Index own = terms.cols(), inputs = before + own;
   flat.highest.resize(flat.highest.size() + static_cast<std::size_t>(inputs), 0);
-  Index* highest = flat.highest.data() + static_cast<Index>(flat.highest.size()) - own;
+  Index* highest = flat.highest.data() + std::ssize(flat.highest) - own;
   for (Index t = 0; t < terms.rows(); ++t) {
     for (Index j = 0; j < own; ++j) highest[j] = std::max<Index>(highest[j], terms(t, j));
     if (own == 0 || terms(t, own - 1) == 0) {
-      flat.runs.insert(flat.runs.end(), static_cast<std::size_t>(own == 0 ? inputs - 1 : before), 0);
+      flat.runs.insert(flat.runs.end(), own == 0 ? inputs - 1 : before, 0);
       for (Index j = 0; j + 1 < own; ++j) flat.runs.push_back(terms(t, j));
       flat.runs.push_back(0);
     }
@@ -30,7 +30,7 @@ void add_sums(const maps::Polynomials& sums, Index before, FlatSums& flat) {
 }
 
 void add_tree(const MapPiece& piece, Index first_cell, FlatMap& flat) {
-  const auto root = static_cast<Index>(flat.node_at.size());
+  const Index root = flat.node_at.size();
   flat.roots.push_back(root);
   for (const MapNode& node : piece.tree) {
     const bool leaf = node.variable < 0;
@@ -42,13 +42,13 @@ void add_tree(const MapPiece& piece, Index first_cell, FlatMap& flat) {
 }
 
 void add_piece(const MapData& data, const MapPiece& piece, FlatMap& flat) {
-  const auto inputs = static_cast<Index>(data.inputs.size()), own = static_cast<Index>(piece.inputs.size());
+  const Index inputs = data.inputs.size(), own = piece.inputs.size();
   for (Index i = 0; i < inputs; ++i)
     if (std::find(piece.inputs.begin(), piece.inputs.end(), i) == piece.inputs.end()) flat.variables.push_back(i);
   flat.variables.insert(flat.variables.end(), piece.inputs.begin(), piece.inputs.end());
-  add_tree(piece, static_cast<Index>(flat.outputs.cell_terms.size()) - 1, flat);
+  add_tree(piece, std::ssize(flat.outputs.cell_terms) - 1, flat);
   for (const MapCell& cell : piece.cells) {
-    flat.boxes.insert(flat.boxes.end(), static_cast<std::size_t>(inputs - own), {0, 0});
+    flat.boxes.insert(flat.boxes.end(), inputs - own, {0, 0});
     for (Index j = 0; j < own; ++j) flat.boxes.emplace_back(cell.low[j], cell.high[j]);
     add_sums(cell.outputs, inputs - own, flat.outputs);
     if (data.shape) add_sums(cell.modes, inputs - own, flat.modes);
@@ -79,12 +79,12 @@ bool is_inside(const KinematicMap& map, const Eigen::VectorXd& commands, const K
 
 FlatMap flat_map(const MapData& data) {
   FlatMap flat;
-  flat.outputs.size = static_cast<Index>(data.outputs.size());
+  flat.outputs.size = data.outputs.size();
   if (data.shape) flat.modes.size = data.shape->units.size();
   for (FlatSums* sums : {&flat.outputs, &flat.modes}) sums->cell_runs = sums->cell_terms = {0};
   flat.pieces.assign(std::size_t{1} << data.cables.size(), -1);
   for (std::size_t p = 0; p < data.pieces.size(); ++p) {
-    flat.pieces[maps::bits_of(data.pieces[p].taut)] = static_cast<Index>(p);
+    flat.pieces[maps::bits_of(data.pieces[p].taut)] = p;
     add_piece(data, data.pieces[p], flat);
   }
   return flat;

@@ -113,7 +113,7 @@ void add_sum_tables(const FlatSums& sums, Index inputs, CTables& tables) {
 }
 
 void add_tables(const MapData& data, const FlatMap& flat, CNumbers numbers, CTables& tables) {
-  const auto inputs = static_cast<Index>(data.inputs.size());
+  const Index inputs = data.inputs.size();
   std::vector<double> low, high, commands, accuracies;
   for (const MapInput& input : data.inputs) {
     low.push_back(input.low);
@@ -155,7 +155,7 @@ std::vector<double> tolerances_of(const MapAnswers& answers, CNumbers numbers) {
 
 void add_answers(const MapAnswers& answers, CNumbers numbers, CTables& tables) {
   const auto add = [&](const char* name, const maps::RowMatrix& rows) {
-    tables.reals(name, rows.data(), static_cast<std::size_t>(rows.size()), rows.cols());
+    tables.reals(name, rows.data(), rows.size(), rows.cols());
   };
   add("check_commands", answers.commands);
   add("check_outputs", answers.outputs);
@@ -226,7 +226,7 @@ std::string definitions(const MapData& data, const FlatMap& flat, const MapAnswe
 
 /// Bytes of the numbers that functions keep on the stack, and of those that they call.
 std::pair<Index, Index> stack_of(const MapData& data, const FlatMap& flat, CNumbers numbers) {
-  const auto n = static_cast<Index>(data.inputs.size()), outputs = static_cast<Index>(data.outputs.size());
+  const Index n = data.inputs.size(), outputs = data.outputs.size();
   const Index bytes = numbers == CNumbers::floats ? 4 : 8;
   const Index fk = 2 * n * degrees_of(flat) + 2 * n + n * outputs, other = 200;  // and counters, registers
   const Index ik = fk + outputs + n * outputs + n * n + 9 * n + 3 * n * 2 + 8;

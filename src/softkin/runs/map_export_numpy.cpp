@@ -44,7 +44,7 @@ class NumpyArrays {
  private:
   template <class Values>
   static Eigen::Index size_of(const Values& values) {
-    return static_cast<Eigen::Index>(values.size());
+    return values.size();
   }
   static std::string type_of(double) { return "<f8"; }
   static std::string type_of(float) { return "<f4"; }
@@ -132,10 +132,10 @@ void add_cables(const MapData& data, NumpyArrays& arrays) {
 /// A row per node: input, at, below, above, 0; of a cell -1, 0, 0, 0, its number. The last: outside the map, as where a
 /// root is -1.
 void add_numpy_trees(const FlatMap& flat, NumpyArrays& arrays) {
-  const auto nodes = static_cast<Index>(flat.node_at.size());
+  const Index nodes = flat.node_at.size();
   maps::RowMatrix tree(nodes + 1, 5);
   for (Index n = 0; n < nodes; ++n) {
-    const auto at = static_cast<std::size_t>(n);
+    const std::size_t at = n;
     const auto& [below, above] = flat.node_children[at];
     if (flat.node_inputs[at] < 0)
       tree.row(n) << -1, 0, 0, 0, below;

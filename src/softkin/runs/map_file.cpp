@@ -56,7 +56,7 @@ class ArrayReader {
     const int fixed = Matrix::RowsAtCompileTime;
     if (fixed != Eigen::Dynamic && rows != static_cast<std::size_t>(fixed))
       throw InvalidInput("an array has another shape");
-    Matrix matrix(static_cast<Eigen::Index>(rows), static_cast<Eigen::Index>(columns));
+    Matrix matrix(rows, columns);
     const char* next = bytes_.data() + at;
     for (Eigen::Index i = 0; i < matrix.rows(); ++i)
       for (Eigen::Index j = 0; j < matrix.cols(); ++j, next += sizeof(Scalar))
@@ -76,7 +76,7 @@ nlohmann::ordered_json numbers(const Eigen::VectorXd& values) {
 
 Eigen::VectorXd vector_of(const nlohmann::json& values) {
   const auto numbers = values.get<std::vector<double>>();
-  return Eigen::Map<const Eigen::VectorXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
+  return Eigen::Map<const Eigen::VectorXd>(numbers.data(), numbers.size());
 }
 
 nlohmann::ordered_json polynomials_json(const maps::Polynomials& polynomials, Arrays& arrays) {
@@ -138,7 +138,7 @@ nlohmann::ordered_json header(const MapData& data, Arrays& arrays) {
                               {"high", input.high}});
   for (std::size_t q = 0; q < data.outputs.size(); ++q) {
     const MapOutput& output = data.outputs[q];
-    const auto at = static_cast<Index>(q);
+    const Index at = q;
     told["outputs"].push_back({{"name", output.name},
                                {"unit", output.unit},
                                {"accuracy", output.accuracy},
@@ -176,10 +176,10 @@ MapData data_of(const nlohmann::json& told, const ArrayReader& arrays) {
                            input.at("actuator").get<Index>(), input.at("low").get<double>(),
                            input.at("high").get<double>()});
   const nlohmann::json& outputs = told.at("outputs");
-  data.check.largest.resize(static_cast<Index>(outputs.size()));
-  data.check.mean.resize(static_cast<Index>(outputs.size()));
+  data.check.largest.resize(outputs.size());
+  data.check.mean.resize(outputs.size());
   for (const nlohmann::json& output : outputs) {
-    const auto at = static_cast<Index>(data.outputs.size());
+    const Index at = data.outputs.size();
     data.outputs.push_back({output.at("name").get<std::string>(), output.at("unit").get<std::string>(),
                             output.at("accuracy").get<double>()});
     data.check.largest[at] = output.at("largest_error").get<double>();
@@ -298,7 +298,7 @@ std::string map_json(const MapData& data, const std::string& file_name, double s
   made["pieces"] = nlohmann::ordered_json::array();
   for (const MapPiece& piece : data.pieces) {
     Index terms = 0;
-    for (const MapCell& cell : piece.cells) terms += static_cast<Index>(cell.outputs.terms().rows());
+    for (const MapCell& cell : piece.cells) terms += cell.outputs.terms().rows();
     made["pieces"].push_back({{"taut", piece.taut}, {"cells", piece.cells.size()}, {"terms", terms}});
   }
   if (data.shape) {

@@ -56,7 +56,7 @@ Json inputs_table(const MapData& data) {
 Json outputs_table(const MapData& data) {
   Json table = Json::array();
   for (std::size_t q = 0; q < data.outputs.size(); ++q) {
-    const auto at = static_cast<Index>(q);
+    const Index at = q;
     table.push_back({{"name", data.outputs[q].name},
                      {"unit", data.outputs[q].unit},
                      {"accuracy", data.outputs[q].accuracy},
@@ -76,16 +76,16 @@ Json checked_table(const MapData& data) {
 }
 
 Json shape_table(const MapShape& shape) {
-  return {{"mean", to_base64(shape.mean.data(), static_cast<std::size_t>(shape.mean.size()))},
+  return {{"mean", to_base64(shape.mean.data(), shape.mean.size())},
           {"units", std::vector<double>(shape.units.begin(), shape.units.end())},
-          {"modes", to_base64(shape.modes.data(), static_cast<std::size_t>(shape.modes.size()))}};
+          {"modes", to_base64(shape.modes.data(), shape.modes.size())}};
 }
 
 MapShape shape_at(const MapShape& shape, const std::vector<Index>& vertices) {
   MapShape part{Eigen::VectorXf(3 * vertices.size()), {}, shape.units, shape.accuracy_mm};
   part.modes.resize(part.mean.size(), shape.modes.cols());
   for (std::size_t i = 0; i < vertices.size(); ++i) {
-    const auto to = 3 * static_cast<Index>(i), from = 3 * vertices[i];
+    const Index to = 3 * i, from = 3 * vertices[i];
     part.mean.segment<3>(to) = shape.mean.segment<3>(from);
     part.modes.middleRows<3>(to) = shape.modes.middleRows<3>(from);
   }

@@ -40,7 +40,7 @@ const char* unit_of_measure(const Actuator& actuator) {
 }  // namespace
 
 std::string model_summary(const Model& model, const std::string& solver) {
-  std::string text = grouped(static_cast<std::size_t>(model.robot_vertices())) + " vertices";
+  std::string text = grouped(model.robot_vertices()) + " vertices";
   if (!model.elements.tetrahedra.empty())
     text +=
         ", " + grouped(model.elements.tetrahedra.size()) + " tetrahedra of order " + std::to_string(order_of(model));

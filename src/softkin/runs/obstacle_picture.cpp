@@ -33,7 +33,7 @@ void add_within(const Bounds& box, const Corners& triangle, PictureLayer& layer,
     cut(axis, -1, box.min()[axis], polygon);
   }
   for (std::size_t i = 2; i < polygon.size(); ++i) {
-    const auto first = static_cast<Index>(points.size());
+    const Index first = points.size();
     points.insert(points.end(), {polygon[0], polygon[i - 1], polygon[i]});
     layer.triangles.push_back({first, first + 1, first + 2});
   }
@@ -87,8 +87,8 @@ std::optional<PictureLayer> obstacle_layer(const Model& model, const Points& pos
     for (const Corners& half : patch(corners, robot)) add_within(box, half, layer, points);
   }
   if (points.empty()) return std::nullopt;
-  layer.points.resize(static_cast<Index>(points.size()), 3);
-  for (std::size_t i = 0; i < points.size(); ++i) layer.points.row(static_cast<Index>(i)) = points[i].transpose();
+  layer.points.resize(points.size(), 3);
+  for (std::size_t i = 0; i < points.size(); ++i) layer.points.row(i) = points[i].transpose();
   return layer;
 }
 

@@ -35,7 +35,7 @@ std::vector<float> coordinates(const Points& points, const std::vector<Index>& v
 
 Json page_points(const Points& points) {
   const Eigen::Matrix<float, Eigen::Dynamic, 3, Eigen::RowMajor> numbers = points.cast<float>();
-  return {{"f32", to_base64(numbers.data(), static_cast<std::size_t>(numbers.size()))}};
+  return {{"f32", to_base64(numbers.data(), numbers.size())}};
 }
 
 /// Numbers in rows of so many components, rounded; what is no number becomes the lowest of its component.
@@ -128,7 +128,7 @@ double volume_of(const Model& model, std::size_t element) {
 }
 
 bool is_body(const Model& model, std::size_t triangle) {
-  const auto part = static_cast<std::size_t>(model.contact.part_of[triangle]);
+  const std::size_t part = model.contact.part_of[triangle];
   return model.contact.parts[part].rank == ContactRank::body;
 }
 
@@ -189,7 +189,7 @@ PageDocument::PageDocument(const Model& model, std::string command)
     : model_(model),
       command_(std::move(command)),
       surface_(body_surface(model)),
-      numbers_(static_cast<std::size_t>(model.rest.rows()), -1),
+      numbers_(model.rest.rows(), -1),
       last_(model.rest) {
   std::vector<Index> all;
   for (const Triangle& t : surface_.triangles) all.insert(all.end(), t.begin(), t.end());
@@ -205,7 +205,7 @@ void PageDocument::take(const std::vector<Index>& more) {
   for (const Index v : fresh) {
     Index& number = numbers_[v];
     if (number >= 0) continue;
-    number = static_cast<Index>(vertices_.size());
+    number = vertices_.size();
     vertices_.push_back(v);
   }
 }
@@ -217,7 +217,7 @@ std::vector<float> PageDocument::mean_at_vertices(const std::vector<double>& of_
     if (!is_solid(model_, e)) continue;
     for (const Index v : vertices_of_element(model_, e)) {
       if (number(v) < 0) continue;
-      const auto at = static_cast<std::size_t>(number(v));
+      const std::size_t at = number(v);
       sums[at] += volume_of(model_, e) * of_elements[e];
       volumes[at] += volume_of(model_, e);
     }
@@ -282,8 +282,7 @@ Json page_triangles(const std::vector<Triangle>& triangles, const Numbering& num
 Json page_regions(const Model& model, const BodySurface& surface) {
   std::vector<std::uint16_t> regions;  // 65535: none
   for (const Index element : surface.elements)
-    regions.push_back(
-        static_cast<std::uint16_t>(element < 0 ? -1 : role_of(model, static_cast<std::size_t>(element)).region));
+    regions.push_back(static_cast<std::uint16_t>(element < 0 ? -1 : role_of(model, element).region));
   return page_array("u16", regions);
 }
 

@@ -94,7 +94,7 @@ Json branch_json(const Model& model, const LoadBranch& branch) {
 LoadBranch branch_of(const Model& model, const Json& json) {
   LoadBranch branch;
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
-    if (model.actuators[a].name == json.at("actuator").get<std::string>()) branch.actuator = static_cast<Index>(a);
+    if (model.actuators[a].name == json.at("actuator").get<std::string>()) branch.actuator = a;
   if (branch.actuator < 0) throw std::out_of_range("no such actuator");
   const Json& loads = json.at(multiplier_key(model.actuators[branch.actuator]));
   for (std::size_t i = 0; i < loads.size(); ++i)

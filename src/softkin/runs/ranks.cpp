@@ -108,15 +108,15 @@ std::vector<double> packed(const WorkspaceSample& sample) {
 
 WorkspaceSample unpacked(const std::vector<double>& values, const Model& model, const WorkspacePlan& plan) {
   WorkspaceSample sample;
-  sample.number = static_cast<Index>(values.at(0));
+  sample.number = values.at(0);
   sample.status = static_cast<Status>(static_cast<int>(values.at(1)));
   sample.iterations = static_cast<int>(values.at(2));
   sample.actuation = plan.actuations.row(sample.number);
   if (sample.status != Status::converged) return sample;
   const std::size_t markers = 3 * model.markers.size(), loads = model.actuators.size();
   if (values.size() != 3 + markers + loads) throw InvalidInput("a rank sent a sample of another robot");
-  sample.markers = Eigen::Map<const Points>(values.data() + 3, static_cast<Index>(model.markers.size()), 3);
-  sample.multipliers = Eigen::Map<const Eigen::VectorXd>(values.data() + 3 + markers, static_cast<Index>(loads));
+  sample.markers = Eigen::Map<const Points>(values.data() + 3, model.markers.size(), 3);
+  sample.multipliers = Eigen::Map<const Eigen::VectorXd>(values.data() + 3 + markers, loads);
   return sample;
 }
 
@@ -185,7 +185,7 @@ class Counter {
     check_mpi(MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &waits, &status));
     if (!waits) return false;
     check_mpi(MPI_Get_count(&status, MPI_DOUBLE, &count));
-    std::vector<double> values(static_cast<std::size_t>(count));
+    std::vector<double> values(count);
     check_mpi(MPI_Recv(values.data(), count, MPI_DOUBLE, status.MPI_SOURCE, status.MPI_TAG, MPI_COMM_WORLD,
                        MPI_STATUS_IGNORE));
     if (status.MPI_TAG == sample_made) desk_.keep(unpacked(values, model_, plan_));
@@ -259,7 +259,7 @@ void Ranks::agree_on(const std::string& text) const {
   std::string of_the_first = text;
   auto length = static_cast<int>(text.size());
   check_mpi(MPI_Bcast(&length, 1, MPI_INT, 0, MPI_COMM_WORLD));
-  of_the_first.resize(static_cast<std::size_t>(length));
+  of_the_first.resize(length);
   check_mpi(MPI_Bcast(of_the_first.data(), length, MPI_CHAR, 0, MPI_COMM_WORLD));
   together([&] {
     if (of_the_first != text) throw InvalidInput("its scene, mesh or softkin is not that of rank 0");

@@ -20,7 +20,7 @@ bool is_slack(const Actuator& actuator, double achieved, double length, double t
 
 ActuatorRecord actuator_record(const Model& model, const Equilibrium& found, std::size_t a) {
   const Actuator& actuator = model.actuators[a];
-  const auto i = static_cast<Index>(a);
+  const Index i = a;
   ActuatorRecord record{found.actuation[i], 0};
   if (has_measure(actuator))
     record.achieved = achieved_ratio(model, actuator, found.state.positions);
@@ -110,7 +110,7 @@ void note_jump(const Model& model, const MarkerPath& path, const WaypointRecord&
       record.command_change = std::max(record.command_change, change / (actuator.high - actuator.low));
   }
   for (const Index marker : path.markers) {
-    const auto m = static_cast<std::size_t>(marker);
+    const std::size_t m = marker;
     record.step_mm = std::max(record.step_mm, (record.markers[m] - before.markers[m]).norm());
   }
 }
@@ -135,7 +135,7 @@ double normal_force_on(const Model& model, const std::string& part, const std::v
 
 State state_of(const Model& model, const StepRecord& record, Points positions) {
   State state{std::move(positions), record.shape_actuation.value_or(Actuation()),
-              Eigen::VectorXd::Zero(static_cast<Index>(model.actuators.size()))};
+              Eigen::VectorXd::Zero(model.actuators.size())};
   if (model.formulation != Formulation::physical) return state;
   state.share = record.shape_actuation ? record.shape_load_share : -1;
   for (std::size_t a = 0; a < model.actuators.size(); ++a) state.multipliers[a] = record.actuators[a].multiplier;
@@ -147,7 +147,7 @@ State state_of(const Model& model, const StepRecord& record, Points positions) {
 std::vector<Shortfall> shortfalls(const Model& model, const StepRecord& record) {
   std::vector<Shortfall> short_of;
   if (!record.shape_actuation) return short_of;
-  for (Index a = 0; a < static_cast<Index>(model.actuators.size()); ++a) {
+  for (Index a = 0; a < std::ssize(model.actuators); ++a) {
     const double told = record.actuation[a], acts = (*record.shape_actuation)[a];
     if (!(acts >= told && acts <= told + model.actuators[a].backlash)) short_of.push_back({a, acts, told});
   }

@@ -134,7 +134,7 @@ Json by_actuator(const Model& model, const Actuation& values) {
 }
 
 Actuation by_actuator(const Model& model, const Json& json) {
-  Actuation values(static_cast<Index>(model.actuators.size()));
+  Actuation values(model.actuators.size());
   if (json.size() != model.actuators.size()) throw OtherActuators();
   for (std::size_t a = 0; a < model.actuators.size(); ++a) values[a] = json.at(model.actuators[a].name).get<double>();
   return values;

@@ -174,20 +174,18 @@ std::string unit_of(const Actuator& actuator) {
 Json jacobian_json(const Model& model, const Points& positions, const Sensitivity& sensitivity) {
   Json json = {{"unit", Json::object()}, {"markers", Json::object()}};
   std::vector<Index> markers;
-  for (std::size_t p = 0; p < model.markers.size(); ++p) markers.push_back(static_cast<Index>(p));
+  for (std::size_t p = 0; p < model.markers.size(); ++p) markers.push_back(p);
   const Eigen::MatrixXd slopes = jacobian(model, positions, sensitivity, markers);
   for (const Actuator& actuator : model.actuators) json["unit"][actuator.name] = "mm per " + unit_of(actuator);
   for (std::size_t p = 0; p < markers.size(); ++p)
     for (std::size_t a = 0; a < model.actuators.size(); ++a)
-      json["markers"][model.markers[p].name][model.actuators[a].name] =
-          json_of(slopes.block<3, 1>(3 * static_cast<Index>(p), static_cast<Index>(a)));
+      json["markers"][model.markers[p].name][model.actuators[a].name] = json_of(slopes.block<3, 1>(3 * p, a));
   if (model.formulation != Formulation::physical) return json;
   for (std::size_t i = 0; i < model.actuators.size(); ++i) {
     const std::string key = multiplier_key(model.actuators[i]);
     if (key.empty()) continue;
     for (std::size_t a = 0; a < model.actuators.size(); ++a)
-      json[key][model.actuators[i].name][model.actuators[a].name] =
-          sensitivity.multipliers(static_cast<Index>(i), static_cast<Index>(a));
+      json[key][model.actuators[i].name][model.actuators[a].name] = sensitivity.multipliers(i, a);
   }
   return json;
 }

@@ -53,7 +53,7 @@ std::vector<PictureMark> marks_of(const Model& model, const Points& positions, c
   for (const Actuator& actuator : model.actuators) {
     const auto* cable = actuator.as<CableDrive>();
     if (!cable) continue;
-    Points line(static_cast<Index>(cable->points.size()), 3);
+    Points line(cable->points.size(), 3);
     for (Index i = 0; i < line.rows(); ++i) line.row(i) = cable->points[i].at(positions).transpose();
     marks.push_back({line, "", cable_color});
   }
@@ -95,7 +95,7 @@ void add_surroundings(const Model& model, VtuContent& content) {
   for (std::size_t p = 0; p < contact.parts.size(); ++p) {
     const ContactPart& part = contact.parts[p];
     if (part.rank == ContactRank::robot || part.halfspace) continue;
-    regions[p] = static_cast<Index>(content.region_names.size());
+    regions[p] = content.region_names.size();
     content.region_names.push_back(part.name);
   }
   for (std::size_t t = 0; t < contact.triangles.size(); ++t) {
@@ -113,7 +113,7 @@ void add_surroundings(const Model& model, VtuContent& content) {
 void add_layers(const Model& model, VtuContent& content) {
   for (const auto& layer : model.reinforcement.layers) {
     if (layer->faces.empty()) continue;
-    const auto region = static_cast<Index>(content.region_names.size());
+    const Index region = content.region_names.size();
     content.region_names.push_back("layer_" + layer->name);
     for (const CavityFace& face : layer->faces) {
       content.triangles.push_back(face.corners);
@@ -130,7 +130,7 @@ constexpr int anchor_values = 7;
 constexpr double same_mesh = 1e-9;  // of the diagonal
 
 void add_state(const Model& model, const State& state, VtuContent& content) {
-  const auto actuators = static_cast<Index>(model.actuators.size());
+  const Index actuators = model.actuators.size();
   const bool known = state.knows(actuators) && state.multipliers.size() == actuators && state.actuation.allFinite() &&
                      state.multipliers.allFinite() && std::isfinite(state.share);
   content.constants.emplace_back(state_share, known ? state.share : -1);
@@ -204,7 +204,7 @@ State read_state(const fs::path& path, const Model& model) {
                                             std::string(state_share) + "', which softkin writes");
   state.share = *share;
   if (state.share < 0) return state;
-  const auto actuators = static_cast<Index>(model.actuators.size());
+  const Index actuators = model.actuators.size();
   state.actuation = state.multipliers = Eigen::VectorXd::Zero(actuators);
   for (Index a = 0; a < actuators; ++a) {
     const std::string& name = model.actuators[a].name;

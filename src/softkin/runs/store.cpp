@@ -32,8 +32,8 @@ void each_line(int file, std::size_t offset, const std::function<bool(std::strin
     const ssize_t count = ::pread(file, buffer.get(), piece, static_cast<off_t>(offset));
     if (count < 0 && errno == EINTR) continue;
     if (count <= 0) break;
-    offset += static_cast<std::size_t>(count);
-    std::string_view text(buffer.get(), static_cast<std::size_t>(count));
+    offset += count;
+    std::string_view text(buffer.get(), count);
     for (std::size_t end; (end = text.find('\n')) != std::string_view::npos; text.remove_prefix(end + 1)) {
       rest += text.substr(0, end);
       if (!visit(rest, true)) return;
@@ -54,7 +54,7 @@ Store::Store(fs::path path, const std::string& head, bool resume) : path_(std::m
       cut_off();
       write(head);
     } else {
-      measure(static_cast<std::size_t>(std::count(head.begin(), head.end(), '\n')));
+      measure(std::count(head.begin(), head.end(), '\n'));
     }
   } catch (...) {
     ::close(file_);
@@ -88,8 +88,7 @@ void Store::open(bool begin) {
 bool Store::ends_within(const std::string& head) const {
   std::string text(head.size(), '\0');
   const ssize_t count = ::pread(file_, text.data(), text.size(), 0);
-  return count >= 0 && static_cast<std::size_t>(count) < head.size() &&
-         head.starts_with(text.substr(0, static_cast<std::size_t>(count)));
+  return count >= 0 && static_cast<std::size_t>(count) < head.size() && head.starts_with(text.substr(0, count));
 }
 
 void Store::measure(std::size_t head_lines) {

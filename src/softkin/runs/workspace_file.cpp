@@ -92,7 +92,7 @@ WorkspaceColumns workspace_columns(const Model& model) {
     columns.actuators.push_back(command_column(actuator));
     if (model.formulation != Formulation::physical || load.empty()) continue;
     columns.loads.push_back(actuator.name + "_" + load);
-    columns.loaded.push_back(static_cast<Index>(a));
+    columns.loaded.push_back(a);
   }
   for (const Marker& marker : model.markers)
     for (const char* axis : {"_x_mm", "_y_mm", "_z_mm"}) columns.markers.push_back(marker.name + axis);
@@ -125,7 +125,7 @@ WorkspaceHead workspace_head(const Model& model, const SamplingOptions& sampling
 
 WorkspaceFile::WorkspaceFile(fs::path path, const WorkspaceHead& head, const WorkspaceColumns& columns,
                              const WorkspacePlan& plan, bool resume)
-    : path_(std::move(path)), columns_(columns), known_(static_cast<std::size_t>(plan.samples())) {
+    : path_(std::move(path)), columns_(columns), known_(plan.samples()) {
   const std::string header = workspace_header(head, columns);
   if (!resume) check_replaceable(path_);
   store_ = std::make_unique<Store>(path_, header, resume);
@@ -135,7 +135,7 @@ WorkspaceFile::WorkspaceFile(fs::path path, const WorkspaceHead& head, const Wor
 WorkspaceFile::~WorkspaceFile() = default;
 
 Index WorkspaceFile::done() const {
-  return static_cast<Index>(store_->size());
+  return store_->size();
 }
 bool WorkspaceFile::complete() const {
   return store_->size() == known_.size();
@@ -168,7 +168,7 @@ void WorkspaceFile::note(const WorkspaceSample& sample) {
 }
 
 Index WorkspaceFile::count(Status status) const {
-  return static_cast<Index>(std::count(known_.begin(), known_.end(), std::optional(status)));
+  return std::count(known_.begin(), known_.end(), std::optional(status));
 }
 
 void WorkspaceFile::add(const WorkspaceSample& sample) {
@@ -225,9 +225,8 @@ Reach reach_of(const Model& model, std::vector<WorkspaceSample> samples, const s
   Reach reach{model.markers[shown].name, {}, {}};
   for (WorkspaceSample& sample : samples)
     if (sample.status == Status::converged) reach.samples.push_back(std::move(sample));
-  reach.positions.resize(static_cast<Index>(reach.samples.size()), 3);
-  for (std::size_t i = 0; i < reach.samples.size(); ++i)
-    reach.positions.row(static_cast<Index>(i)) = reach.samples[i].markers.row(shown);
+  reach.positions.resize(reach.samples.size(), 3);
+  for (std::size_t i = 0; i < reach.samples.size(); ++i) reach.positions.row(i) = reach.samples[i].markers.row(shown);
   if (with_hull && !reach.samples.empty()) reach.hull = convex_hull(reach.positions);
   return reach;
 }

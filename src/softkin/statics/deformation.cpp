@@ -107,7 +107,7 @@ double length_of(const CableDrive& cable, const Points& positions) {
 
 double volume_of(const Model& model, const ChamberDrive& chamber, const Points& positions) {
   if (!chamber.surface.empty()) {
-    Points points(static_cast<Index>(chamber.points.size()), 3);
+    Points points(chamber.points.size(), 3);
     for (Index i = 0; i < points.rows(); ++i) points.row(i) = chamber.points[i].at(positions).transpose();
     return enclosed_volume(points, chamber.surface);
   }

@@ -20,7 +20,7 @@ Neighbourhood::Neighbourhood(const Statics& statics, const State& at, int thread
   StaticsOptions options;
   options.threads = threads;
   check_start(model, at, options);
-  if (!at.knows(static_cast<Index>(model.actuators.size())))
+  if (!at.knows(model.actuators.size()))
     throw InvalidInput("predictions around a shape need the actuation of which it is the equilibrium");
   parts_ = std::make_unique<Parts>(model, at, statics.parts_->lender.lend(options));
   const physical::Equilibria* physical = statics.parts_->equilibria();

@@ -61,9 +61,9 @@ Eigen::MatrixXd Perturbations::gradients(const State& at, const std::vector<Shap
   }
   const ParameterSensitivity found = this->at(at, options, accuracy);
   if (!found.regular) return {};
-  Eigen::MatrixXd result(static_cast<Index>(told.size()), static_cast<Index>(found.positions.size()));
-  for (Index p = 0; p < static_cast<Index>(result.cols()); ++p)
-    for (Index r = 0; r < static_cast<Index>(result.rows()); ++r) result(r, p) = change_of(told[r], found, p);
+  Eigen::MatrixXd result(told.size(), found.positions.size());
+  for (Index p = 0; p < result.cols(); ++p)
+    for (Index r = 0; r < result.rows(); ++r) result(r, p) = change_of(told[r], found, p);
   return result;
 }
 

@@ -69,7 +69,7 @@ class OverlapSearch::Shape {
         positions_(positions),
         bounds_(bounds_of(positions, cells_)),
         tree_(*search.tree_),
-        inverted_(static_cast<std::size_t>(positions.rows())) {
+        inverted_(positions.rows()) {
     tree_.refit(bounds_);
     for (const Tetrahedron& cell : cells_)
       if (!(signed_volume(positions, cell) > 0))
@@ -99,7 +99,7 @@ class OverlapSearch::Shape {
     std::unordered_set<Index> seen{cell};
     double nearest = std::numeric_limits<double>::infinity();
     for (next.emplace(0.0, cell); !next.empty() && next.top().first < nearest;) {
-      const auto at = static_cast<std::size_t>(next.top().second);
+      const std::size_t at = next.top().second;
       next.pop();
       for (std::size_t corner = 0; corner < 4; ++corner) {
         const Index across = neighbours_[at][corner];

@@ -37,8 +37,8 @@ struct ShapeGradient {
 
 /// Zeros, not regular.
 [[nodiscard]] inline Sensitivity no_sensitivity(Index vertices, Index actuators) {
-  return {std::vector<Points>(static_cast<std::size_t>(actuators), Points::Zero(vertices, 3)),
-          Eigen::MatrixXd::Zero(actuators, actuators), false};
+  return {std::vector<Points>(actuators, Points::Zero(vertices, 3)), Eigen::MatrixXd::Zero(actuators, actuators),
+          false};
 }
 
 }  // namespace softkin

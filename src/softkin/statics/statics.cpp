@@ -44,7 +44,7 @@ const char* name_of(Solver solver) {
 }
 
 void check_actuation(const Model& model, const Actuation& actuation) {
-  if (actuation.size() != static_cast<Index>(model.actuators.size()))
+  if (actuation.size() != std::ssize(model.actuators))
     throw InvalidInput("the actuation has " + std::to_string(actuation.size()) + " values, the robot " +
                        std::to_string(model.actuators.size()) + " actuators");
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {

@@ -25,16 +25,15 @@ void check_start(const Model& model, const State& start, const StaticsOptions& o
   if (!start.positions.allFinite()) throw InvalidInput("the start holds a coordinate that is not finite");
   for (const Eigen::VectorXd* values : {&start.actuation, &start.multipliers}) {
     const char* name = values == &start.actuation ? "actuation" : "multipliers";
-    if (values->size() > 0 && values->size() != static_cast<Index>(model.actuators.size()))
+    if (values->size() > 0 && values->size() != std::ssize(model.actuators))
       throw InvalidInput(std::string("the start's ") + name + " has " + std::to_string(values->size()) +
                          " values, the robot " + std::to_string(model.actuators.size()) + " actuators");
     if (!values->allFinite())
       throw InvalidInput(std::string("the start's ") + name + " holds a value that is not finite");
   }
   const auto lies_on_model = [&](const Anchor& anchor) {
-    return anchor.vertex >= 0 && anchor.vertex < static_cast<Index>(model.contact.area.size()) &&
-           anchor.triangle >= 0 && anchor.triangle < static_cast<Index>(model.contact.triangles.size()) &&
-           anchor.weights.allFinite();
+    return anchor.vertex >= 0 && anchor.vertex < std::ssize(model.contact.area) && anchor.triangle >= 0 &&
+           anchor.triangle < std::ssize(model.contact.triangles) && anchor.weights.allFinite();
   };
   const auto finite = [](double length) { return std::isfinite(length); };
   if (!start.eyelets.empty() && (start.eyelets.size() != physical::Tendons(model).remembered() ||
@@ -74,8 +73,7 @@ void check_elapsed(double elapsed_s) {
 
 void Statics::Parts::check_actuation(const State& at, const StaticsOptions& options, const std::string& of) const {
   check_start(model, at, options);
-  if (!at.knows(static_cast<Index>(model.actuators.size())))
-    throw InvalidInput(of + " needs the actuation of which it is the equilibrium");
+  if (!at.knows(model.actuators.size())) throw InvalidInput(of + " needs the actuation of which it is the equilibrium");
   if (!std::isfinite(at.share)) throw InvalidInput("the share of the loads at the shape is not finite");
 }
 

@@ -105,7 +105,7 @@ std::optional<WorstPlace> worst_place(const Model& model, const Points& position
   WorstPlace place;
   place.prism = *worst >= model.elements.tetrahedra.size();
   const std::size_t e = place.prism ? *worst - model.elements.tetrahedra.size() : *worst;
-  place.element = static_cast<Index>(e);
+  place.element = e;
   const ElementRole& role = (place.prism ? model.elements.prism_roles : model.elements.tetrahedron_roles)[e];
   if (role.region >= 0) place.region = model.elements.region_names[role.region];
   place.strain = largest_strain(deformation.strain[*worst]);

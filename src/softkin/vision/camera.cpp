@@ -274,12 +274,12 @@ PlaneView::PlaneView(std::optional<Camera> camera, double mm_per_pixel) : camera
 PlaneView::PlaneView(std::optional<Camera> camera, const std::vector<PlanePoint>& points) : camera_(camera) {
   if (points.size() < 4) throw InvalidInput("a plane is found from four points or more");
   fitted_ = first_guess(points);
-  const Eigen::Index n = static_cast<Eigen::Index>(2 * points.size());
+  const Eigen::Index n = 2 * points.size();
   Eigen::Matrix<double, Eigen::Dynamic, 8> rows(n, 8);
   Eigen::VectorXd miss(n);
   for (int round = 0;; ++round) {
     for (std::size_t k = 0; k < points.size(); ++k) {
-      const auto i = static_cast<Eigen::Index>(2 * k);
+      const Eigen::Index i = 2 * k;
       rows.middleRows<2>(i) = by_entries(fitted_, points[k].place);
       miss.segment<2>(i) = points[k].pixel - mapped(fitted_, points[k].place);
     }

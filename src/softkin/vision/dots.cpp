@@ -53,7 +53,7 @@ Pixels pixels_in(const RgbImage& picture, const PixelBox& window, const Vec2& ce
       if (condition(x, y)) points.emplace_back(window.x + x, window.y + y);
   Pixels pixels{Eigen::MatrixX3d(points.size(), 3), Eigen::MatrixX3d(points.size(), 3)};
   for (std::size_t i = 0; i < points.size(); ++i) {
-    const auto row = static_cast<Eigen::Index>(i);
+    const Eigen::Index row = i;
     const auto [x, y] = points[i];
     const std::uint8_t* rgb = picture.bytes.data() + 3 * (std::size_t(y) * std::size_t(picture.width) + std::size_t(x));
     pixels.places.row(row) << 1, x - centre.x(), y - centre.y();

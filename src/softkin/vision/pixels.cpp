@@ -30,7 +30,7 @@ int mirrored(int i, int last) {
 GrayImage pixels_of(const RgbImage& picture, const Colour& colour) {
   const int width = picture.width, height = picture.height;
   GrayImage result{width, height, std::vector<std::uint8_t>(std::size_t(width) * std::size_t(height))};
-  std::vector<std::array<int, 3>> columns(static_cast<std::size_t>(width));  // sums of three pixels
+  std::vector<std::array<int, 3>> columns(width);  // sums of three pixels
   for (int y = 0; y < height; ++y) {
     const auto row = [&](int number) {
       return picture.bytes.data() + std::size_t(mirrored(number, height - 1)) * std::size_t(width) * 3;

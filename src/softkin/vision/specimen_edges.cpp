@@ -122,7 +122,7 @@ SpecimenEdge edge_near(const RgbImage& rgb, const PlaneView& view, const BarFram
   for (int k = 0; k < samples; ++k) at.push_back(half * (2 * (k + 0.5) / samples - 1));
   for (int k = 0; k < level_samples; ++k) at.push_back(half + level * k / level_samples);
   const auto columns = static_cast<int>(at.size());
-  std::vector<Eigen::Matrix3Xd> read(static_cast<std::size_t>(strips), Eigen::Matrix3Xd(3, columns));  // colours
+  std::vector<Eigen::Matrix3Xd> read(strips, Eigen::Matrix3Xd(3, columns));  // colours
   for (int round = 0; round < 3; ++round) {
     Eigen::MatrixX2d points(strips, 2);
     for (int i = 0; i < strips; ++i) {

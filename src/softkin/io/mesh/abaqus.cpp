@@ -75,10 +75,10 @@ class AbaqusMeshBuilder {
 
  private:
   void add_nodes() {
-    mesh_.vertices.resize(static_cast<Eigen::Index>(cards_.nodes.size()), 3);
+    mesh_.vertices.resize(cards_.nodes.size(), 3);
     nodes_.reserve(cards_.nodes.size());
     for (const AbaqusNode& node : cards_.nodes) {
-      const auto index = static_cast<Index>(nodes_.size());
+      const Index index = nodes_.size();
       if (!nodes_.emplace(node.id, index).second)
         throw InvalidInput(cards_.origin(node.line), "node " + std::to_string(node.id) + " is defined a second time");
       mesh_.vertices.row(index) = node.position.transpose();
@@ -154,7 +154,7 @@ class AbaqusMeshBuilder {
                       : shape == AbaqusShape::prism     ? region.prisms
                       : shape == AbaqusShape::triangle  ? region.triangles
                                                         : region.quads;
-      members.push_back(static_cast<Index>(place));
+      members.push_back(place);
     }
     sort_unique(region.vertices);
     mesh_.regions.push_back(std::move(region));
@@ -211,7 +211,7 @@ class AbaqusMeshBuilder {
 
   /// The corners of an element, from 0.
   std::pair<const Index*, std::size_t> corners_of(Index element) const {
-    const std::size_t i = static_cast<std::size_t>(element), place = place_[i];
+    const std::size_t i = element, place = place_[i];
     switch (cards_.elements[i].shape) {
       case AbaqusShape::tetrahedron:
         return {mesh_.tetrahedra[place].data(), 4};
@@ -276,7 +276,7 @@ class AbaqusMeshBuilder {
 
   /// The cell that a shell is, seen from either side.
   Index own_face_of(Index element, const AbaqusItem& item) {
-    const auto i = static_cast<std::size_t>(element);
+    const std::size_t i = element;
     if (cards_.elements[i].shape == AbaqusShape::line)
       throw InvalidInput(cards_.origin(item.line), "a truss or beam has no face");
     const auto [found, added] = face_numbers_.emplace(std::int64_t{element} * 8, static_cast<Index>(faces_.size()));

@@ -24,7 +24,7 @@ Index add_cell(CellStore<N>& store, std::span<const Index> vertices, std::span<R
 }  // namespace
 
 void Builder::begin_nodes(std::size_t count) {
-  positions_.resize(static_cast<Eigen::Index>(count), 3);
+  positions_.resize(count, 3);
   numbers_ = NodeNumbers(count);
 }
 
@@ -83,7 +83,7 @@ void Builder::add_volume(CellType type, std::span<const Index> vertices, std::sp
 }
 
 void Builder::add_tetrahedron(CellType type, std::span<const Index> vertices, std::span<Region* const> groups) {
-  const auto place = static_cast<std::size_t>(add_cell(tetrahedra_, vertices, groups, &Region::tetrahedra));
+  const std::size_t place = add_cell(tetrahedra_, vertices, groups, &Region::tetrahedra);
   if (type == CellType::tetrahedron) return;
   EdgeNodes nodes = reordered(to_array<6>(vertices.subspan(4)));
   if (place == edge_nodes_.size()) edge_nodes_.push_back(nodes);

@@ -24,7 +24,7 @@ class NodeNumbers {
   /// False where the number is taken.
   bool insert(std::int64_t number, Index row) {
     if (!is_dense(number)) return sparse_.try_emplace(number, row).second;
-    const auto place = static_cast<std::size_t>(number);
+    const std::size_t place = number;
     if (place >= dense_.size()) dense_.resize(std::min(dense_limit_, 2 * place + 1), -1);
     if (dense_[place] >= 0) return false;
     dense_[place] = row;
@@ -34,7 +34,7 @@ class NodeNumbers {
   /// -1 where no node has the number.
   [[nodiscard]] Index find(std::int64_t number) const {
     if (is_dense(number)) {
-      const auto place = static_cast<std::size_t>(number);
+      const std::size_t place = number;
       return place < dense_.size() ? dense_[place] : -1;
     }
     const auto found = sparse_.find(number);
@@ -60,7 +60,7 @@ class CellStore {
     if (2 * (cells_.size() + 1) > slots_.size()) grow();
     Index& slot = slot_of(sorted(cell));
     if (slot < 0) {
-      slot = static_cast<Index>(cells_.size());
+      slot = cells_.size();
       cells_.push_back(cell);
     }
     return slot;
@@ -80,7 +80,7 @@ class CellStore {
       value = (value ^ static_cast<std::uint32_t>(i)) * 0x9E3779B97F4A7C15u;
       value ^= value >> 32;
     }
-    return static_cast<std::size_t>(value);
+    return value;
   }
 
   // Where the cell of these vertices stands, or the free slot (-1) where it belongs.
@@ -93,7 +93,7 @@ class CellStore {
 
   void grow() {
     slots_.assign(std::max<std::size_t>(64, 2 * slots_.size()), -1);
-    for (std::size_t i = 0; i < cells_.size(); ++i) slot_of(sorted(cells_[i])) = static_cast<Index>(i);
+    for (std::size_t i = 0; i < cells_.size(); ++i) slot_of(sorted(cells_[i])) = i;
   }
 
   std::vector<Cell> cells_;

@@ -75,10 +75,10 @@ class Reader {
   void read_nodes_2() {
     const std::int64_t count = in_.text_count("number of nodes");
     in_.require(count, 8, 28, "nodes");
-    builder_.begin_nodes(static_cast<std::size_t>(count));
+    builder_.begin_nodes(count);
     for (std::int64_t i = 0; i < count; ++i) {
       builder_.number_node(in_.int_value("number of a node", 1, kMaxInt));
-      place_node(static_cast<Index>(i));
+      place_node(i);
       in_.end_record();
     }
   }
@@ -107,7 +107,7 @@ class Reader {
     std::array<Index, kMostNodes> vertices{};
     for (int i = 0; i < shape.nodes; ++i) vertices[i] = builder_.vertex(element, in_.int_value(kNode, 1, kMaxInt));
     in_.end_record();
-    const std::span<const Index> nodes(vertices.data(), static_cast<std::size_t>(shape.nodes));
+    const std::span<const Index> nodes(vertices.data(), shape.nodes);
     if (physical == 0) return builder_.add_element(type, nodes, {});
     Region* const groups[] = {&builder_.group(shape.dimension, physical)};
     builder_.add_element(type, nodes, groups);
@@ -152,7 +152,7 @@ class Reader {
     const std::int64_t count = in_.size_value("number of physical tags", 0, kMaxSize);
     in_.require(count, 2, 4, "physical tags");
     std::vector<int> tags;
-    tags.reserve(static_cast<std::size_t>(count));
+    tags.reserve(count);
     for (std::int64_t i = 0; i < count; ++i) {
       const auto tag = static_cast<int>(in_.int_value("physical tag", -kMaxInt, kMaxInt));
       // 0 is no group; the sign is the orientation, which regions do not have
@@ -163,7 +163,7 @@ class Reader {
 
   void read_nodes_4() {
     begin_blocks("nodes", 8, 32);
-    builder_.begin_nodes(static_cast<std::size_t>(left_));
+    builder_.begin_nodes(left_);
     for (std::int64_t i = 0; i < blocks_; ++i) read_node_block();
     must_be_complete("nodes");
   }
@@ -227,7 +227,7 @@ class Reader {
                std::to_string(dimension));
     const std::int64_t count = read_block_size("number of elements in the block");
     std::array<Index, kMostNodes> vertices{};
-    const std::span<const Index> nodes(vertices.data(), static_cast<std::size_t>(shape.nodes));
+    const std::span<const Index> nodes(vertices.data(), shape.nodes);
     for (std::int64_t i = 0; i < count; ++i) {
       const std::int64_t element = in_.size_value(kElement, 0, kMaxSize);
       for (int k = 0; k < shape.nodes; ++k) vertices[k] = builder_.vertex(element, in_.size_value(kNode, 1, kMaxSize));

@@ -62,7 +62,7 @@ class Checker {
     check_list(region, region.prisms, mesh_.prisms.size(), d == 3, "prisms");
     check_list(region, region.triangles, mesh_.triangles.size(), d == 2, "triangles");
     check_list(region, region.quads, mesh_.quads.size(), d == 2, "quads");
-    check_list(region, region.vertices, static_cast<std::size_t>(mesh_.vertices.rows()), d < 2, "vertices");
+    check_list(region, region.vertices, mesh_.vertices.rows(), d < 2, "vertices");
   }
 
   void check_list(const Region& region, const std::vector<Index>& list, std::size_t cells, bool fits,
@@ -137,10 +137,10 @@ class Layout {
   }
 
   void plan_points() {
-    const std::vector<int> sets = sets_of(static_cast<std::size_t>(mesh_.vertices.rows()), &Region::vertices);
+    const std::vector<int> sets = sets_of(mesh_.vertices.rows(), &Region::vertices);
     for (std::size_t v = 0; v < sets.size(); ++v) {
       if (sets[v] == 0) continue;
-      const Vec3 position = mesh_.vertices.row(static_cast<Eigen::Index>(v)).transpose();
+      const Vec3 position = mesh_.vertices.row(v).transpose();
       entities[0].push_back({sets_[sets[v]], Eigen::AlignedBox3d(position)});
       blocks.push_back({CellType::point, static_cast<int>(entities[0].size()), {static_cast<Index>(v)}});
     }
@@ -163,7 +163,7 @@ class Layout {
     const std::vector<int> sets = sets_of(cells.size(), list);
     for (std::size_t c = 0; c < cells.size(); ++c) {
       const int entity = entity_of(dimension, sets[c]);
-      Eigen::AlignedBox3d& box = entities[dimension][static_cast<std::size_t>(entity) - 1].box;
+      Eigen::AlignedBox3d& box = entities[dimension][entity - 1].box;
       for (std::size_t i = 0; i < corners; ++i) box.extend(Vec3(mesh_.vertices.row(cells[c][i]).transpose()));
       if (blocks.empty() || blocks.back().type != type || blocks.back().entity != entity)
         blocks.push_back({type, entity, {}});

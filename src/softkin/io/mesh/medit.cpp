@@ -106,18 +106,16 @@ class MeditReader {
       for (Index& vertex : corners) vertex = read_vertex();
       EdgeNodes others{};
       for (std::size_t k = K; k < nodes; ++k) others[k - K] = read_vertex();
-      (regions[read_label(scanner_, "reference")].*members).push_back(static_cast<Index>(elements.size()));
+      (regions[read_label(scanner_, "reference")].*members).push_back(elements.size());
       elements.push_back(corners);
       if (edge_nodes != nullptr) edge_nodes->push_back(others);
     }
   }
 
-  Index read_vertex() {
-    return read_index(scanner_, "vertex number", 1, static_cast<Index>(mesh_.vertices.rows())) - 1;
-  }
+  Index read_vertex() { return read_index(scanner_, "vertex number", 1, mesh_.vertices.rows()) - 1; }
 
   void skip_numbers(const std::string& name, std::size_t numbers) {
-    const auto count = static_cast<std::size_t>(read_count(scanner_, name.c_str(), 0, 2 * numbers));
+    const std::size_t count = read_count(scanner_, name.c_str(), 0, 2 * numbers);
     for (std::size_t i = 0; i < count * numbers; ++i) (void)scanner_.real(name.c_str());
   }
 

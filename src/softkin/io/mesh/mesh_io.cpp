@@ -61,15 +61,15 @@ VtuContent vtu_content(const Mesh& mesh) {
   content.cell_regions.assign(mesh.tetrahedra.size() + mesh.prisms.size() + content.triangles.size(), -1);
   for (const Region& region : mesh.regions) {
     if (region.dimension != (surface ? 2 : 3)) continue;
-    const auto number = static_cast<Index>(content.region_names.size());
+    const Index number = content.region_names.size();
     content.region_names.push_back(region.name);
     const auto mark = [&](std::size_t cell) {
       if (content.cell_regions[cell] < 0) content.cell_regions[cell] = number;
     };
-    for (const Index i : region.tetrahedra) mark(static_cast<std::size_t>(i));
+    for (const Index i : region.tetrahedra) mark(i);
     for (const Index i : region.prisms) mark(mesh.tetrahedra.size() + static_cast<std::size_t>(i));
     if (surface)
-      for (const Index i : region.triangles) mark(static_cast<std::size_t>(i));
+      for (const Index i : region.triangles) mark(i);
   }
   if (content.region_names.empty()) content.cell_regions.clear();
   return content;

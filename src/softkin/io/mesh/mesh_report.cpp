@@ -86,7 +86,7 @@ std::string loss_of(const Region& region, const std::vector<Region>& written) {
 
 void review_mesh(const Mesh& mesh, MeshConversion& result) {
   const Mesh written = read_mesh(result.output);
-  result.vertices = static_cast<std::size_t>(written.vertices.rows());
+  result.vertices = written.vertices.rows();
   result.order = order_of(written);
   result.tetrahedra = written.tetrahedra.size();
   result.prisms = written.prisms.size();
@@ -97,7 +97,7 @@ void review_mesh(const Mesh& mesh, MeshConversion& result) {
 
 void review_surface(const Mesh& mesh, MeshConversion& result) {
   const TriangleSurface written = read_stl(result.output);
-  result.vertices = static_cast<std::size_t>(written.vertices.rows());
+  result.vertices = written.vertices.rows();
   result.facets = written.triangles.size();
   result.not_kept = {"the elements: " + tetrahedra_text(mesh.tetrahedra.size(), order_of(mesh)) + ", " +
                          counted(mesh.prisms.size(), "prism"),

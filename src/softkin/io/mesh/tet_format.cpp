@@ -89,7 +89,7 @@ Sidecar read_rows(const fs::path& path, Index rows, const char* items) {
 }
 
 void add_chambers(const fs::path& path, Mesh& mesh) {
-  Sidecar sidecar = read_rows(path, static_cast<Index>(mesh.tetrahedra.size()), "tets");
+  Sidecar sidecar = read_rows(path, mesh.tetrahedra.size(), "tets");
   for (std::size_t i = 0; i < sidecar.columns.size(); ++i) {
     if (sidecar.columns[i].empty()) continue;
     Region region;
@@ -100,7 +100,7 @@ void add_chambers(const fs::path& path, Mesh& mesh) {
 }
 
 void add_handle_and_rigid(const fs::path& path, Mesh& mesh) {
-  Sidecar sidecar = read_rows(path, static_cast<Index>(mesh.vertices.rows()), "vertices");
+  Sidecar sidecar = read_rows(path, mesh.vertices.rows(), "vertices");
   if (sidecar.bare || sidecar.columns.size() != 2)
     throw InvalidInput({path.string(), 1}, "rows must be id:handle:rigid:");
   const char* const names[2] = {"handle", "rigid"};
@@ -150,7 +150,7 @@ Mesh read_tet(const fs::path& path) {
     for (int axis = 1; axis < 3; ++axis) mesh.vertices(i, axis) = on_line(scanner, "coordinate").real("coordinate");
     scanner.end_line();
   }
-  mesh.tetrahedra.resize(static_cast<std::size_t>(tetrahedra));
+  mesh.tetrahedra.resize(tetrahedra);
   for (Tetrahedron& element : mesh.tetrahedra) {
     if (read_label(scanner, "number of vertices") != 4) scanner.fail("an element must have 4 vertices");
     for (Index& vertex : element)

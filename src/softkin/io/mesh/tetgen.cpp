@@ -107,7 +107,7 @@ void read_tetrahedra(const fs::path& path, Index first, Mesh& mesh) {
   const Index attributes = file.option("number of attributes", max_columns, 0);
   scanner.end_line();
   LabelledRegions regions;
-  mesh.tetrahedra.resize(static_cast<std::size_t>(count));
+  mesh.tetrahedra.resize(count);
   for (Index i = 0; i < count; ++i) {
     file.entry_number(first + i);
     file.vertices(mesh.tetrahedra[i], first, mesh);

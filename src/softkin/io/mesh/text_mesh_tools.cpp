@@ -39,7 +39,7 @@ std::string_view trimmed(std::string_view text) {
 }
 
 Index read_index(Scanner& scanner, const char* what, Index low, Index high) {
-  return static_cast<Index>(scanner.integer(what, low, high));
+  return scanner.integer(what, low, high);
 }
 
 Index read_count(Scanner& scanner, const char* items, Index low, std::size_t bytes_each) {

@@ -181,7 +181,7 @@ class GridMeshBuilder {
     std::array<Index, N> cell;
     std::copy_n(vertices, N, cell.begin());
     cells.push_back(cell);
-    return static_cast<Index>(cells.size() - 1);
+    return cells.size() - 1;
   }
 
   const CellGrid& grid_;

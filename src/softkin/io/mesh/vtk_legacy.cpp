@@ -100,7 +100,7 @@ class LegacyReader {
     if (keyword == "POINTS") return read_points();
     if (keyword == "CELLS") return read_cells();
     if (keyword == "CELL_TYPES") return read_cell_types();
-    if (keyword == "POINT_DATA") return begin_attributes(static_cast<std::size_t>(grid_.points.rows()), false);
+    if (keyword == "POINT_DATA") return begin_attributes(grid_.points.rows(), false);
     if (keyword == "CELL_DATA") return begin_attributes(cell_count(), true);
     if (keyword == "METADATA") return skip_metadata();
     if (keyword == "FIELD") return read_field();
@@ -182,7 +182,7 @@ class LegacyReader {
       if (i == 0 ? offset != 0 : offset <= last)
         scanner_.fail(i == 0 ? "OFFSETS must begin with 0"
                              : "OFFSETS must ascend: " + std::to_string(offset) + " after " + std::to_string(last));
-      if (i > 0) grid_.starts.push_back(static_cast<std::size_t>(offset));
+      if (i > 0) grid_.starts.push_back(offset);
     }
     if (std::cmp_not_equal(grid_.starts.back(), size))
       scanner_.fail("OFFSETS end with " + std::to_string(grid_.starts.back()) + ", but CONNECTIVITY has " +
@@ -192,7 +192,7 @@ class LegacyReader {
     const NumberType type = integer_type_token("CONNECTIVITY");
     begin_data();
     numbers().require(static_cast<std::uint64_t>(size), type, "vertices of cells");
-    grid_.connectivity.reserve(static_cast<std::size_t>(size));
+    grid_.connectivity.reserve(size);
     for (std::int64_t i = 0; i < size; ++i) grid_.connectivity.push_back(vertex(type));
   }
 
@@ -348,7 +348,7 @@ class LegacyReader {
     if (index < 0 || index >= grid_.points.rows())
       scanner_.fail("vertex of a cell is " + std::to_string(index) + ", outside 0 to " +
                     std::to_string(grid_.points.rows() - 1));
-    return static_cast<Index>(index);
+    return index;
   }
 
   Scanner scanner_;

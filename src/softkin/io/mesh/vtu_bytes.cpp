@@ -97,7 +97,7 @@ class VtuBytes {
     }
     for (int i = 0; i < 3; ++i) pending_[i] = static_cast<char>(bits >> (16 - 8 * i) & 0xFF);
     pending_begin_ = 0;
-    pending_end_ = static_cast<std::size_t>(3 - padding);
+    pending_end_ = 3 - padding;
     padded_ = padding > 0;
   }
 

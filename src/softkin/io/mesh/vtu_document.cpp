@@ -134,7 +134,7 @@ std::vector<std::string> VtuDocument::strings(pugi::xml_node array) const {
 
 Origin VtuDocument::origin(pugi::xml_node node) const {
   const std::ptrdiff_t offset = node.offset_debug();
-  return {file_, offset < 0 ? 0 : line_of(content_, static_cast<std::size_t>(offset))};
+  return {file_, offset < 0 ? 0 : line_of(content_, offset)};
 }
 
 void VtuDocument::fail(pugi::xml_node node, const std::string& message) const {
@@ -170,7 +170,7 @@ void VtuDocument::parse(const std::string& head) {
   const pugi::xml_parse_result result =
       xml_.load_buffer(head.data(), head.size(), pugi::parse_default, pugi::encoding_utf8);
   if (!result)
-    throw InvalidInput({file_, line_of(content_, static_cast<std::size_t>(std::max<std::ptrdiff_t>(result.offset, 0)))},
+    throw InvalidInput({file_, line_of(content_, std::max<std::ptrdiff_t>(result.offset, 0))},
                        std::string("not well-formed XML: ") + result.description());
 }
 
@@ -204,7 +204,7 @@ VtuDocument::Range VtuDocument::inline_text(pugi::xml_node array) const {
     found = node;
   }
   if (!found) fail(array, "array '" + text(array, "Name") + "' has no data");
-  const std::size_t begin = static_cast<std::size_t>(found.offset_debug());
+  const std::size_t begin = found.offset_debug();
   return {begin, content_.find('<', begin)};
 }
 

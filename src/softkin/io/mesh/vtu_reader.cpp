@@ -37,10 +37,10 @@ void read_types(const VtuDocument& document, pugi::xml_node cells, std::size_t c
     if (offsets[cell] <= last)
       document.fail(offset_array, "array 'offsets' must ascend: cell " + std::to_string(cell) + " ends at " +
                                       std::to_string(offsets[cell]) + ", the cell before at " + std::to_string(last));
-    const std::string refusal = cell_refusal(cell, types[cell], static_cast<std::size_t>(offsets[cell] - last));
+    const std::string refusal = cell_refusal(cell, types[cell], offsets[cell] - last);
     if (!refusal.empty()) document.fail(type_array, refusal);
     grid.types.push_back(static_cast<std::uint8_t>(types[cell]));
-    grid.starts.push_back(static_cast<std::size_t>(offsets[cell]));
+    grid.starts.push_back(offsets[cell]);
   }
 }
 
@@ -55,7 +55,7 @@ void read_connectivity(const VtuDocument& document, pugi::xml_node cells, CellGr
                                " has the vertex " + std::to_string(vertex) + ", outside 0 to " +
                                std::to_string(grid.points.rows() - 1));
     }
-    grid.connectivity.push_back(static_cast<Index>(vertex));
+    grid.connectivity.push_back(vertex);
   }
 }
 
@@ -135,7 +135,7 @@ CellGrid read_cells(const VtuDocument& document, pugi::xml_node piece) {
   grid.points = points_of(document, piece);
   const std::int64_t count = document.integer(piece, "NumberOfCells", 1, kMost);
   const pugi::xml_node cells = document.child(piece, "Cells");
-  read_types(document, cells, static_cast<std::size_t>(count), grid);
+  read_types(document, cells, count, grid);
   read_connectivity(document, cells, grid);
   return grid;
 }
@@ -148,12 +148,12 @@ CellVectors read_vtu_cell_vectors(const std::filesystem::path& path, const std::
   const CellGrid grid = read_cells(document, piece);
   const pugi::xml_node array = document.array(document.child(piece, "CellData"), name);
   if (document.components(array) != 3) document.fail(array, "array '" + name + "' must have three components");
-  const auto count = static_cast<Index>(grid.types.size());
+  const Index count = grid.types.size();
   const std::vector<double> values = document.reals(array, 3 * static_cast<std::uint64_t>(count));
   CellVectors vectors{Points::Zero(count, 3), Eigen::Map<const Points>(values.data(), count, 3)};
   for (Index cell = 0; cell < count; ++cell) {
     const std::size_t begin = grid.starts[cell];
-    const std::size_t end = grid.starts[static_cast<std::size_t>(cell) + 1];
+    const std::size_t end = grid.starts[cell + 1];
     for (std::size_t i = begin; i < end; ++i)
       vectors.centers.row(cell) += grid.points.row(grid.connectivity[i]) / static_cast<double>(end - begin);
   }

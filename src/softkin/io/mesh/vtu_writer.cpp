@@ -52,7 +52,7 @@ class VtuWriter {
   VtuWriter(std::string file, const VtuContent& content)
       : file_(std::move(file)),
         content_(content),
-        points_(static_cast<std::size_t>(content.points.rows())),
+        points_(content.points.rows()),
         cells_(content.tetrahedra.size() + content.prisms.size() + content.triangles.size() +
                (content.cloud ? points_ : 0)) {}
 
@@ -80,8 +80,7 @@ class VtuWriter {
   void check() const {
     if (points_ == 0) fail("nothing to write: there are no points");
     for (std::size_t i = 0; i < points_; ++i)
-      if (!content_.points.row(static_cast<Index>(i)).allFinite())
-        fail("points: point " + std::to_string(i) + " is not finite");
+      if (!content_.points.row(i).allFinite()) fail("points: point " + std::to_string(i) + " is not finite");
     check_vertices(content_.tetrahedra, "tetrahedron");
     check_vertices(content_.edge_nodes, "tetrahedron");
     check_vertices(content_.prisms, "prism");
@@ -206,7 +205,7 @@ class VtuWriter {
       end_cell(5);
     }
     for (std::size_t i = 0; content_.cloud && i < points_; ++i) {
-      connectivity.push_back(static_cast<Index>(i));
+      connectivity.push_back(i);
       end_cell(1);
     }
     xml_ += "<Cells>\n";

@@ -159,7 +159,7 @@ double distance_to(const Canvas::Stroke& stroke, const Canvas::Place& p) {
 bool glyph_cell(char character, int column, int row) {
   if (column < 0 || column >= glyph_columns || row < 0 || row >= glyph_rows) return false;
   const char* glyph = character >= 32 && character <= 126 ? glyphs[character - 32] : box;
-  const auto place = static_cast<std::size_t>(row * (glyph_columns + 1) + column);
+  const std::size_t place = row * (glyph_columns + 1) + column;
   return place < std::strlen(glyph) && glyph[place] == '#';
 }
 

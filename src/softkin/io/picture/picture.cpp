@@ -79,7 +79,7 @@ class Checker {
   void check(const PictureLayer& layer, const std::string& where) const {
     for (Eigen::Index i = 0; i < layer.points.rows(); ++i)
       if (!layer.points.row(i).allFinite()) refuse(where + "point " + std::to_string(i) + " is not finite");
-    const auto points = static_cast<std::size_t>(layer.points.rows());
+    const std::size_t points = layer.points.rows();
     if (!layer.values.empty() && layer.values.size() != points)
       refuse(where + std::to_string(layer.values.size()) + " values for " + std::to_string(points) + " points");
     for (std::size_t i = 0; i < layer.values.size(); ++i)

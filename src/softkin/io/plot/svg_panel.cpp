@@ -151,7 +151,7 @@ int SvgPanel::style_of(std::size_t series) const {
 
 SvgStroke SvgPanel::stroke_of(std::size_t series) const {
   if (panel_.series[series].pale) return {pale_color, panel_.series[series].width, "", "none"};
-  const auto style = static_cast<std::size_t>(style_of(series));
+  const std::size_t style = style_of(series);
   return {colors[style % colors.size()], panel_.series[series].width, dashes[style % dashes.size()], "none"};
 }
 

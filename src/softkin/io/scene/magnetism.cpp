@@ -175,9 +175,8 @@ namespace {
 
 Points read_triples(const Node& node, double unit) {
   const auto& items = list(node);
-  Points triples(static_cast<Index>(items.size()), 3);
-  for (std::size_t i = 0; i < items.size(); ++i)
-    triples.row(static_cast<Index>(i)) = unit * read_vector(*items[i]).transpose();
+  Points triples(items.size(), 3);
+  for (std::size_t i = 0; i < items.size(); ++i) triples.row(i) = unit * read_vector(*items[i]).transpose();
   return triples;
 }
 

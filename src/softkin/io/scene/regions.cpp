@@ -17,7 +17,7 @@ std::vector<Index> read_indices(const Node& node, std::int64_t count, const std:
     if (index >= count)
       fail(*item, item->name + " is " + item->text + ", but the mesh has " + std::to_string(count) + " " + what +
                       ", numbered from 0");
-    indices.push_back(static_cast<Index>(index));
+    indices.push_back(index);
   }
   if (indices.empty()) fail(node, node.name + " is an empty list");
   sort_unique(indices);

@@ -281,7 +281,7 @@ std::size_t choice(const Node& node, const Keys& choices) {
   if (found == choices.end())
     fail(node,
          node.name + " must be " + (choices.size() > 1 ? "one of " : "") + joined(choices) + ", not " + excerpt(value));
-  return static_cast<std::size_t>(found - choices.begin());
+  return found - choices.begin();
 }
 
 const std::vector<std::shared_ptr<const Node>>& list(const Node& node) {

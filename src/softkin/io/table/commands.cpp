@@ -156,7 +156,7 @@ class CommandReader {
     const std::vector<ActuationStep> steps = PathReader(model_, table_, Settings(model_.actuators.size())).steps();
     for (std::size_t row = 0; row < steps.size(); ++row) {
       const Eigen::VectorXd pressures =
-          pressures_.empty() ? Eigen::VectorXd::Zero(static_cast<Index>(model_.actuators.size())) : pressures_[row];
+          pressures_.empty() ? Eigen::VectorXd::Zero(model_.actuators.size()) : pressures_[row];
       commands_.rows.push_back({steps[row].actuation, pressures, steps[row].time, steps[row].line});
     }
     if (std::filesystem::path(report).extension() == ".csv")
@@ -169,7 +169,7 @@ class CommandReader {
  private:
   /// Moves the columns of pressures out of the table.
   void take_pressures() {
-    pressures_.assign(table_.rows.size(), Eigen::VectorXd::Zero(static_cast<Index>(model_.actuators.size())));
+    pressures_.assign(table_.rows.size(), Eigen::VectorXd::Zero(model_.actuators.size()));
     for (std::size_t column = 0; column < table_.columns.size();) {
       const auto a = chamber_of(table_.columns[column]);
       if (!a) {
@@ -218,7 +218,7 @@ class CommandReader {
       throw InvalidInput({file}, "it is of chambers " + names_of(curves.chambers) + ", but " + commands_.file +
                                      " commands " + names_of(chambers) + " by volume");
     for (CommandRow& row : commands_.rows) {
-      Eigen::VectorXd asked(static_cast<Index>(chambers.size()));
+      Eigen::VectorXd asked(chambers.size());
       for (std::size_t k = 0; k < chambers.size(); ++k) asked[k] = row.actuation[chambers[k]];
       const std::vector<Eigen::VectorXd> found = curves.pressures_for(asked);
       if (found.size() != 1)

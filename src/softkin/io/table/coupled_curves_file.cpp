@@ -86,7 +86,7 @@ std::map<std::size_t, std::size_t> rows_of_nodes(const CsvTable& table, const st
     for (std::size_t k = 0; k < columns.size(); ++k) {
       const std::vector<double>& axis = curves.pressures_kPa[k];
       const auto at = std::lower_bound(axis.begin(), axis.end(), table.rows[row][columns[k].pressure]);
-      places.push_back(static_cast<std::size_t>(at - axis.begin()));
+      places.push_back(at - axis.begin());
     }
     const auto [other, is_new] = row_of.emplace(curves.node(places), row);
     if (!is_new)

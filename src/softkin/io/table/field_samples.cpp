@@ -27,7 +27,7 @@ FieldSamples samples_of_csv(const std::filesystem::path& path, const SampleKind&
     if (std::find(of.columns.begin(), of.columns.end(), column) == of.columns.end())
       table.fail_header("unknown column '" + column + "'; " + of.name + " has x_mm, y_mm, z_mm, " + of.columns[3] +
                         ", " + of.columns[4] + ", " + of.columns[5]);
-  const auto count = static_cast<Index>(table.rows.size());
+  const Index count = table.rows.size();
   FieldSamples samples{path.string(), Points(count, 3), Points(count, 3), true, table.lines};
   for (Index i = 0; i < 6; ++i) {
     const char* name = of.columns[i];
@@ -49,7 +49,7 @@ void find_planes(const FieldSamples& samples, Index axis, GridField& grid) {
   std::sort(at.begin(), at.end());
   const double rounding = 1e-9 * (at.back() - at.front());
   at.erase(std::unique(at.begin(), at.end(), [&](double a, double b) { return b - a <= rounding; }), at.end());
-  const auto count = static_cast<Index>(at.size());
+  const Index count = at.size();
   const std::string name(1, "xyz"[axis]);
   if (count < 4)
     throw InvalidInput({samples.file},
@@ -92,9 +92,9 @@ GridField grid_of(const FieldSamples& samples) {
   std::size_t points = 1;
   for (Index axis = 0; axis < 3; ++axis) {
     find_planes(samples, axis, grid);
-    points *= static_cast<std::size_t>(grid.counts[axis]);
+    points *= grid.counts[axis];
   }
-  const auto rows = static_cast<std::size_t>(samples.places.rows());
+  const std::size_t rows = samples.places.rows();
   const std::string size = std::to_string(grid.counts[0]) + " x " + std::to_string(grid.counts[1]) + " x " +
                            std::to_string(grid.counts[2]) + " places";
   if (rows < points)
@@ -106,11 +106,10 @@ GridField grid_of(const FieldSamples& samples) {
     std::size_t place = 0;
     for (Index axis = 2; axis >= 0; --axis)
       place = place * static_cast<std::size_t>(grid.counts[axis]) +
-              static_cast<std::size_t>(
-                  std::lround((samples.places(static_cast<Index>(row), axis) - grid.low[axis]) / grid.step[axis]));
+              static_cast<std::size_t>(std::lround((samples.places(row, axis) - grid.low[axis]) / grid.step[axis]));
     if (there[place]) fail(samples, row, "this place of the grid of " + size + " is there twice");
     there[place] = true;
-    grid.per_ampere[place] = samples.values.row(static_cast<Index>(row)).transpose();
+    grid.per_ampere[place] = samples.values.row(row).transpose();
   }
   return grid;
 }

@@ -71,7 +71,7 @@ class PathColumns {
   }
 
   static std::size_t place(const MarkerPath& path, Index marker) {
-    return static_cast<std::size_t>(std::find(path.markers.begin(), path.markers.end(), marker) - path.markers.begin());
+    return std::find(path.markers.begin(), path.markers.end(), marker) - path.markers.begin();
   }
 
  private:
@@ -101,7 +101,7 @@ class PathColumns {
     if (found == names_.end())
       table_.fail_header("column " + excerpt(column) + ": no marker " + excerpt(wanted) +
                          (names_.empty() ? "; the scene has none" : suggest_name(wanted, names_)));
-    return static_cast<Index>(found - names_.begin());
+    return found - names_.begin();
   }
 
   const CsvTable& table_;

@@ -33,7 +33,7 @@ OutlinesByPicture read_outlines(const CsvTable& table) {
     if (!(number >= 1 && number <= most_pictures && number == std::floor(number)))
       table.fail(row, std::string("column '") + picture_column + "': expected the number of a picture, 1 or more");
     const Eigen::Vector2d point(table.rows[row][x], table.rows[row][y]);
-    std::vector<Eigen::Vector2d>& points = outlines[number];
+    std::vector<Eigen::Vector2d>& points = outlines[static_cast<Index>(number)];
     if (points.empty() || points.back() != point) points.push_back(point);
   }
   for (auto& [number, points] : outlines) {

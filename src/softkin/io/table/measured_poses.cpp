@@ -50,14 +50,14 @@ class DotColumns {
       if (std::any_of(at_.begin(), at_.end(), [&](const auto& dot) { return dot[axis].has_value(); }))
         dots.axes.push_back(axis);
     dots.names = names_;
-    dots.places.resize(static_cast<Index>(table_.rows.size()), static_cast<Index>(names_.size() * dots.axes.size()));
+    dots.places.resize(table_.rows.size(), names_.size() * dots.axes.size());
     Index c = 0;
     for (std::size_t d = 0; d < names_.size(); ++d) {
       for (const int axis : dots.axes) {
         if (!at_[d][axis])
           table_.fail_header("column '" + name_of(d, axis) + "' is missing: all dots have the same coordinates");
         for (std::size_t row = 0; row < table_.rows.size(); ++row)
-          dots.places(static_cast<Index>(row), c) = table_.rows[row][*at_[d][axis]];
+          dots.places(row, c) = table_.rows[row][*at_[d][axis]];
         ++c;
       }
       check(d, dots);
@@ -68,7 +68,7 @@ class DotColumns {
  private:
   void add(const std::string& name, int axis, std::size_t at) {
     const auto known = std::find(names_.begin(), names_.end(), name);
-    const auto d = static_cast<std::size_t>(known - names_.begin());
+    const std::size_t d = known - names_.begin();
     if (known == names_.end()) {
       names_.push_back(name);
       at_.emplace_back();
@@ -128,10 +128,9 @@ class Columns {
     poses.columns = readings_;
     poses.lines = table_.lines;
     add_commands(poses);
-    poses.values.resize(static_cast<Index>(table_.rows.size()), static_cast<Index>(at_.size()));
+    poses.values.resize(table_.rows.size(), at_.size());
     for (std::size_t row = 0; row < table_.rows.size(); ++row)
-      for (std::size_t c = 0; c < at_.size(); ++c)
-        poses.values(static_cast<Index>(row), static_cast<Index>(c)) = table_.rows[row][at_[c]];
+      for (std::size_t c = 0; c < at_.size(); ++c) poses.values(row, c) = table_.rows[row][at_[c]];
     poses.dots = dots_.dots();
     const auto any_read = [](const Eigen::MatrixXd& values) { return (values.array() == values.array()).any(); };
     if (picture_) add_pictures(poses);
@@ -209,7 +208,7 @@ class Columns {
                          (names.empty() ? "; the scene has none" : suggest_name(name, names)));
     }
     for (std::size_t a = 0; a < model_.actuators.size(); ++a)
-      if (const auto read = reading_of(column, static_cast<Index>(a))) return read;
+      if (const auto read = reading_of(column, a)) return read;
     for (std::size_t s = 0; s < model_.sensors.size(); ++s) {
       const Sensor& sensor = *model_.sensors[s];
       for (int axis = 0; sensor.kind == SensorKind::direction && axis < 3; ++axis)

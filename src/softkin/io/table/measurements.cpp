@@ -65,7 +65,7 @@ class MeasurementTable : public CsvTable {
   [[nodiscard]] std::size_t index(const std::string& name) const {
     const auto found =
         std::find_if(quantities_.begin(), quantities_.end(), [&](const Quantity& q) { return q.name == name; });
-    return static_cast<std::size_t>(found - quantities_.begin());
+    return found - quantities_.begin();
   }
 
   void place(const std::string& column, int at) {

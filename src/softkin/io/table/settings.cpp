@@ -231,7 +231,7 @@ Index read_body(const Model& model, const std::string& option, const std::string
     throw InvalidInput(option + ": there are " + std::to_string(names.size()) + " bodies, " + names[0] + ", " +
                        names[1] + (names.size() > 2 ? ", ..." : "") + ": say which one is pulled");
   for (std::size_t b = 0; b < names.size(); ++b)
-    if (name.empty() || names[b] == name) return static_cast<Index>(b);
+    if (name.empty() || names[b] == name) return b;
   throw InvalidInput(option + ": there is no body " + excerpt(name) + suggest_name(name, names));
 }
 
@@ -239,7 +239,7 @@ Vec3 read_direction(const std::string& option, const std::string& text) {
   const bool minus = text.starts_with('-');
   const std::string axis = text.substr(minus ? 1 : 0);
   const std::size_t named = axis.size() == 1 ? std::string("xyz").find(axis) : std::string::npos;
-  if (named != std::string::npos) return (minus ? -1 : 1) * Vec3::Unit(static_cast<Index>(named));
+  if (named != std::string::npos) return (minus ? -1 : 1) * Vec3::Unit(named);
   Vec3 direction;
   char rest = 0;
   if (std::sscanf(text.c_str(), "%lf,%lf,%lf%c", &direction[0], &direction[1], &direction[2], &rest) != 3 ||

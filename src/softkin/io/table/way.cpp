@@ -8,7 +8,7 @@ Points read_way(const std::filesystem::path& path) {
   for (const std::string& column : table.columns)
     if (column != "x_mm" && column != "y_mm" && column != "z_mm")
       table.fail_header("unknown column '" + column + "'; a way has x_mm, y_mm, z_mm");
-  Points corners(static_cast<Index>(table.rows.size()), 3);
+  Points corners(table.rows.size(), 3);
   for (Index axis = 0; axis < 3; ++axis) {
     const std::string name = std::string(1, "xyz"[axis]) + "_mm";
     const auto column = table.find(name);

@@ -94,7 +94,7 @@ class SampleReader {
     std::int64_t value = 0;
     if (!parse_integer(text, value) || value < 0 || value > std::numeric_limits<Index>::max())
       fail(std::string("column '") + column + "' must hold a whole number, not " + excerpt(text));
-    return static_cast<Index>(value);
+    return value;
   }
 
   double real(const std::string& column) { return real(cell(), column); }
@@ -119,7 +119,7 @@ class SampleReader {
     ended_ = false;
     WorkspaceSample sample;
     sample.number = integer("sample");
-    sample.actuation.resize(static_cast<Index>(columns_.actuators.size()));
+    sample.actuation.resize(columns_.actuators.size());
     for (Index a = 0; a < sample.actuation.size(); ++a) sample.actuation[a] = real(columns_.actuators[a]);
     const std::size_t values = cursor_;
     for (std::size_t i = 0; i < columns_.markers.size() + columns_.loads.size(); ++i) (void)cell();

@@ -85,7 +85,7 @@ Eigen::VectorXd Fitter::step_of(const Guess& at, const Normal& normal, double da
   }
   Eigen::VectorXd step = solve_symmetric(matrix, right);
   for (std::size_t f = 0; f < variables.forces().size(); ++f) {
-    auto slide = step.segment<2>(variables.numbers() + 2 * static_cast<Index>(f));
+    auto slide = step.segment<2>(variables.numbers() + 2 * f);
     const double most = longest_slide * std::sqrt(variables.forces()[f].patch->covariance().trace());
     if (slide.norm() > most) slide *= most / slide.norm();
   }

@@ -14,10 +14,10 @@ Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance) {
   const SymmetricEigen eigen = symmetric_eigen(covariance);
   const double largest = eigen.values.maxCoeff();
   std::vector<Index> spanned;
-  for (Index k = 0; k < static_cast<Index>(eigen.values.size()); ++k)
+  for (Index k = 0; k < std::ssize(eigen.values); ++k)
     if (eigen.values[k] > least_spanned * largest) spanned.push_back(k);
   Eigen::MatrixXd root(covariance.rows(), static_cast<Index>(spanned.size()));
-  for (Index c = 0; c < static_cast<Index>(spanned.size()); ++c)
+  for (Index c = 0; c < std::ssize(spanned); ++c)
     root.col(c) = std::sqrt(eigen.values[spanned[c]]) * eigen.vectors.col(spanned[c]);
   return root;
 }
@@ -43,17 +43,17 @@ Eigen::MatrixXd product_covariance(const Variables& variables, const FreeForce& 
 }  // namespace
 
 Memory::Memory(const Variables& variables) : variables_(variables) {
-  const Index numbers = variables.numbers(), size = numbers + 9 * static_cast<Index>(variables.forces().size());
+  const Index numbers = variables.numbers(), size = numbers + 9 * std::ssize(variables.forces());
   mean_.setZero(size);
   mean_.head(numbers) = variables.means();
   from_y_.setZero(size, numbers);
   for (Index i = 0; i < numbers; ++i) from_y_(i, i) = variables.all()[i].deviation;
   for (std::size_t f = 0; f < variables.forces().size(); ++f) {
     const Eigen::MatrixXd root = root_of(product_covariance(variables, variables.forces()[f]));
-    const Index columns = static_cast<Index>(from_y_.cols()), more = static_cast<Index>(root.cols());
+    const Index columns = from_y_.cols(), more = root.cols();
     from_y_.conservativeResize(Eigen::NoChange, columns + more);
     from_y_.rightCols(more).setZero();
-    from_y_.block(numbers + 9 * static_cast<Index>(f), columns, 9, more) = root;
+    from_y_.block(numbers + 9 * f, columns, 9, more) = root;
   }
   // columns are orthogonal
   to_y_ = from_y_.colwise().squaredNorm().cwiseInverse().transpose().asDiagonal() * from_y_.transpose();
@@ -73,7 +73,7 @@ Eigen::VectorXd Memory::sums(const Eigen::VectorXd& values, const std::vector<Pl
     const Vec3 way = force.patch->at(places[f], variables_.model().rest) - force.patch->middle();
     for (Index axis = 0; axis < 3; ++axis)
       if (const Index v = force.variables[axis]; v >= 0)
-        sums.segment<3>(variables_.numbers() + 9 * static_cast<Index>(f) + 3 * axis) = values[v] * way;
+        sums.segment<3>(variables_.numbers() + 9 * f + 3 * axis) = values[v] * way;
   }
   return sums;
 }
@@ -93,9 +93,9 @@ Eigen::MatrixXd Memory::slopes(const Eigen::VectorXd& values, const std::vector<
     for (Index axis = 0; axis < 3; ++axis) {
       const Index v = force.variables[axis];
       if (v < 0) continue;
-      const Index row = numbers + 9 * static_cast<Index>(f) + 3 * axis;
+      const Index row = numbers + 9 * f + 3 * axis;
       slopes.block<3, 1>(row, v) = way;
-      slopes.block<3, 2>(row, numbers + 2 * static_cast<Index>(f)) = values[v] * tangents;
+      slopes.block<3, 2>(row, numbers + 2 * f) = values[v] * tangents;
     }
   }
   return to_y_ * slopes;
@@ -115,14 +115,14 @@ void Memory::add(const Eigen::MatrixXd& by_parts, const std::vector<Place>& base
     for (Index axis = 0; axis < 3; ++axis) {
       const Index v = force.variables[axis];
       for (Index t = 0; v >= 0 && t < 2; ++t, ++part) {
-        parts.block<1, 3>(part, numbers + 9 * static_cast<Index>(f) + 3 * axis) = tangents.col(t).transpose();
+        parts.block<1, 3>(part, numbers + 9 * f + 3 * axis) = tangents.col(t).transpose();
         parts(part, v) = tangents.col(t).dot(from);
       }
     }
   }
   const Eigen::MatrixXd by_y = by_parts * parts * from_y_;
   Eigen::VectorXd target = by_y * at(values, places);
-  for (Index r = 0; r < static_cast<Index>(weights.size()); ++r) target[r] -= weights[r] > 0 ? missed[r] : 0;
+  for (Index r = 0; r < std::ssize(weights); ++r) target[r] -= weights[r] > 0 ? missed[r] : 0;
   information_ += by_y.transpose() * weights.asDiagonal() * by_y;
   pull_ += by_y.transpose() * weights.cwiseProduct(target);
 }
@@ -131,7 +131,7 @@ void Memory::fade(double share) {
   const double kept = share * share;
   const SymmetricEigen eigen = symmetric_eigen(information_);
   Eigen::VectorXd along = eigen.vectors.transpose() * pull_, faded(along.size());
-  for (Index k = 0; k < static_cast<Index>(along.size()); ++k) {
+  for (Index k = 0; k < std::ssize(along); ++k) {
     const double told = std::max(0.0, eigen.values[k]);  // deviation before is 1
     faded[k] = kept * told / (1 + (1 - kept) * told);
     along[k] *= share * (1 + faded[k]) / (1 + told);

@@ -52,7 +52,7 @@ struct Weighted {
 Weighted weighted(const Fit& fit, const ReadingGroup& group, const Eigen::VectorXd& values,
                   const Eigen::VectorXd& weights) {
   const std::vector<Index> read = read_of(group, weights);
-  const auto count = static_cast<Index>(read.size());
+  const Index count = read.size();
   Weighted of{Eigen::MatrixXd(count, fit.slopes.cols()), Eigen::VectorXd(count)};
   for (Index i = 0; i < count; ++i) {
     const Index r = read[i];
@@ -69,7 +69,7 @@ Judgement judge(const Fit& fit, const std::vector<ReadingGroup>& groups, const E
   double chi_square = 0;
   for (const ReadingGroup& group : groups) {
     const auto [own, off] = weighted(fit, group, values, weights);
-    const auto count = static_cast<Index>(off.size());
+    const Index count = off.size();
     const Eigen::MatrixXd told = own * factor.solve(Eigen::MatrixXd(own.transpose()));
     const Eigen::MatrixXd left = (1 + least_variance) * Eigen::MatrixXd::Identity(count, count) - told;
     chi_square += off.squaredNorm();
@@ -85,7 +85,7 @@ Judgement judge(const Fit& fit, const std::vector<ReadingGroup>& groups, const E
 bool agrees_with(const Fit& fit, const ReadingGroup& group, const Eigen::VectorXd& values,
                  const Eigen::VectorXd& weights) {
   const auto [own, off] = weighted(fit, group, values, weights);
-  const auto count = static_cast<Index>(off.size());
+  const Index count = off.size();
   const CholeskyFactor factor(fit.normal.matrix);
   const Eigen::MatrixXd spread =
       Eigen::MatrixXd::Identity(count, count) + own * factor.solve(Eigen::MatrixXd(own.transpose()));

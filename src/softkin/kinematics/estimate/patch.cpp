@@ -20,7 +20,7 @@ std::vector<Triangle> triangles_of(const std::vector<CavityFace>& faces) {
 /// In the order of CavityFace: corners, then the nodes on the edges 01, 12, 20.
 Eigen::VectorXd shape_of(std::size_t nodes, const Place& place) {
   const double u = place.u, v = place.v, w = 1 - u - v;
-  Eigen::VectorXd shape(static_cast<Index>(nodes));
+  Eigen::VectorXd shape(nodes);
   if (nodes == 3)
     shape << w, u, v;
   else
@@ -55,7 +55,7 @@ Patch::Patch(const Model& model, std::vector<CavityFace> faces)
   for (const CavityFace& face : faces_) {
     std::vector<Index>& own = of_face_.emplace_back();
     for (const Index v : nodes_of(face))
-      own.push_back(static_cast<Index>(std::lower_bound(nodes_.begin(), nodes_.end(), v) - nodes_.begin()));
+      own.push_back(std::lower_bound(nodes_.begin(), nodes_.end(), v) - nodes_.begin());
   }
   measure();
 }
@@ -96,7 +96,7 @@ Patch::Shares Patch::shares(const Place& place) const {
     const Vec3 arm = vertex_at(model_.rest, nodes_[i]) - there;
     if (arm.squaredNorm() >= radius_ * radius_) continue;
     near.emplace_back(arm, found.tangents, radius_);
-    found.nodes.push_back(static_cast<Index>(i));
+    found.nodes.push_back(i);
   }
   Mat3 moments = Mat3::Zero();
   std::array<Mat3, 2> changes{Mat3::Zero(), Mat3::Zero()};
@@ -110,11 +110,11 @@ Patch::Shares Patch::shares(const Place& place) const {
   }
   const Mat3 inverse = moments.inverse();
   const Vec3 fit = inverse.col(0);
-  found.shares.resize(static_cast<Index>(near.size()));
-  found.slopes.resize(static_cast<Index>(near.size()), 2);
+  found.shares.resize(near.size());
+  found.slopes.resize(near.size(), 2);
   for (std::size_t i = 0; i < near.size(); ++i) {
     const SpotNode& node = near[i];
-    const auto row = static_cast<Index>(i);
+    const Index row = i;
     found.shares[row] = node.weight * node.basis.dot(fit);
     for (int t = 0; t < 2; ++t)
       found.slopes(row, t) = node.slope[t] * node.basis.dot(fit) - node.weight * fit[t + 1] / radius_ -
@@ -157,7 +157,7 @@ std::vector<Place> Patch::spread(std::size_t most) const {
     places.push_back({static_cast<Index>(next)});
     for (std::size_t f = 0; f < middles.size(); ++f)
       apart[f] = std::min(apart[f], (middles[f] - middles[next]).squaredNorm());
-    next = static_cast<std::size_t>(std::max_element(apart.begin(), apart.end()) - apart.begin());
+    next = std::max_element(apart.begin(), apart.end()) - apart.begin();
   }
   return places;
 }

@@ -22,7 +22,7 @@ StaticsOptions quiet(StaticsOptions options) {
 /// What was computed less the readings, where these were read.
 Eigen::VectorXd missed(const Guess& at, const Readings& read) {
   Eigen::VectorXd missed = Eigen::VectorXd::Zero(read.values.size());
-  for (Index r = 0; r < static_cast<Index>(read.values.size()); ++r)
+  for (Index r = 0; r < std::ssize(read.values); ++r)
     if (read.weights[r] > 0) missed[r] = at.computed[r] - read.values[r];
   return missed;
 }
@@ -77,8 +77,8 @@ Guess Problem::solve(const Actuation& commands, const Eigen::VectorXd& values, c
   const State& state = guess.equilibrium.state;
   Points reactions;
   if (reads_supports()) reactions = statics.measured(state).reactions;
-  guess.computed.resize(static_cast<Index>(columns_.size()));
-  for (Index r = 0; r < static_cast<Index>(columns_.size()); ++r)
+  guess.computed.resize(columns_.size());
+  for (Index r = 0; r < std::ssize(columns_); ++r)
     guess.computed[r] = reading_at(variables_.model(), columns_[r], state, reactions);
   if (!guess.computed.allFinite()) guess.computed.resize(0);
   return guess;
@@ -86,9 +86,9 @@ Guess Problem::solve(const Actuation& commands, const Eigen::VectorXd& values, c
 
 Nearby Problem::nearby(const Guess& at) const {
   std::vector<Actuation> changes = variables_.part_changes(at.places);
-  const auto own = static_cast<Index>(changes.size());
+  const Index own = changes.size();
   for (const Index a : variables_.measured())
-    changes.emplace_back(Actuation::Unit(static_cast<Index>(variables_.model().actuators.size()), a));
+    changes.emplace_back(Actuation::Unit(variables_.model().actuators.size(), a));
   Slopes all = slopes(at, changes);
   Nearby near{at.places, {}, {}};
   near.commands.of_readings = all.of_readings.rightCols(all.of_readings.cols() - own);
@@ -97,7 +97,7 @@ Nearby Problem::nearby(const Guess& at) const {
                              std::make_move_iterator(all.moves.end()));
   all.of_readings.conservativeResize(Eigen::NoChange, own);
   all.multipliers.conservativeResize(Eigen::NoChange, own);
-  all.moves.resize(static_cast<std::size_t>(own));
+  all.moves.resize(own);
   near.parts = std::move(all);
   if (variables_.stiffens()) set_stiffness_slopes(at, near.parts);
   return near;
@@ -123,7 +123,7 @@ void Problem::set_stiffness_slopes(const Guess& at, Slopes& parts) const {
   const Perturbations perturbations(statics(at.values), perturbed);
   Slopes found = slopes_of(at, perturbations.at(at.equilibrium.state, options_, slope_accuracy_, reads_supports()));
   for (std::size_t k = 0; k < numbers.size(); ++k) {
-    const Index i = numbers[k], column = static_cast<Index>(k);
+    const Index i = numbers[k], column = k;
     parts.of_readings.col(i) = found.of_readings.col(column);
     parts.multipliers.col(i) = found.multipliers.col(column);
     parts.moves[i] = std::move(found.moves[k]);
@@ -138,14 +138,13 @@ Slopes Problem::slopes(const Guess& at, const std::vector<Actuation>& changes) c
 Slopes Problem::slopes_of(const Guess& at, ParameterSensitivity found) const {
   const State& state = at.equilibrium.state;
   Slopes slopes;
-  slopes.of_readings.setZero(static_cast<Index>(columns_.size()), static_cast<Index>(found.positions.size()));
+  slopes.of_readings.setZero(columns_.size(), found.positions.size());
   const Points none;
   for (std::size_t c = 0; c < found.positions.size(); ++c) {
-    const Eigen::VectorXd multipliers = found.multipliers.col(static_cast<Index>(c));
+    const Eigen::VectorXd multipliers = found.multipliers.col(c);
     const ShapeChange change{found.positions[c], multipliers, found.reactions.empty() ? none : found.reactions[c]};
     for (std::size_t r = 0; r < columns_.size() && found.regular; ++r)
-      slopes.of_readings(static_cast<Index>(r), static_cast<Index>(c)) =
-          reading_change(variables_.model(), columns_[r], state, change);
+      slopes.of_readings(r, c) = reading_change(variables_.model(), columns_[r], state, change);
   }
   slopes.moves = std::move(found.positions);
   slopes.multipliers = std::move(found.multipliers);
@@ -166,10 +165,9 @@ Eigen::MatrixXd Problem::by_node_forces(const Guess& at, std::size_t force) cons
   const std::vector<Points> moves = statics(at.values).reciprocal_moves(state, gradients, options_, slope_accuracy_);
   if (moves.empty()) return {};
   const std::vector<Index>& nodes = variables_.forces()[force].patch->nodes();
-  Eigen::MatrixXd by(static_cast<Index>(moves.size()), 3 * static_cast<Index>(nodes.size()));
+  Eigen::MatrixXd by(moves.size(), 3 * std::ssize(nodes));
   for (std::size_t r = 0; r < moves.size(); ++r)
-    for (std::size_t i = 0; i < nodes.size(); ++i)
-      by.block<1, 3>(static_cast<Index>(r), 3 * static_cast<Index>(i)) = moves[r].row(nodes[i]);
+    for (std::size_t i = 0; i < nodes.size(); ++i) by.block<1, 3>(r, 3 * i) = moves[r].row(nodes[i]);
   return by;
 }
 
@@ -196,7 +194,7 @@ void Problem::move(const Guess& from, const Eigen::VectorXd& step, Eigen::Vector
   for (std::size_t f = 0; f < places.size(); ++f) {
     const Patch& patch = *variables_.forces()[f].patch;
     const Vec3 to = patch.at(places[f], variables_.model().rest) +
-                    patch.tangents(places[f]) * step.segment<2>(variables_.numbers() + 2 * static_cast<Index>(f));
+                    patch.tangents(places[f]) * step.segment<2>(variables_.numbers() + 2 * f);
     places[f] = patch.nearest(to);
   }
 }
@@ -207,7 +205,7 @@ Eigen::VectorXd Problem::way(const Guess& from, const Guess& to) const {
   for (std::size_t f = 0; f < to.places.size(); ++f) {
     const Patch& patch = *variables_.forces()[f].patch;
     const Points& rest = variables_.model().rest;
-    way.segment<2>(variables_.numbers() + 2 * static_cast<Index>(f)) =
+    way.segment<2>(variables_.numbers() + 2 * f) =
         patch.tangents(from.places[f]).transpose() * (patch.at(to.places[f], rest) - patch.at(from.places[f], rest));
   }
   return way;
@@ -220,9 +218,9 @@ Eigen::MatrixXd Problem::slopes(const Nearby& nearby, const Guess& at) const {
 std::vector<Points> Problem::moves(const Nearby& nearby, const Guess& at) const {
   const Eigen::MatrixXd by = variables_.part_slopes(at.values, at.places, nearby.base);
   std::vector<Points> moves;
-  for (Index c = 0; c < static_cast<Index>(by.cols()); ++c) {
+  for (Index c = 0; c < by.cols(); ++c) {
     Points& of = moves.emplace_back(Points::Zero(variables_.model().rest.rows(), 3));
-    for (Index p = 0; p < static_cast<Index>(by.rows()); ++p)
+    for (Index p = 0; p < by.rows(); ++p)
       if (by(p, c) != 0) of += by(p, c) * nearby.parts.moves[p];
   }
   return moves;
@@ -234,14 +232,14 @@ void Problem::follow(const Nearby& nearby, const Guess& from, const Guess& to, c
     computed += by.of_readings * way;
     if (state == nullptr) return;
     state->multipliers += by.multipliers * way;
-    for (Index c = 0; c < static_cast<Index>(way.size()); ++c)
+    for (Index c = 0; c < std::ssize(way); ++c)
       if (way[c] != 0) state->positions += way[c] * by.moves[c];
   };
   add(nearby.parts,
       variables_.parts(to.values, to.places, nearby.base) - variables_.parts(from.values, from.places, nearby.base));
   if (commands.size() == 0) return;
   const std::vector<Index> measured = variables_.measured();
-  Eigen::VectorXd way(static_cast<Index>(measured.size()));
+  Eigen::VectorXd way(measured.size());
   for (std::size_t i = 0; i < measured.size(); ++i) way[i] = commands[measured[i]];
   add(nearby.commands, way);
 }

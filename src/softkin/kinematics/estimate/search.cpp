@@ -51,14 +51,13 @@ Survey Searcher::survey(std::size_t force, const Guess& at, std::shared_ptr<cons
   std::vector<Index> axes;
   for (Index axis = 0; axis < 3; ++axis)
     if (variables.forces()[force].variables[axis] >= 0) axes.push_back(axis);
-  const auto count = static_cast<Index>(axes.size());
-  survey.theirs.setZero(by_nodes.rows(), count * static_cast<Index>(survey.places.size()));
+  const Index count = axes.size();
+  survey.theirs.setZero(by_nodes.rows(), count * std::ssize(survey.places));
   for (std::size_t p = 0; p < survey.places.size(); ++p) {
     const Patch::Shares shares = patch.shares(survey.places[p]);
     for (std::size_t i = 0; i < shares.nodes.size(); ++i)
       for (Index k = 0; k < count; ++k)
-        survey.theirs.col(static_cast<Index>(p) * count + k) +=
-            shares.shares[i] * by_nodes.col(3 * shares.nodes[i] + axes[k]);
+        survey.theirs.col(p * count + k) += shares.shares[i] * by_nodes.col(3 * shares.nodes[i] + axes[k]);
   }
   return survey;
 }
@@ -68,7 +67,7 @@ Survey Searcher::survey(std::size_t force, const Guess& at, std::shared_ptr<cons
 std::vector<Searcher::Ranked> Searcher::rank(std::size_t force, const Survey& survey, const Readings& readings) const {
   const Variables& variables = problem_.variables();
   const std::array<Index, 3>& components = variables.forces()[force].variables;
-  const auto axes = static_cast<Index>(survey.theirs.cols()) / static_cast<Index>(survey.places.size());
+  const Index axes = survey.theirs.cols() / std::ssize(survey.places);
   const Eigen::MatrixXd own = problem_.slopes(*survey.own, survey.at);
   Eigen::VectorXd without = survey.at.computed;
   for (const Index variable : components)
@@ -79,13 +78,13 @@ std::vector<Searcher::Ranked> Searcher::rank(std::size_t force, const Survey& su
     there.places[force] = survey.places[p];
     Eigen::MatrixXd slopes = own;
     Eigen::VectorXd reach = Eigen::VectorXd::Zero(own.rows());
-    Index next = static_cast<Index>(p) * axes;
+    Index next = p * axes;
     for (const Index variable : components) {
       if (variable < 0) continue;
       slopes.col(variable) = survey.theirs.col(next++);
       there.computed += there.values[variable] * slopes.col(variable);
     }
-    slopes.middleCols(variables.numbers() + 2 * static_cast<Index>(force), 2).setZero();
+    slopes.middleCols(variables.numbers() + 2 * force, 2).setZero();
     const Normal normal = problem_.normal(there, slopes, readings);
     const Index count = variables.numbers();
     Ranked each{0, {}, survey.places[p], 0, normal.matrix.topLeftCorner(count, count)};

@@ -27,7 +27,7 @@ std::vector<Index> commands_of(const Model& model, const std::string& name) {
 }  // namespace
 
 Variables::Variables(const Model& model, const std::vector<EstimatedUnknown>& unknowns)
-    : model_(std::make_unique<Model>(model)), own_actuators_(static_cast<Index>(model.actuators.size())) {
+    : model_(std::make_unique<Model>(model)), own_actuators_(model.actuators.size()) {
   if (model.formulation != Formulation::physical)
     throw InvalidInput({.file = model.name},
                        "forces are told in the physical formulation; this scene is of target shapes");
@@ -115,7 +115,7 @@ void Variables::add_stiffness(const EstimatedUnknown& unknown, const std::string
     for (const Material& m : model_->elements.materials) names.push_back(m.region);
     refuse("there is no material of region '" + region + "'" + suggest_name(region, names));
   }
-  const auto index = static_cast<Index>(material - model_->elements.materials.begin());
+  const Index index = material - model_->elements.materials.begin();
   if (std::any_of(variables_.begin(), variables_.end(), [&](const Variable& v) { return v.material == index; }))
     refuse("it is to be told twice");
   if (unknown.somewhere) refuse("a stiffness has no place: name a force");
@@ -165,7 +165,7 @@ Model Variables::stiffened(const Eigen::VectorXd& values) const {
 }
 
 void Variables::add_patch(const EstimatedUnknown& unknown, const std::vector<Index>& commands) {
-  const auto number = static_cast<Index>(forces_.size());
+  const Index number = forces_.size();
   FreeForce force;
   force.name = unknown.name;
   for (const Index a : commands) {
@@ -183,7 +183,7 @@ void Variables::add_patch(const EstimatedUnknown& unknown, const std::vector<Ind
 }
 
 void Variables::add_node_commands(FreeForce& force) {
-  force.first_command = static_cast<Index>(model_->actuators.size());
+  force.first_command = model_->actuators.size();
   for (const Index node : force.patch->nodes())
     for (int axis = 0; axis < 3; ++axis) {
       Actuator command;
@@ -199,7 +199,7 @@ void Variables::add_node_commands(FreeForce& force) {
 
 Actuation Variables::actuation(const Actuation& commands, const Eigen::VectorXd& values,
                                const std::vector<Place>& places) const {
-  Actuation all = Actuation::Zero(static_cast<Index>(model_->actuators.size()));
+  Actuation all = Actuation::Zero(model_->actuators.size());
   all.head(own_actuators_) = commands;
   for (Index i = 0; i < numbers(); ++i) {
     const Variable& variable = variables_[i];
@@ -220,7 +220,7 @@ std::vector<Actuation> Variables::changes_at(std::size_t number, const Place& pl
   std::vector<Actuation> changes;
   for (Index axis = 0; axis < 3; ++axis) {
     if (force.variables[axis] < 0) continue;
-    Actuation& change = changes.emplace_back(Actuation::Zero(static_cast<Index>(model_->actuators.size())));
+    Actuation& change = changes.emplace_back(Actuation::Zero(model_->actuators.size()));
     for (std::size_t i = 0; i < at.nodes.size(); ++i)
       change[force.first_command + 3 * at.nodes[i] + axis] = at.shares[i];
   }
@@ -237,7 +237,7 @@ Eigen::VectorXd Variables::parts(const Eigen::VectorXd& values, const std::vecto
     for (const Index variable : forces_[f].variables)
       for (Index t = 0; variable >= 0 && t < 2; ++t) parts.push_back(values[variable] * way[t]);
   }
-  return Eigen::Map<const Eigen::VectorXd>(parts.data(), static_cast<Index>(parts.size()));
+  return Eigen::Map<const Eigen::VectorXd>(parts.data(), parts.size());
 }
 
 Eigen::MatrixXd Variables::part_slopes(const Eigen::VectorXd& values, const std::vector<Place>& places,
@@ -253,15 +253,15 @@ Eigen::MatrixXd Variables::part_slopes(const Eigen::VectorXd& values, const std:
     for (const Index variable : forces_[f].variables)
       for (Index t = 0; variable >= 0 && t < 2; ++t, ++part) {
         slopes(part, variable) = way[t];
-        slopes.block<1, 2>(part, numbers() + 2 * static_cast<Index>(f)) = values[variable] * turned.row(t);
+        slopes.block<1, 2>(part, numbers() + 2 * f) = values[variable] * turned.row(t);
       }
   }
   return slopes;
 }
 
 std::vector<Actuation> Variables::part_changes(const std::vector<Place>& base) const {
-  const Actuation none = Actuation::Zero(static_cast<Index>(model_->actuators.size()));
-  std::vector<Actuation> changes(static_cast<std::size_t>(numbers()), none);
+  const Actuation none = Actuation::Zero(model_->actuators.size());
+  std::vector<Actuation> changes(numbers(), none);
   for (Index i = 0; i < numbers(); ++i)
     if (const Variable& variable = variables_[i]; variable.force < 0 && variable.actuator >= 0)
       changes[i][variable.actuator] = 1;
@@ -277,7 +277,7 @@ std::vector<Actuation> Variables::part_changes(const std::vector<Place>& base) c
       for (Index t = 0; t < 2; ++t) {
         Actuation& change = changes.emplace_back(none);
         for (std::size_t i = 0; i < at.nodes.size(); ++i)
-          change[force.first_command + 3 * at.nodes[i] + axis] = at.slopes(static_cast<Index>(i), t);
+          change[force.first_command + 3 * at.nodes[i] + axis] = at.slopes(i, t);
       }
     }
   }

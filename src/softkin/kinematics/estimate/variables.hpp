@@ -36,9 +36,9 @@ class Variables {
   [[nodiscard]] const Model& model() const { return *model_; }
   [[nodiscard]] const std::vector<Variable>& all() const { return variables_; }
   [[nodiscard]] const std::vector<FreeForce>& forces() const { return forces_; }
-  [[nodiscard]] Index numbers() const { return static_cast<Index>(variables_.size()); }
+  [[nodiscard]] Index numbers() const { return variables_.size(); }
   /// Of the numbers, then two tangents of each place.
-  [[nodiscard]] Index columns() const { return numbers() + 2 * static_cast<Index>(forces_.size()); }
+  [[nodiscard]] Index columns() const { return numbers() + 2 * std::ssize(forces_); }
 
   /// Of the extended robot. commands: of the robot
   [[nodiscard]] Actuation actuation(const Actuation& commands, const Eigen::VectorXd& values,

@@ -78,7 +78,7 @@ class Checker {
 
 MapCheck summed_up(const std::vector<Compared>& all, std::size_t outputs) {
   MapCheck made;
-  made.largest = made.mean = Eigen::VectorXd::Zero(static_cast<Index>(outputs));
+  made.largest = made.mean = Eigen::VectorXd::Zero(outputs);
   for (const Compared& each : all) {
     if (each.refused || !each.solved) {
       ++made.outside;
@@ -121,7 +121,7 @@ std::optional<std::string> check_map(const Statics& statics, const MapOptions& o
                                      const CheckStart& start, Crew& crew, MapData& data) {
   const std::uint64_t seed = options.seed + static_cast<std::uint64_t>(round);
   const RowMatrix commands = random_commands(data, options.checks, seed);
-  std::vector<Compared> all(static_cast<std::size_t>(options.checks));
+  std::vector<Compared> all(options.checks);
   Checker checker(statics, options, start, crew, data);
   const Index key = -1 - round;
   const bool done = crew.each(options.checks, {data.equilibria, 0, 0, "checking"}, &MapProgress::checks,

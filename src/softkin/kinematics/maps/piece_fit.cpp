@@ -24,7 +24,7 @@ PieceFit::PieceFit(const MapData& data, const Wanted& wanted, MapPiece& piece)
     : data_(data),
       wanted_(wanted),
       piece_(piece),
-      variables_(static_cast<Index>(piece.inputs.size())),
+      variables_(piece.inputs.size()),
       error_(std::numeric_limits<double>::infinity()) {
   Chart whole{Eigen::VectorXd(variables_), Eigen::VectorXd(variables_)};
   for (Index j = 0; j < variables_; ++j) {
@@ -45,7 +45,7 @@ Eigen::VectorXd PieceFit::scaled(const Chart& chart, const Eigen::VectorXd& comm
 
 /// Values and slopes of outputs and probes, over what is wanted of them.
 Observation PieceFit::observation(const Chart& chart, const Sample& sample) const {
-  const Index outputs = static_cast<Index>(data_.outputs.size());
+  const Index outputs = data_.outputs.size();
   const bool shape = wanted_.shape_mm > 0;
   const Index size = outputs + (shape ? static_cast<Index>(3 * wanted_.probes.size()) : 0);
   const Eigen::VectorXd half = 0.5 * (chart.high - chart.low);
@@ -55,7 +55,7 @@ Observation PieceFit::observation(const Chart& chart, const Sample& sample) cons
     made.values[q] = unit * sample.values[q];
     made.slopes.col(q) = unit * half.cwiseProduct(sample.slopes.col(q));
   }
-  for (Index p = 0; shape && p < static_cast<Index>(wanted_.probes.size()); ++p) {
+  for (Index p = 0; shape && p < std::ssize(wanted_.probes); ++p) {
     const Index vertex = wanted_.probes[p];
     for (Index k = 0; k < 3; ++k) {
       const Index q = outputs + 3 * p + k;
@@ -79,7 +79,7 @@ Terms PieceFit::terms_of(const Chart& chart, Index samples) const {
 }
 
 RowMatrix PieceFit::next() {
-  if (!open_.empty() && static_cast<Index>(samples_.size()) >= wanted_.most) {
+  if (!open_.empty() && std::ssize(samples_) >= wanted_.most) {
     gave_up_ = true;
     for (Chart& chart : std::exchange(open_, {}))
       if (!chart.errors.empty() && chart.errors.back() <= 1) keep(std::move(chart));  // the others: outside the map
@@ -94,7 +94,7 @@ RowMatrix PieceFit::next() {
     commands.row(0) = 0.5 * (chart.low + chart.high);
     return commands;
   }
-  RowMatrix known(static_cast<Index>(chart.samples.size()), variables_);
+  RowMatrix known(chart.samples.size(), variables_);
   for (Index i = 0; i < known.rows(); ++i) known.row(i) = scaled(chart, samples_[chart.samples[i]].commands);
   const Terms terms = terms_of(chart, static_cast<Index>(known.rows()) + batch);
   const RowMatrix points = worst_known(terms, chart.decay, known, batch);
@@ -118,7 +118,7 @@ void PieceFit::fit_chart(Chart& chart) const {
     const Sample& sample = samples_[s];
     if (sample.is_good()) observations.push_back(observation(chart, sample));
   }
-  chart.polynomials = fit(terms_of(chart, static_cast<Index>(observations.size())), observations, chart.decay);
+  chart.polynomials = fit(terms_of(chart, observations.size()), observations, chart.decay);
   if (variables_ > 0) chart.decay = decay_of(chart.polynomials);
 }
 
@@ -133,12 +133,12 @@ void PieceFit::take(std::vector<Sample> samples) {
   double error = 0;
   for (Sample& sample : samples) {
     if (sample.is_good() && chart.polynomials.count() > 0) error = std::max(error, error_of(chart, sample));
-    chart.samples.push_back(static_cast<Index>(samples_.size()));
+    chart.samples.push_back(samples_.size());
     samples_.push_back(std::move(sample));
   }
   const auto is_good = [&](Index s) { return samples_[s].is_good(); };
   const auto good = std::count_if(chart.samples.begin(), chart.samples.end(), is_good);
-  if (good < static_cast<std::ptrdiff_t>(chart.samples.size()) || (chart.polynomials.count() > 0 && stagnates(chart)))
+  if (good < std::ssize(chart.samples) || (chart.polynomials.count() > 0 && stagnates(chart)))
     return halve(std::move(chart));
   const bool tested = chart.polynomials.count() > 0;
   if (tested) chart.errors.push_back(error_ = error);
@@ -172,16 +172,16 @@ Index PieceFit::side_of(const Chart& chart) const {
 void PieceFit::halve(Chart chart) {
   const auto is_good = [&](Index s) { return samples_[s].is_good(); };
   const bool any = std::any_of(chart.samples.begin(), chart.samples.end(), is_good);
-  const bool hopeless = !any && static_cast<Index>(chart.samples.size()) > 2 * variables_;
+  const bool hopeless = !any && std::ssize(chart.samples) > 2 * variables_;
   if (variables_ == 0 || hopeless || chart.width <= least_width) return;  // a node without a cell: outside the map
   const Index side = side_of(chart);
   const double middle = 0.5 * (chart.low[side] + chart.high[side]);
-  const auto first = static_cast<Index>(piece_.tree.size());
+  const Index first = piece_.tree.size();
   piece_.tree[chart.node] = {static_cast<int>(side), middle, first, first + 1, -1};
   for (const bool upper : {false, true}) {
     Chart half{chart.low, chart.high};
     (upper ? half.low : half.high)[side] = middle;
-    half.node = static_cast<Index>(piece_.tree.size());
+    half.node = piece_.tree.size();
     half.decay = chart.decay;
     half.width = 0.5 * chart.width;
     for (const Index s : chart.samples) {
@@ -198,10 +198,10 @@ void PieceFit::halve(Chart chart) {
 /// A chart that has been fitted becomes a cell.
 void PieceFit::keep(Chart chart) {
   if (chart.polynomials.count() == 0) return;
-  const auto outputs = static_cast<Index>(data_.outputs.size());
+  const Index outputs = data_.outputs.size();
   RowMatrix coefficients = chart.polynomials.coefficients().leftCols(outputs);
   for (Index q = 0; q < outputs; ++q) coefficients.col(q) *= wanted_.accuracy[q];
-  piece_.tree[chart.node].cell = static_cast<Index>(piece_.cells.size());
+  piece_.tree[chart.node].cell = piece_.cells.size();
   piece_.cells.push_back({chart.low, chart.high, {chart.polynomials.terms(), std::move(coefficients)}, {}});
   done_.push_back(std::move(chart));
 }

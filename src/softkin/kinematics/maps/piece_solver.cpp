@@ -61,9 +61,9 @@ MapData outline_of(const Model& model) {
     for (const char* axis : {"_x", "_y", "_z"}) data.outputs.push_back({marker.name + axis, "mm"});
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const Actuator& actuator = model.actuators[a];
-    const auto next = static_cast<Index>(data.outputs.size());
-    const auto input = static_cast<Index>(data.inputs.size());
-    const auto number = static_cast<Index>(a);
+    const Index next = data.outputs.size();
+    const Index input = data.inputs.size();
+    const Index number = a;
     if (answers_with_load(model, actuator)) {
       const bool cable = actuator.is<CableDrive>();
       data.outputs.push_back({actuator.name + (cable ? "_tension" : "_pressure"), cable ? "N" : "kPa"});
@@ -82,7 +82,7 @@ MapData outline_of(const Model& model) {
 }
 
 Eigen::VectorXd outputs_of(const Model& model, const MapData& data, const State& state) {
-  Eigen::VectorXd values(static_cast<Index>(data.outputs.size()));
+  Eigen::VectorXd values(data.outputs.size());
   Index next = 0;
   for (const Marker& marker : model.markers) {
     values.segment<3>(next) = marker.at(state.positions);
@@ -130,7 +130,7 @@ void PieceSolver::add_values(Sample& sample) const {
 
 void PieceSolver::add_slopes(const Sensitivity& sensitivity, Sample& sample) const {
   constexpr double share = 1e-4;  // of a range: for ratios, which are differentiated by differences
-  const auto variables = static_cast<Index>(actuators_.size());
+  const Index variables = actuators_.size();
   sample.slopes.resize(variables, sample.values.size());
   sample.moves.resize(3 * model_.rest.rows(), variables);
   for (Index j = 0; j < variables; ++j) {

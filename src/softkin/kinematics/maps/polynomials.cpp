@@ -44,7 +44,7 @@ struct Table {
 };
 
 std::vector<int> highest_degrees(const Terms& terms) {
-  std::vector<int> highest(static_cast<std::size_t>(terms.cols()), 0);
+  std::vector<int> highest(terms.cols(), 0);
   for (Index t = 0; t < terms.rows(); ++t)
     for (Index j = 0; j < terms.cols(); ++j) highest[j] = std::max<int>(highest[j], terms(t, j));
   return highest;
@@ -54,11 +54,11 @@ std::vector<int> highest_degrees(const Terms& terms) {
 
 Terms least_terms(const Eigen::VectorXd& decay, Index count) {
   using Entry = std::pair<double, Degrees>;
-  const auto variables = static_cast<std::size_t>(decay.size());
+  const std::size_t variables = decay.size();
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> next;
   std::set<Degrees> seen, chosen;
   next.push({0, Degrees(variables, 0)});
-  while (!next.empty() && static_cast<Index>(chosen.size()) < count) {
+  while (!next.empty() && std::ssize(chosen) < count) {
     const auto [sum, degrees] = next.top();
     next.pop();
     chosen.insert(degrees);
@@ -68,10 +68,10 @@ Terms least_terms(const Eigen::VectorXd& decay, Index count) {
       next.push({sum + decay[j], above});
     }
   }
-  Terms terms(static_cast<Index>(chosen.size()), decay.size());
+  Terms terms(chosen.size(), decay.size());
   Index t = 0;
   for (const Degrees& degrees : chosen) {
-    for (std::size_t j = 0; j < variables; ++j) terms(t, static_cast<Index>(j)) = degrees[j];
+    for (std::size_t j = 0; j < variables; ++j) terms(t, j) = degrees[j];
     ++t;
   }
   return terms;
@@ -83,10 +83,7 @@ void evaluate_terms(const Terms& terms, const Eigen::VectorXd& x, Eigen::VectorX
   values.resize(terms.rows());
   if (slopes) slopes->resize(variables, terms.rows());
   for (Index t = 0; t < terms.rows(); ++t) {
-    const auto product = [&](Index sloped) {
-      return table.product(terms.data() + t * variables, static_cast<std::size_t>(variables),
-                           static_cast<std::size_t>(sloped));
-    };
+    const auto product = [&](Index sloped) { return table.product(terms.data() + t * variables, variables, sloped); };
     values[t] = product(variables);
     for (Index j = 0; slopes && j < variables; ++j) (*slopes)(j, t) = product(j);
   }

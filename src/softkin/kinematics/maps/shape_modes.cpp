@@ -8,8 +8,8 @@ namespace {
 
 double largest_vertex(const Eigen::MatrixXf& moves) {
   double largest = 0;
-  for (Index s = 0; s < static_cast<Index>(moves.cols()); ++s)
-    for (Index v = 0; v + 2 < static_cast<Index>(moves.rows()); v += 3)
+  for (Index s = 0; s < moves.cols(); ++s)
+    for (Index v = 0; v + 2 < moves.rows(); v += 3)
       largest = std::max<double>(largest, moves.col(s).segment<3>(v).norm());
   return largest;
 }
@@ -18,7 +18,7 @@ double largest_vertex(const Eigen::MatrixXf& moves) {
 
 MapShape shape_modes(const std::vector<const Sample*>& samples, double accuracy_mm) {
   constexpr double most = 32767;
-  const auto count = static_cast<Index>(samples.size());
+  const Index count = samples.size();
   Eigen::MatrixXf left(samples.front()->state.positions.size(), count);  // what the modes so far do not tell
   for (Index s = 0; s < count; ++s) {
     const Points& at = samples[s]->state.positions;
@@ -41,7 +41,7 @@ MapShape shape_modes(const std::vector<const Sample*>& samples, double accuracy_
   }
   shape.units = (modes.cwiseAbs().colwise().maxCoeff() / static_cast<float>(most)).cast<double>();
   shape.modes.resize(modes.rows(), modes.cols());
-  for (Index m = 0; m < static_cast<Index>(modes.cols()); ++m)
+  for (Index m = 0; m < modes.cols(); ++m)
     shape.modes.col(m) = (modes.col(m).cast<double>() / shape.units[m]).array().round().cast<std::int16_t>();
   return shape;
 }
@@ -49,9 +49,9 @@ MapShape shape_modes(const std::vector<const Sample*>& samples, double accuracy_
 RowMatrix random_commands(const MapData& data, Index count, std::uint64_t seed) {
   constexpr double steps = 9007199254740992.0;  // 2^53
   std::mt19937_64 generator(seed);
-  RowMatrix commands(count, static_cast<Index>(data.inputs.size()));
+  RowMatrix commands(count, data.inputs.size());
   for (Index i = 0; i < count; ++i)
-    for (Index j = 0; j < static_cast<Index>(data.inputs.size()); ++j) {
+    for (Index j = 0; j < std::ssize(data.inputs); ++j) {
       const MapInput& input = data.inputs[j];
       const double share = static_cast<double>(generator() >> 11) / steps;
       commands(i, j) = input.low + share * (input.high - input.low);

@@ -150,7 +150,7 @@ void check(const ActuatorSpec& spec, Formulation formulation) {
 // The model's elements among a region's; role says whose they are.
 void take(Compilation& c, const ActuatorSpec& spec, const std::vector<Index>& found, std::vector<ElementRole>& roles,
           const std::vector<Index>& mesh_index, const char* kind, std::vector<Index>& elements) {
-  const auto actuator = static_cast<Index>(c.model.actuators.size());
+  const Index actuator = c.model.actuators.size();
   for (const Index i : found) {
     if (roles[i].actuator >= 0)
       refuse(spec, std::string("and actuator '") + c.model.actuators[roles[i].actuator].name + "' both hold " + kind +
@@ -179,7 +179,7 @@ std::vector<Index> tetrahedra_inside(const Model& model, const TriangleSurface& 
   for (std::size_t i = 0; i < model.elements.tetrahedra.size(); ++i) {
     Vec3 centroid = Vec3::Zero();
     for (const Index v : model.elements.tetrahedra[i]) centroid += 0.25 * vertex_at(model.rest, v);
-    if (tree.contains(centroid)) inside.push_back(static_cast<Index>(i));
+    if (tree.contains(centroid)) inside.push_back(i);
   }
   return inside;
 }
@@ -287,11 +287,11 @@ void fill_shares(const Compilation& c, const ActuatorSpec& spec, const std::opti
     const auto fail = [&](const std::string& what) {
       throw InvalidInput(given->origins[i], "prism " + std::to_string(prism) + " (from 0) " + what);
     };
-    if (prism < 0 || prism >= static_cast<Index>(shares.size())) fail("is none of the mesh's");
+    if (prism < 0 || prism >= std::ssize(shares)) fail("is none of the mesh's");
     if (!(share >= 0 && std::isfinite(share))) fail("has a share of the voltage of " + number(share) + ": 0 or more");
     if (shares[prism] != none) fail("is there twice");
     const Index at = c.prism_at[prism];
-    if (at < 0 || c.model.elements.prism_roles[at].actuator != static_cast<Index>(c.model.actuators.size()))
+    if (at < 0 || c.model.elements.prism_roles[at].actuator != std::ssize(c.model.actuators))
       fail("does not belong to actuator '" + spec.name + "'");
     shares[prism] = share;
   }

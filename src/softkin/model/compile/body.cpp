@@ -9,7 +9,7 @@
 namespace softkin {
 
 std::pair<Index, Index> vertices_of(const Compilation& c, const std::string& robot) {
-  const auto end = static_cast<Index>(c.mesh.vertices.rows());
+  const Index end = c.mesh.vertices.rows();
   if (robot.empty()) return {0, end};
   const std::vector<RobotPart>& robots = c.spec.robots;
   for (std::size_t r = 0; r < robots.size(); ++r)
@@ -86,7 +86,7 @@ EmbeddedPoint carried(const Body& body, const Points& rest, const Vec3& point) {
   EmbeddedPoint embedded;
   embedded.distance_mm = (point - at).norm();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
+    const Eigen::Index k = i;
     const double weight = nodes.size() == 3 ? shares[k] : quadratic.shape[k];
     if (std::abs(weight) < least_weight) continue;
     embedded.vertices.push_back(nodes[i]);

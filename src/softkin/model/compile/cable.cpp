@@ -52,8 +52,8 @@ std::vector<Index> free_segments(const Compilation& c, const Body& body, const s
   std::vector<Index> gaps, every;
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     const Vec3 middle = 0.5 * (points[i] + points[i + 1]);
-    every.push_back(static_cast<Index>(i));
-    if (body.embedder.embed(middle).distance_mm > 1e-9 * c.model.diagonal_mm) gaps.push_back(static_cast<Index>(i));
+    every.push_back(i);
+    if (body.embedder.embed(middle).distance_mm > 1e-9 * c.model.diagonal_mm) gaps.push_back(i);
   }
   return gaps.empty() ? every : gaps;
 }
@@ -91,8 +91,8 @@ Vec3 find_apex(const Compilation& c, const ActuatorSpec& spec, const SurfaceTree
     const auto hit = boundary.first_hit(middle, direction, 1e-9 * c.model.diagonal_mm);
     if (hit && *hit >= least_height * length) return middle + *hit * direction;
   }
-  refuse(spec, "has a gap " + segment_text(static_cast<std::size_t>(segment)) +
-                   " with no body straight across it: name its third corner in `apexes`");
+  refuse(spec,
+         "has a gap " + segment_text(segment) + " with no body straight across it: name its third corner in `apexes`");
 }
 
 void find_apexes(Compilation& c, const ActuatorSpec& spec, const std::vector<Vec3>& points, CableDrive& cable) {

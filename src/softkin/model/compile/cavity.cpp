@@ -27,8 +27,8 @@ void check_contact(Compilation& c, const ActuatorSpec& spec, const ChamberDrive&
   std::set<Index> vertices;
   for (const CavityFace& face : chamber.cavity)
     for (const Index v : nodes_of(face)) vertices.insert(v);
-  const auto loose = static_cast<std::size_t>(
-      std::count_if(vertices.begin(), vertices.end(), [&](Index v) { return !c.model.elements.used[v]; }));
+  const std::size_t loose =
+      std::count_if(vertices.begin(), vertices.end(), [&](Index v) { return !c.model.elements.used[v]; });
   if (loose == vertices.size()) refuse(spec, "has a chamber that does not touch the body");
   if (loose > 0)
     c.model.notes.push_back(counted(loose, "vertex", "vertices") + " on the boundary of the chamber of actuator '" +
@@ -184,7 +184,7 @@ const std::vector<EmptySpace>& empty_spaces(Compilation& c) {
 void take_empty_space(Compilation& c, const ActuatorSpec& spec, std::size_t space, Actuator& actuator) {
   const EmptySpace& taken = empty_spaces(c)[space];
   Index& owner = c.space_actuators[space];
-  const auto taker = static_cast<Index>(c.model.actuators.size());
+  const Index taker = c.model.actuators.size();
   if (owner == taker) refuse(spec, "has two shells around the same empty space, " + text_of(taken) + ": leave one out");
   if (owner >= 0)
     refuse(spec, "and actuator '" + c.model.actuators[owner].name + "' both take the empty space of " + text_of(taken));

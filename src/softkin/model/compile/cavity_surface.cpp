@@ -233,7 +233,7 @@ void embed_surface(Compilation& c, const ActuatorSpec& spec, const TriangleSurfa
     }
   }
   chamber.surface = surface.triangles;
-  chamber.points.reserve(static_cast<std::size_t>(surface.vertices.rows()));
+  chamber.points.reserve(surface.vertices.rows());
   std::size_t outside = 0;
   double farthest = 0;
   for (Index i = 0; i < surface.vertices.rows(); ++i) {

@@ -11,7 +11,7 @@ namespace {
 
 Index marker_of(const Model& model, const FootSpec& spec) {
   for (std::size_t m = 0; m < model.markers.size(); ++m)
-    if (model.markers[m].name == spec.marker) return static_cast<Index>(m);
+    if (model.markers[m].name == spec.marker) return m;
   throw InvalidInput(spec.origin, "a foot stands at marker '" + spec.marker + "', which the robot does not have");
 }
 

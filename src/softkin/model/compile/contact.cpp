@@ -105,15 +105,14 @@ double softest(const Compilation& c) {
 /// Of a region of the robot that a pair names: which faces are its.
 class FaceRegion {
  public:
-  FaceRegion(const Compilation& c, const Region& region)
-      : c_(c), region_(region), held_(static_cast<std::size_t>(c.mesh.vertices.rows())) {
+  FaceRegion(const Compilation& c, const Region& region) : c_(c), region_(region), held_(c.mesh.vertices.rows()) {
     for (const Index v : region.vertices) held_[v] = true;
   }
 
   /// owner  its element; -1: none
   [[nodiscard]] bool has(const Triangle& face, Index owner) const {
     if (owner < 0) return all_held(face);
-    const auto tetrahedra = static_cast<Index>(c_.tetrahedron_of.size());
+    const Index tetrahedra = c_.tetrahedron_of.size();
     const bool inside = owner < tetrahedra ? is_in(region_.tetrahedra, c_.tetrahedron_of[owner])
                                            : is_in(region_.prisms, c_.prism_of[owner - tetrahedra]);
     return inside || all_held(face);
@@ -135,7 +134,7 @@ class FaceRegion {
 /// Faces of layers beside the body, once each.
 void add_sheets(Compilation& c, std::vector<Index>& owners) {
   ContactModel& contact = c.model.contact;
-  contact.sheets[0] = static_cast<Index>(contact.triangles.size());
+  contact.sheets[0] = contact.triangles.size();
   std::set<Triangle> known;
   for (const Triangle& t : c.sheets) {
     Triangle key = t;
@@ -144,7 +143,7 @@ void add_sheets(Compilation& c, std::vector<Index>& owners) {
     const std::vector<Triangle> flat = flat_triangles(face_of(c, t));
     contact.triangles.insert(contact.triangles.end(), flat.begin(), flat.end());
   }
-  contact.sheets[1] = static_cast<Index>(contact.triangles.size());
+  contact.sheets[1] = contact.triangles.size();
   owners.resize(contact.triangles.size(), -1);
 }
 
@@ -173,9 +172,8 @@ void add_robot_parts(Compilation& c, const ContactSpec& contact) {
   for (std::size_t t = 0; t < model.triangles.size(); ++t) {
     std::size_t part = robots;
     while (part < model.parts.size() && !regions[part - robots].has(model.triangles[t], owners[t])) ++part;
-    if (part == model.parts.size())
-      part = static_cast<std::size_t>(robot_of(c.spec, &RobotPart::vertices, model.triangles[t][0]));
-    model.part_of.push_back(static_cast<Index>(part));
+    if (part == model.parts.size()) part = robot_of(c.spec, &RobotPart::vertices, model.triangles[t][0]);
+    model.part_of.push_back(part);
     any[part] = true;
   }
   for (std::size_t part = robots; part < any.size(); ++part)
@@ -202,7 +200,7 @@ std::vector<EdgeWithNode> edges_of_faces(const std::vector<Triangle>& triangles)
 /// What a uniform pressure on the triangles gives to each vertex of the robot, over the pressure; returns the mean.
 double spread_area(Model& model) {
   ContactModel& contact = model.contact;
-  contact.area.assign(static_cast<std::size_t>(model.rest.rows()), 0);
+  contact.area.assign(model.rest.rows(), 0);
   double total = 0;
   std::vector<Index> vertices;
   for (const Triangle& t : contact.triangles) {

@@ -112,8 +112,8 @@ std::size_t orient(Compilation& c, const std::vector<bool>& left_out, const Kind
       ++reversed;
     }
     if (folds_over(c.mesh.vertices, element)) folded.add(static_cast<Index>(i));
-    kind.at[i] = static_cast<Index>(kind.elements.size());
-    kind.of.push_back(static_cast<Index>(i));
+    kind.at[i] = kind.elements.size();
+    kind.of.push_back(i);
     kind.elements.push_back(element);
     kind.volumes.push_back(volume);
   }
@@ -167,7 +167,7 @@ void find_used_vertices(Compilation& c) {
   std::size_t unused = 0;
   for (std::size_t v = 0; v < model.elements.used.size(); ++v) {
     if (model.elements.used[v]) {
-      bounds.extend(vertex_at(model.rest, static_cast<Index>(v)));
+      bounds.extend(vertex_at(model.rest, v));
       continue;
     }
     model.held.fixed[v] = {true, true, true};
@@ -188,7 +188,7 @@ void name_regions(Compilation& c) {
   };
   for (const Region& region : c.regions.regions()) {
     if (region.dimension != 3) continue;
-    const auto index = static_cast<Index>(model.elements.region_names.size());
+    const Index index = model.elements.region_names.size();
     model.elements.region_names.push_back(region.name);
     name(region.tetrahedra, c.tetrahedron_at, index, model.elements.tetrahedron_roles);
     name(region.prisms, c.prism_at, index, model.elements.prism_roles);
@@ -211,7 +211,7 @@ void refuse_empty(const Compilation& c) {
 Index robot_of(const RobotSpec& spec, Index RobotPart::*first, Index number) {
   Index found = 0;
   for (std::size_t r = 1; r < spec.robots.size(); ++r)
-    if (spec.robots[r].*first <= number) found = static_cast<Index>(r);
+    if (spec.robots[r].*first <= number) found = r;
   return found;
 }
 

@@ -25,9 +25,9 @@ void check_family(const MaterialSpec& material, const FamilySpec& family) {
 std::shared_ptr<const Families> families_of(const Model& model, const MaterialSpec& material, Index index) {
   auto families = std::make_shared<Families>();
   for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e)
-    if (model.elements.tetrahedron_roles[e].material == index) families->tetrahedra.push_back(static_cast<Index>(e));
+    if (model.elements.tetrahedron_roles[e].material == index) families->tetrahedra.push_back(e);
   for (std::size_t e = 0; e < model.elements.prisms.size(); ++e)
-    if (model.elements.prism_roles[e].material == index) families->prisms.push_back(static_cast<Index>(e));
+    if (model.elements.prism_roles[e].material == index) families->prisms.push_back(e);
   const std::string owner = "the material of region '" + material.region + "': the direction of its fibres";
   for (const FamilySpec& spec : material.families->families) {
     check_family(material, spec);
@@ -36,8 +36,7 @@ std::shared_ptr<const Families> families_of(const Model& model, const MaterialSp
     family.k2 = spec.k2;
     family.dispersion = spec.dispersion;
     const Directions directions(spec.direction, owner, material.origin);
-    for (const Index e : families->tetrahedra)
-      family.directions.push_back(directions.of(model, static_cast<std::size_t>(e)));
+    for (const Index e : families->tetrahedra) family.directions.push_back(directions.of(model, e));
     for (const Index e : families->prisms)
       family.directions.push_back(directions.of(model, model.elements.tetrahedra.size() + static_cast<std::size_t>(e)));
   }
@@ -66,7 +65,7 @@ void compile_families(Compilation& c) {
                                           "' has families of fibres, which need the physical formulation");
     if (spec.families->families.empty())
       throw InvalidInput(spec.origin, "the material of region '" + spec.region + "' has no family of fibres");
-    auto families = families_of(c.model, spec, static_cast<Index>(m));
+    auto families = families_of(c.model, spec, m);
     refuse_growth(c, *families, spec);
     c.model.elements.materials[m].families = std::move(families);
   }

@@ -99,8 +99,8 @@ FibrePlace place_between(const Points& rest, const EmbeddedPoint& a, const Embed
   const double apart = (b.at(rest) - a.at(rest)).norm();
   const auto add = [&](const EmbeddedPoint& point, double sign) {
     for (std::size_t i = 0; i < point.vertices.size(); ++i) {
-      const auto at = static_cast<std::size_t>(
-          std::find(place.vertices.begin(), place.vertices.end(), point.vertices[i]) - place.vertices.begin());
+      const std::size_t at =
+          std::find(place.vertices.begin(), place.vertices.end(), point.vertices[i]) - place.vertices.begin();
       if (at == place.vertices.size()) {
         place.vertices.push_back(point.vertices[i]);
         place.weights.push_back(0);

@@ -45,7 +45,7 @@ void check_range(const ActuatorSpec& spec) {
 void take_growing(const Compilation& c, const ActuatorSpec& spec, const std::string& name, Growers& growers,
                   Growth& growth) {
   const Region& region = c.regions.find(name, spec.origin);
-  const auto number_of = static_cast<Index>(c.model.growths.size());
+  const Index number_of = c.model.growths.size();
   const auto take = [&](const std::vector<Index>& found, const std::vector<Index>& at, std::vector<Index>& grower,
                         std::vector<Index>& elements, const char* kind) {
     for (const Index i : found) {
@@ -83,8 +83,7 @@ void add_growth(Compilation& c, Index actuator, const GrowthPart& part, Growers&
   if (part.direction) {
     const std::string owner = "actuator '" + spec.name + "': its direction";
     const Directions directions(*part.direction, owner, spec.origin);
-    for (const Index e : growth->tetrahedra)
-      growth->directions.push_back(directions.of(c.model, static_cast<std::size_t>(e)));
+    for (const Index e : growth->tetrahedra) growth->directions.push_back(directions.of(c.model, e));
     for (const Index e : growth->prisms)
       growth->directions.push_back(
           directions.of(c.model, c.model.elements.tetrahedra.size() + static_cast<std::size_t>(e)));
@@ -116,7 +115,7 @@ void compile_growth(Compilation& c) {
     const auto* growth = c.spec.actuators[a].as<GrowthSpec>();
     if (growth == nullptr) continue;
     c.model.actuators[a].drive = GrowthDrive{static_cast<Index>(c.model.growths.size())};
-    for (const GrowthPart& part : growth->parts) add_growth(c, static_cast<Index>(a), part, growers);
+    for (const GrowthPart& part : growth->parts) add_growth(c, a, part, growers);
   }
 }
 

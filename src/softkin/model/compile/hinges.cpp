@@ -20,14 +20,14 @@ class Blocks {
         sets_(elements_ + model.rigid.size()) {
     join_by_faces();
     join_rigid();
-    for (std::size_t e = 0; e < sets_count(); ++e) blocks_.insert(sets_.find(static_cast<Index>(e)));
+    for (std::size_t e = 0; e < sets_count(); ++e) blocks_.insert(sets_.find(e));
   }
 
   [[nodiscard]] std::size_t count() const { return blocks_.size(); }
 
   /// Per vertex that several blocks hold: these.
   [[nodiscard]] std::map<Index, std::set<Index>> hinges() {
-    std::vector<Index> first(static_cast<std::size_t>(model_.rest.rows()), -1);
+    std::vector<Index> first(model_.rest.rows(), -1);
     std::map<Index, std::set<Index>> all;
     each_vertex([&](Index v, Index block) {
       Index& known = first[v];
@@ -41,12 +41,11 @@ class Blocks {
   template <class Visit>
   void each_vertex(const Visit& visit) {
     for (std::size_t e = 0; e < model_.elements.tetrahedra.size(); ++e)
-      for (const Index v : model_.elements.tetrahedra[e]) visit(v, sets_.find(static_cast<Index>(e)));
+      for (const Index v : model_.elements.tetrahedra[e]) visit(v, sets_.find(e));
     for (std::size_t e = 0; e < model_.elements.prisms.size(); ++e)
-      for (const Index v : model_.elements.prisms[e])
-        visit(v, sets_.find(static_cast<Index>(model_.elements.tetrahedra.size() + e)));
+      for (const Index v : model_.elements.prisms[e]) visit(v, sets_.find(model_.elements.tetrahedra.size() + e));
     for (std::size_t r = 0; r < model_.rigid.size(); ++r)
-      for (const Index v : model_.rigid[r].vertices) visit(v, sets_.find(static_cast<Index>(elements_ + r)));
+      for (const Index v : model_.rigid[r].vertices) visit(v, sets_.find(elements_ + r));
   }
 
  private:
@@ -57,7 +56,7 @@ class Blocks {
   void each_face(const Visit& visit) const {
     const auto tell = [&](auto corners, std::size_t element) {
       std::sort(corners.begin(), corners.end());
-      visit(corners[0], corners[1], corners[2], static_cast<Index>(element));
+      visit(corners[0], corners[1], corners[2], element);
     };
     for (std::size_t e = 0; e < model_.elements.tetrahedra.size(); ++e) {
       const Tetrahedron& t = model_.elements.tetrahedra[e];
@@ -77,7 +76,7 @@ class Blocks {
       Index second, third, element;
     };
     std::vector<std::size_t> starts(static_cast<std::size_t>(model_.rest.rows()) + 1, 0);
-    each_face([&](Index least, Index, Index, Index) { ++starts[static_cast<std::size_t>(least) + 1]; });
+    each_face([&](Index least, Index, Index, Index) { ++starts[least + 1]; });
     std::partial_sum(starts.begin(), starts.end(), starts.begin());
     std::vector<Face> faces(starts.back());
     std::vector<std::size_t> next(starts.begin(), starts.end() - 1);
@@ -92,15 +91,15 @@ class Blocks {
 
   /// An element with three vertices in a rigid region moves with it.
   void join_rigid() {
-    std::vector<Index> owner(static_cast<std::size_t>(model_.rest.rows()), -1);
+    std::vector<Index> owner(model_.rest.rows(), -1);
     for (std::size_t r = 0; r < model_.rigid.size(); ++r)
-      for (const Index v : model_.rigid[r].vertices) owner[v] = static_cast<Index>(r);
+      for (const Index v : model_.rigid[r].vertices) owner[v] = r;
     const auto look = [&](const auto& vertices, std::size_t element) {
       for (const Index v : vertices) {
         const Index rigid = owner[v];
         const auto same = [&](Index w) { return owner[w] == rigid; };
         if (rigid < 0 || std::count_if(vertices.begin(), vertices.end(), same) < 3) continue;
-        sets_.join(static_cast<Index>(element), static_cast<Index>(elements_) + rigid);
+        sets_.join(element, static_cast<Index>(elements_) + rigid);
         return;
       }
     };
@@ -149,7 +148,7 @@ Eigen::MatrixXd free_motions(const Model& model, const std::map<Index, Place>& p
     row.segment<3>(column.at(block)) += sign * unit;
     row.segment<3>(column.at(block) + 3) += sign * arm.cross(unit);
   };
-  const auto row = [&] { return Eigen::RowVectorXd::Zero(6 * static_cast<Index>(places.size())).eval(); };
+  const auto row = [&] { return Eigen::RowVectorXd::Zero(6 * std::ssize(places)).eval(); };
   for (const auto& [v, all] : hinges)
     for (auto other = std::next(all.begin()); other != all.end(); ++other)
       for (int axis = 0; axis < 3; ++axis) {
@@ -169,8 +168,8 @@ Eigen::MatrixXd free_motions(const Model& model, const std::map<Index, Place>& p
     }
   Eigen::MatrixXd matrix = Eigen::MatrixXd::Zero(
       std::max<Eigen::Index>(static_cast<Eigen::Index>(rows.size()), 6 * static_cast<Eigen::Index>(places.size())),
-      6 * static_cast<Eigen::Index>(places.size()));
-  for (std::size_t i = 0; i < rows.size(); ++i) matrix.row(static_cast<Eigen::Index>(i)) = rows[i];
+      6 * std::ssize(places));
+  for (std::size_t i = 0; i < rows.size(); ++i) matrix.row(i) = rows[i];
   const SingularValues singular = singular_values(matrix);
   constexpr double tolerance = 1e-9;
   const Eigen::Index rank = (singular.values.array() > tolerance * singular.values[0]).count();

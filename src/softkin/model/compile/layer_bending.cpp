@@ -34,7 +34,7 @@ struct FacePoint {
       : frame(spec, point, nodes, rest) {
     std::array<Vec3, 3> second{Vec3::Zero(), Vec3::Zero(), Vec3::Zero()};
     for (std::size_t i = 0; i < nodes.size(); ++i) {
-      const auto k = static_cast<Eigen::Index>(i);
+      const Eigen::Index k = i;
       Eigen::Matrix2d by_uv;
       by_uv << second_derivatives()(k, 0), second_derivatives()(k, 2), second_derivatives()(k, 2),
           second_derivatives()(k, 1);

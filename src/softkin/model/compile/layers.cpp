@@ -66,7 +66,7 @@ LayerPlace place_on(const LayerSpec& spec, const TrianglePoint& point, const std
   const LayerFrame frame(spec, point, nodes, rest);
   LayerPlace place{nodes, {}, {}, frame.area_mm2};
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
+    const Eigen::Index k = i;
     place.weights.push_back(point.shape[k]);
     place.slopes.push_back(frame.back * Eigen::Vector2d(point.along_u[k], point.along_v[k]));
   }
@@ -135,7 +135,7 @@ std::vector<LayerPlace> carried_places(Compilation& c, const LayerSpec& spec, Tr
       const EmbeddedPoint& point = points[t[corner]];
       for (std::size_t i = 0; i < point.vertices.size(); ++i) {
         const auto found = std::find(place.vertices.begin(), place.vertices.end(), point.vertices[i]);
-        const auto at = static_cast<std::size_t>(found - place.vertices.begin());
+        const std::size_t at = found - place.vertices.begin();
         if (found == place.vertices.end()) {
           place.vertices.push_back(point.vertices[i]);
           place.weights.push_back(0);

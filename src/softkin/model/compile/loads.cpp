@@ -170,7 +170,7 @@ void add_moment(Compilation& c, const ForceSpec& spec) {
   RegionMoment of{moment_vertices(c, spec)};
   for (int axis = 0; axis < 3; ++axis)
     if (moment.along(axis)) {
-      const auto index = static_cast<Index>(c.model.loads.moments.size());
+      const Index index = c.model.loads.moments.size();
       c.force_commands.push_back(command_of(moment, axis, MomentCommand{index, axis}));
     } else {
       of.moment_Nmm[axis] = spec.moment[axis];

@@ -30,7 +30,7 @@ double excess_of(const std::vector<Wall>& walls, double Wall::*excess) {
 }
 
 std::vector<bool> rigid_vertices(const Model& model) {
-  std::vector<bool> rigid(static_cast<std::size_t>(model.rest.rows()));
+  std::vector<bool> rigid(model.rest.rows());
   for (const RigidRegion& region : model.rigid)
     for (const Index v : region.vertices) rigid[v] = true;
   return rigid;
@@ -42,10 +42,10 @@ std::vector<Wall> walls_of(const Model& model) {
   std::vector<Wall> walls;
   for (const WallSample& sample :
        wall_samples(model.rest, model.elements.tetrahedra, model.elements.prisms, most_samples)) {
-    const auto element = static_cast<std::size_t>(sample.element);
+    const std::size_t element = sample.element;
     const Tetrahedron& corners = model.elements.tetrahedra[element];
     if (std::all_of(corners.begin(), corners.end(), is_rigid)) continue;
-    const auto material = static_cast<std::size_t>(model.elements.tetrahedron_roles[element].material);
+    const std::size_t material = model.elements.tetrahedron_roles[element].material;
     const Material& of = model.elements.materials[material];
     const StiffnessAtRest stiffness = stiffness_at_rest(of.elastic);
     const double least = std::min(mixed_ratio, stiffness.poisson_ratio);

@@ -54,7 +54,7 @@ struct CheckedField {
       if (field.counts[axis] > most_points)
         refuse(spec, "needs a grid of at most " + std::to_string(most_points) + " points along an axis, not " +
                          std::to_string(field.counts[axis]));
-      points *= static_cast<std::size_t>(field.counts[axis]);
+      points *= field.counts[axis];
     }
     if (points != field.per_ampere.size()) refuse(spec, "needs a flux density at every point of its grid");
     for (const Vec3& value : field.per_ampere)
@@ -72,7 +72,7 @@ Index place_of(Magnetism& magnetism, std::vector<const FieldSource*>& known, con
                const FieldSpec& commanded) {
   const FieldSource* source = commanded.source.get();
   const auto found = std::find(known.begin(), known.end(), source);
-  const auto place = static_cast<Index>(found - known.begin());
+  const Index place = found - known.begin();
   FieldSource checked = *source;
   std::visit(CheckedField{spec, commanded.command}, checked.field);
   if (found == known.end()) {

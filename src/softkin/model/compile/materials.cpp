@@ -232,7 +232,7 @@ void compile_materials(Compilation& c) {
   const bool physical = c.spec.formulation == Formulation::physical;
   for (const MaterialSpec& spec : c.spec.materials) {
     if (!physical && spec.elastic && only_actuated(c, c.regions.find(spec.region, spec.origin))) continue;
-    const auto index = static_cast<Index>(model.elements.materials.size());
+    const Index index = model.elements.materials.size();
     model.elements.materials.push_back(checked_material(spec, c.spec.formulation));
     const Region& region = c.regions.find(spec.region, spec.origin);
     if (model.elements.materials.back().mixed && !region.prisms.empty())

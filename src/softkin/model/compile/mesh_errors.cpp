@@ -22,12 +22,12 @@ Used without_void(const Compilation& c, const IndexRange& tetrahedra, const Inde
     if (c.tetrahedron_at[i] < 0 && c.chamber_at[i] < 0) continue;
     used.mesh.tetrahedra.push_back(c.mesh.tetrahedra[i]);
     if (!c.mesh.edge_nodes.empty()) used.mesh.edge_nodes.push_back(c.mesh.edge_nodes[i]);
-    used.tetrahedra.push_back(static_cast<Index>(i));
+    used.tetrahedra.push_back(i);
   }
   for (std::size_t i = prisms.begin; i < prisms.end; ++i) {
     if (c.prism_at[i] < 0) continue;
     used.mesh.prisms.push_back(c.mesh.prisms[i]);
-    used.prisms.push_back(static_cast<Index>(i));
+    used.prisms.push_back(i);
   }
   return used;
 }
@@ -64,9 +64,7 @@ void refuse_errors_of(Compilation& c, const RobotPart& robot, const IndexRange& 
 
 void refuse_mesh_errors(Compilation& c) {
   const Model& model = c.model;
-  if (!share_a_side(model.elements.tetrahedra, c.chamber_tetrahedra, model.elements.prisms,
-                    static_cast<Index>(model.rest.rows())))
-    return;
+  if (!share_a_side(model.elements.tetrahedra, c.chamber_tetrahedra, model.elements.prisms, model.rest.rows())) return;
   std::vector<RobotPart> robots = c.spec.robots;
   if (robots.empty())
     robots.push_back({"", "", 0, 0, 0, c.spec.mesh_options.origin, c.spec.mesh_options.accept_errors});

@@ -89,7 +89,7 @@ void check_region_indices(const Region& region, const Mesh& mesh, const std::str
   check_indices(region.prisms, mesh.prisms.size(), owner, "prism", origin);
   check_indices(region.triangles, mesh.triangles.size(), owner, "triangle", origin);
   check_indices(region.quads, mesh.quads.size(), owner, "quad", origin);
-  check_indices(region.vertices, static_cast<std::size_t>(mesh.vertices.rows()), owner, "vertex", origin);
+  check_indices(region.vertices, mesh.vertices.rows(), owner, "vertex", origin);
 }
 
 Region complete(Region region, const Mesh& mesh, const EdgeTable& edges, const Origin& origin) {
@@ -110,7 +110,7 @@ template <class Cell, class Accept>
 std::vector<Index> cells_where(const std::vector<Cell>& cells, const Accept& accept) {
   std::vector<Index> found;
   for (std::size_t i = 0; i < cells.size(); ++i)
-    if (accept(cells[i])) found.push_back(static_cast<Index>(i));
+    if (accept(cells[i])) found.push_back(i);
   return found;
 }
 
@@ -229,9 +229,9 @@ Region RegionTable::select(const Selector& selector, const std::string& name, co
   region.name = name;
   if (const auto* vertices = std::get_if<VertexList>(&selector)) {
     region.vertices = vertices->vertices;
-    check_indices(region.vertices, static_cast<std::size_t>(mesh_.vertices.rows()), owner, "vertex", origin);
+    check_indices(region.vertices, mesh_.vertices.rows(), owner, "vertex", origin);
     sort_unique(region.vertices);
-    std::vector<bool> listed(static_cast<std::size_t>(mesh_.vertices.rows()));
+    std::vector<bool> listed(mesh_.vertices.rows());
     for (const Index v : region.vertices) listed[v] = true;
     const auto accept = [&](const auto& cell) {
       return std::all_of(cell.begin(), cell.end(), [&](Index v) { return listed[v]; });

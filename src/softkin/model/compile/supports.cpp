@@ -35,7 +35,7 @@ void hold(Compilation& c, const FixedSpec& spec, Index v, int axis) {
   c.model.held.fixed[v][axis] = true;
   c.model.held.at(v, axis) = place;
   Index& bearer = c.model.held.support_of[v][axis];
-  if (c.model.elements.used[v] && bearer < 0) bearer = static_cast<Index>(c.model.held.supports.size()) - 1;
+  if (c.model.elements.used[v] && bearer < 0) bearer = std::ssize(c.model.held.supports) - 1;
 }
 
 void fix(Compilation& c, const FixedSpec& spec) {
@@ -45,7 +45,7 @@ void fix(Compilation& c, const FixedSpec& spec) {
     throw InvalidInput(spec.where.origin, label(spec.where) + " is displaced by a number that is not finite");
   const Region region = c.regions.resolve(spec.where);
   Support& support = c.model.held.supports.emplace_back();
-  support.name = support_name(c.spec.fixed, static_cast<std::size_t>(&spec - c.spec.fixed.data()));
+  support.name = support_name(c.spec.fixed, &spec - c.spec.fixed.data());
   std::copy_if(region.vertices.begin(), region.vertices.end(), std::back_inserter(support.vertices),
                [&](Index v) { return static_cast<bool>(c.model.elements.used[v]); });
   if (support.vertices.empty())
@@ -123,7 +123,7 @@ class Parts {
 };
 
 Parts connected_parts(const Model& model) {
-  Parts parts(static_cast<std::size_t>(model.rest.rows()));
+  Parts parts(model.rest.rows());
   for (const Tetrahedron& t : model.elements.tetrahedra) parts.join(t);
   for (std::size_t e = 0; e < model.elements.edge_nodes.size(); ++e) {
     parts.join(model.elements.edge_nodes[e]);
@@ -164,7 +164,7 @@ Motions free_motions(const Model& model, const std::vector<Index>& vertices, con
       rows.back() << unit.transpose(), ((vertex_at(model.rest, v) - centroid) / size).cross(unit).transpose();
     }
   Eigen::MatrixXd held = Eigen::MatrixXd::Zero(std::max<Eigen::Index>(6, static_cast<Eigen::Index>(rows.size())), 6);
-  for (std::size_t i = 0; i < rows.size(); ++i) held.row(static_cast<Eigen::Index>(i)) = rows[i];
+  for (std::size_t i = 0; i < rows.size(); ++i) held.row(i) = rows[i];
   const SingularValues singular = singular_values(triangle_of(held));
   const Eigen::Index rank = (singular.values.array() > rank_tolerance * std::max(singular.values[0], 1.0)).count();
   return singular.right.rightCols(6 - rank);
@@ -246,7 +246,7 @@ void compile_supports(Compilation& c) {
         throw InvalidInput(spec.where.origin, rigid_label(spec) + " and " + rigid_label(c.spec.rigid[owner[v]]) +
                                                   " share vertex " + std::to_string(v) +
                                                   " (from 0): make them one, or keep them apart");
-      owner[v] = static_cast<Index>(c.model.rigid.size());
+      owner[v] = c.model.rigid.size();
     }
     check_held(c, spec, rigid);
     turn_rigid(c.model, rigid, rigid_label(spec), spec.where.origin);

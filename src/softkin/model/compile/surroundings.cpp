@@ -104,7 +104,7 @@ FacetedSurface facets_of(const Compilation& c, const Spec& spec) {
   if (const auto* capsule = std::get_if<Capsule>(&spec.shape)) return faceted(*capsule, sagitta);
   Bounds bounds;
   for (std::size_t v = 0; v < c.model.elements.used.size(); ++v)
-    if (c.model.elements.used[v]) bounds.extend(vertex_at(c.model.rest, static_cast<Index>(v)));
+    if (c.model.elements.used[v]) bounds.extend(vertex_at(c.model.rest, v));
   return faceted(std::get<Halfspace>(spec.shape), bounds.center(), halfspace_diagonals * c.model.diagonal_mm);
 }
 
@@ -119,16 +119,16 @@ void check_reach(const Compilation& c, const Spec& spec, const Points& vertices)
 
 /// Vertices of no element. fixed: they stay where they are, but for what is commanded
 void append_vertices(Model& model, const Points& vertices, bool fixed) {
-  const Index first = static_cast<Index>(model.rest.rows()), rows = first + static_cast<Index>(vertices.rows());
+  const Index first = model.rest.rows(), rows = first + vertices.rows();
   for (Points* points : {&model.rest, &model.held.at, &model.loads.dead}) points->conservativeResize(rows, 3);
   model.rest.bottomRows(vertices.rows()) = vertices;
   model.held.at.bottomRows(vertices.rows()) = vertices;
   model.loads.dead.bottomRows(vertices.rows()).setZero();
-  const auto count = static_cast<std::size_t>(rows);
+  const std::size_t count = rows;
   model.held.fixed.resize(count, {fixed, fixed, fixed});
   model.held.support_of.resize(count, {-1, -1, -1});
   model.elements.used.resize(count, false);
-  model.contact.other_vertices += static_cast<Index>(vertices.rows());
+  model.contact.other_vertices += vertices.rows();
 }
 
 /// Adds the surface as a part, its vertices at the end of the model's; returns the first of them.
@@ -136,7 +136,7 @@ template <class Spec>
 Index add_part(Compilation& c, const Spec& spec, const FacetedSurface& made, ContactRank rank) {
   ContactModel& contact = c.model.contact;
   check_reach(c, spec, made.surface.vertices);
-  const auto part = static_cast<Index>(contact.parts.size()), first = static_cast<Index>(c.model.rest.rows());
+  const Index part = contact.parts.size(), first = c.model.rest.rows();
   contact.parts.push_back({.name = spec.name,
                            .rank = rank,
                            .halfspace = std::holds_alternative<Halfspace>(spec.shape),
@@ -173,9 +173,9 @@ void add_command(Compilation& c, const std::string& name, Drive drive, double mo
 }
 
 void add_obstacle(Compilation& c, const ObstacleSpec& spec, double area) {
-  const auto part = static_cast<Index>(c.model.contact.parts.size());
+  const Index part = c.model.contact.parts.size();
   (void)add_part(c, spec, facets_of(c, spec), ContactRank::obstacle);
-  c.model.contact.area.resize(static_cast<std::size_t>(c.model.rest.rows()), area);
+  c.model.contact.area.resize(c.model.rest.rows(), area);
   for (int axis = 0; axis < 3; ++axis)
     if (spec.motion[axis])
       add_command(c, spec.name + "_" + axis_names[axis], MotionCommand{part, axis}, most_way * c.model.diagonal_mm,
@@ -222,7 +222,7 @@ void add_body(Compilation& c, const BodySpec& spec, double least_area) {
   const Index first = add_part(c, spec, made, ContactRank::body);
   const auto& triangles = made.surface.triangles;
   std::vector<double>& area = model.contact.area;
-  area.resize(static_cast<std::size_t>(model.rest.rows()), 0);
+  area.resize(model.rest.rows(), 0);
   for (const Triangle& t : triangles)
     for (const Index v : t) area[first + v] += triangle_area(made.surface.vertices, t) / 3;
   FreeBody body;
@@ -236,7 +236,7 @@ void add_body(Compilation& c, const BodySpec& spec, double least_area) {
   for (const Marker& marker : model.markers)
     if (marker.name == spec.name) refuse_solid(spec, "a marker has that name, and its center of mass becomes one, too");
   model.markers.push_back({spec.name, body.center});
-  const auto index = static_cast<Index>(model.bodies.size());
+  const Index index = model.bodies.size();
   model.rigid.push_back({spec.name, body.vertices});
   model.bodies.push_back(std::move(body));
   add_command(c, spec.name + "_hold", HoldCommand{index}, 1, spec.origin);

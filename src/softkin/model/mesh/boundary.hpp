@@ -32,7 +32,7 @@ void sort_faces(std::vector<ElementFace<K>>& faces) {
   // into buckets of the first vertex, which hold a few faces each
   std::vector<std::size_t> end(1);
   for (const auto& face : faces) {
-    const auto first = static_cast<std::size_t>(face.sorted[0]);
+    const std::size_t first = face.sorted[0];
     if (first + 1 >= end.size()) end.resize(first + 2);
     ++end[first + 1];
   }

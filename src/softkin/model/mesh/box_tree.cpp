@@ -6,7 +6,7 @@ namespace softkin {
 
 BoxTree::BoxTree(const std::vector<Bounds>& bounds) : items_(bounds.size()) {
   std::iota(items_.begin(), items_.end(), 0);
-  if (!items_.empty()) build(bounds, 0, static_cast<Index>(items_.size()));
+  if (!items_.empty()) build(bounds, 0, items_.size());
 }
 
 void BoxTree::build(const std::vector<Bounds>& bounds, Index begin, Index end) {
@@ -30,7 +30,7 @@ void BoxTree::build(const std::vector<Bounds>& bounds, Index begin, Index end) {
     return ca != cb ? ca < cb : a < b;
   });
   build(bounds, begin, middle);
-  nodes_[at].right = static_cast<Index>(nodes_.size());
+  nodes_[at].right = nodes_.size();
   build(bounds, middle, end);
 }
 

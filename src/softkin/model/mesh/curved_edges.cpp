@@ -115,7 +115,7 @@ std::vector<Index> labels_of(const Mesh& mesh, const std::vector<Region>& region
   std::vector<std::vector<Index>> of(mesh.tetrahedra.size());
   for (std::size_t r = 0; r < regions.size(); ++r) {
     if (regions[r].dimension != 3) continue;
-    for (const Index t : regions[r].tetrahedra) of[t].push_back(static_cast<Index>(r));
+    for (const Index t : regions[r].tetrahedra) of[t].push_back(r);
   }
   std::map<std::vector<Index>, Index> numbers;
   std::vector<Index> labels;

@@ -14,7 +14,7 @@ constexpr double farthest_share = 0.24;  // of an edge's length; compile() refus
 
 }  // namespace
 
-EdgeBulges::EdgeBulges(Mesh& mesh) : mesh_(mesh), nodes_(static_cast<std::size_t>(mesh.vertices.rows())) {
+EdgeBulges::EdgeBulges(Mesh& mesh) : mesh_(mesh), nodes_(mesh.vertices.rows()) {
   std::vector<std::pair<Index, Index>> at;  // node and element
   at.reserve(6 * mesh.edge_nodes.size());
   for (std::size_t t = 0; t < mesh.edge_nodes.size(); ++t)
@@ -86,7 +86,7 @@ std::vector<Index> EdgeBulges::elements_below(double least) const {
     const EdgeNodes& nodes = mesh_.edge_nodes[t];
     const bool straight = std::all_of(nodes.begin(), nodes.end(),
                                       [&](Index n) { return nodes_[n].share == 0 || nodes_[n].bulge.isZero(0); });
-    if (!straight && quality(static_cast<Index>(t)) < least) bad.push_back(static_cast<Index>(t));
+    if (!straight && quality(t) < least) bad.push_back(t);
   }
   return bad;
 }

@@ -114,7 +114,7 @@ struct CellHash {
       hash = (hash ^ static_cast<std::uint64_t>(part)) * 0x9e3779b97f4a7c15u;
       hash ^= hash >> 32;
     }
-    return static_cast<std::size_t>(hash);
+    return hash;
   }
 };
 
@@ -127,7 +127,7 @@ std::vector<Index> duplicate_vertices(const Points& points) {
     return static_cast<std::int64_t>(std::floor(coordinate / (4 * tolerance)));
   };
   std::unordered_multimap<Cell, Index, CellHash> cells;
-  cells.reserve(static_cast<std::size_t>(points.rows()));
+  cells.reserve(points.rows());
   const auto has_twin = [&](const Vec3& p) {
     const Vec3 low = p.array() - tolerance, high = p.array() + tolerance;
     for (std::int64_t x = cell_at(low.x()); x <= cell_at(high.x()); ++x)
@@ -151,13 +151,13 @@ std::vector<Index> duplicate_vertices(const Points& points) {
 }
 
 std::span<const Index> vertices_of(const Mesh& mesh, Index element) {
-  const auto i = static_cast<std::size_t>(element);
+  const std::size_t i = element;
   if (i < mesh.tetrahedra.size()) return mesh.tetrahedra[i];
   return mesh.prisms[i - mesh.tetrahedra.size()];
 }
 
 Index element_count(const Mesh& mesh) {
-  return static_cast<Index>(mesh.tetrahedra.size() + mesh.prisms.size());
+  return mesh.tetrahedra.size() + mesh.prisms.size();
 }
 
 template <std::size_t K>
@@ -180,7 +180,7 @@ class TopologyCheck {
 
   void run() {
     find_duplicates(mesh_.tetrahedra, 0, check_.duplicate_elements);
-    find_duplicates(mesh_.prisms, static_cast<Index>(mesh_.tetrahedra.size()), check_.duplicate_elements);
+    find_duplicates(mesh_.prisms, mesh_.tetrahedra.size(), check_.duplicate_elements);
     std::sort(check_.duplicate_elements.begin(), check_.duplicate_elements.end());
     for (const Index element : check_.duplicate_elements) kept_[size(element)] = false;
     for (const Index element : check_.degenerate) solid_[size(element)] = false;
@@ -193,7 +193,7 @@ class TopologyCheck {
   }
 
  private:
-  static std::size_t size(Index i) { return static_cast<std::size_t>(i); }
+  static std::size_t size(Index i) { return i; }
 
   void check_faces() {
     ElementFaces faces = faces_of(mesh_.tetrahedra, mesh_.prisms);
@@ -259,7 +259,7 @@ class TopologyCheck {
   }
 
   void list_elements_of_vertices() {
-    starts_.assign(size(static_cast<Index>(points_.rows())) + 1, 0);
+    starts_.assign(size(points_.rows()) + 1, 0);
     for (Index e = 0; e < element_count(mesh_); ++e)
       for (const Index v : vertices_of(mesh_, e)) ++starts_[size(v) + 1];
     std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
@@ -270,14 +270,14 @@ class TopologyCheck {
   }
 
   void find_edge_nodes() {
-    on_edge_.assign(size(static_cast<Index>(points_.rows())), false);
+    on_edge_.assign(size(points_.rows()), false);
     for (const EdgeNodes& nodes : mesh_.edge_nodes)
       for (const Index v : nodes) on_edge_[size(v)] = true;
   }
 
   /// Elements around a vertex belong together where they share another vertex.
   void check_vertices() {
-    std::vector<Index> seen_from(size(static_cast<Index>(points_.rows())), -1), seen_by(seen_from);
+    std::vector<Index> seen_from(size(points_.rows()), -1), seen_by(seen_from);
     for (Index v = 0; v < points_.rows(); ++v) {
       const std::size_t begin = starts_[size(v)], count = starts_[size(v) + 1] - begin;
       if (count == 0 && !on_edge_[size(v)]) check_.unreferenced.push_back(v);
@@ -285,18 +285,18 @@ class TopologyCheck {
       for (std::size_t i = 0; i < count; ++i)
         for (const Index w : vertices_of(mesh_, around_[begin + i])) {
           if (w == v) continue;
-          if (seen_from[size(w)] == v) groups.join(static_cast<Index>(i), seen_by[size(w)]);
+          if (seen_from[size(w)] == v) groups.join(i, seen_by[size(w)]);
           seen_from[size(w)] = v;
-          seen_by[size(w)] = static_cast<Index>(i);
+          seen_by[size(w)] = i;
         }
       bool one = true;
-      for (std::size_t i = 1; i < count; ++i) one = one && groups.find(static_cast<Index>(i)) == groups.find(0);
+      for (std::size_t i = 1; i < count; ++i) one = one && groups.find(i) == groups.find(0);
       if (!one) check_.nonmanifold_vertices.push_back(v);
     }
   }
 
   void find_parts() {
-    const auto count = size(static_cast<Index>(points_.rows()));
+    const auto count = size(points_.rows());
     DisjointSets sets(count);
     for (Index e = 0; e < element_count(mesh_); ++e)
       for (const Index v : vertices_of(mesh_, e)) sets.join(v, vertices_of(mesh_, e)[0]);
@@ -307,7 +307,7 @@ class TopologyCheck {
       if (starts_[size(v)] == starts_[size(v) + 1] && !on_edge_[size(v)]) continue;
       Index& part = part_of_root[size(sets.find(v))];
       if (part < 0) {
-        part = static_cast<Index>(check_.parts.size());
+        part = check_.parts.size();
         check_.parts.emplace_back();
       }
       check_.parts[size(part)].push_back(v);
@@ -332,7 +332,7 @@ class TopologyCheck {
 MeshCheck check_mesh(const Mesh& mesh) {
   MeshCheck check;
   const Points points = normalised(mesh.vertices);
-  const auto prisms_from = static_cast<Index>(mesh.tetrahedra.size());
+  const Index prisms_from = mesh.tetrahedra.size();
   check_shapes(points, mesh.tetrahedra, 0, check);
   check_shapes(points, mesh.prisms, prisms_from, check);
   check.duplicate_vertices = duplicate_vertices(points);
@@ -346,11 +346,11 @@ namespace {
 /// Sorting the few at a vertex is several times faster than sorting all faces.
 class FacesByVertex {
  public:
-  explicit FacesByVertex(Index count) : starts_(static_cast<std::size_t>(count) + 1) {}
+  explicit FacesByVertex(Index count) : starts_(count + 1) {}
 
   template <class Visit>
   void fill(const Visit& visit_faces) {
-    visit_faces([&](Index smallest, std::uint64_t) { ++starts_[static_cast<std::size_t>(smallest) + 1]; });
+    visit_faces([&](Index smallest, std::uint64_t) { ++starts_[smallest + 1]; });
     std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
     faces_.resize(starts_.back());
     std::vector<std::uint32_t> next(starts_.begin(), starts_.end() - 1);

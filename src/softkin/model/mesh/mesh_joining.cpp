@@ -6,7 +6,7 @@ namespace softkin {
 namespace {
 
 void shift_indices(std::vector<Index>& indices, std::size_t first) {
-  for (Index& i : indices) i += static_cast<Index>(first);
+  for (Index& i : indices) i += first;
 }
 
 template <class Cell>
@@ -28,7 +28,7 @@ Region renumbered(Region region, const Mesh& before) {
   shift_indices(region.prisms, before.prisms.size());
   shift_indices(region.triangles, before.triangles.size());
   shift_indices(region.quads, before.quads.size());
-  shift_indices(region.vertices, static_cast<std::size_t>(before.vertices.rows()));
+  shift_indices(region.vertices, before.vertices.rows());
   return region;
 }
 
@@ -50,7 +50,7 @@ void append(Mesh& all, const Mesh& part) {
   }
   all.missing.insert(all.missing.end(), part.missing.begin(), part.missing.end());
   all.no_sidecars = all.no_sidecars || part.no_sidecars;
-  const auto first = static_cast<Index>(all.vertices.rows());
+  const Index first = all.vertices.rows();
   append_cells(all.tetrahedra, part.tetrahedra, first);
   append_cells(all.edge_nodes, part.edge_nodes, first);
   append_cells(all.prisms, part.prisms, first);

@@ -148,7 +148,7 @@ std::vector<Triangle> boundary_triangles(const std::vector<Tetrahedron>& tetrahe
   triangles.reserve(4 * boundary.triangles.size());
   for (std::size_t i = 0; i < boundary.triangles.size(); ++i) {
     const auto& [a, b, c] = boundary.triangles[i];
-    const auto owner = static_cast<std::size_t>(boundary.triangle_owners[i]);
+    const std::size_t owner = boundary.triangle_owners[i];
     const auto node = [&](Index from, Index to) { return edge_node(tetrahedra[owner], edge_nodes[owner], from, to); };
     const std::array<Triangle, 4> parts = quarters(boundary.triangles[i], {node(a, b), node(b, c), node(c, a)});
     triangles.insert(triangles.end(), parts.begin(), parts.end());
@@ -163,7 +163,7 @@ Mesh elevated(const Mesh& mesh) {
   Mesh raised = mesh;
   const std::vector<Ends> edges = edges_of(mesh.tetrahedra);
   const std::vector<Ends> beside = edges_beside(mesh.triangles, edges);
-  const auto corners = static_cast<Index>(mesh.vertices.rows());
+  const Index corners = mesh.vertices.rows();
   raised.vertices.conservativeResize(corners + static_cast<Index>(edges.size() + beside.size()), 3);
   Index next = corners;
   const auto add_node = [&](const Ends& ends) {
@@ -190,7 +190,7 @@ Mesh elevated(const Mesh& mesh) {
 }
 
 Mesh lowered(Mesh mesh) {
-  std::vector<bool> on_edge(static_cast<std::size_t>(mesh.vertices.rows()));
+  std::vector<bool> on_edge(mesh.vertices.rows());
   for (const EdgeNodes& nodes : mesh.edge_nodes)
     for (const Index v : nodes) on_edge[v] = true;
   for (const auto& edge : mesh.sheet_edges) on_edge[edge[2]] = true;

@@ -200,9 +200,9 @@ class Collector {
   MeshPlace place_of(std::span<const Index> elements) const {
     MeshPlace place{{}, {}, {}, Vec3::Zero()};
     const auto share = static_cast<double>(elements.size());
-    const auto prisms_from = static_cast<Index>(mesh_.tetrahedra.size());
+    const Index prisms_from = mesh_.tetrahedra.size();
     for (const Index element : elements) {
-      const auto i = static_cast<std::size_t>(element);
+      const std::size_t i = element;
       if (element < prisms_from) {
         place.tetrahedra.push_back(element);
         place.position += mean_position(mesh_, mesh_.tetrahedra[i]) / share;
@@ -223,7 +223,7 @@ class Collector {
 MeshMeasures measure_mesh(const Mesh& mesh, const MeshCheck& check) {
   MeshMeasures measures;
   measures.order = order_of(mesh);
-  measures.vertices = static_cast<std::size_t>(mesh.vertices.rows());
+  measures.vertices = mesh.vertices.rows();
   measures.tetrahedra = mesh.tetrahedra.size();
   measures.prisms = mesh.prisms.size();
   measures.triangles = mesh.triangles.size();
@@ -257,7 +257,7 @@ CurvedMeasures measure_curved(const Mesh& mesh) {
     for (int i = 0; i < 6; ++i) nodes.row(i) = mesh.vertices.row(face[i]);
     return shape_integrals(nodes).sum();
   };
-  for (Index t = 0; t < static_cast<Index>(mesh.tetrahedra.size()); ++t) measures.volume += volume_of(t);
+  for (Index t = 0; t < std::ssize(mesh.tetrahedra); ++t) measures.volume += volume_of(t);
   const Boundary boundary = boundary_of(mesh.tetrahedra, {});
   for (std::size_t i = 0; i < boundary.triangles.size(); ++i) {
     const auto& [a, b, c] = boundary.triangles[i];
@@ -278,7 +278,7 @@ CurvedMeasures measure_curved(const Mesh& mesh) {
 }
 
 std::vector<PartMeasures> measure_parts(const Mesh& mesh, const MeshCheck& check) {
-  std::vector<std::size_t> part_of(static_cast<std::size_t>(mesh.vertices.rows()));
+  std::vector<std::size_t> part_of(mesh.vertices.rows());
   for (std::size_t part = 0; part < check.parts.size(); ++part)
     for (const Index v : check.parts[part]) part_of[v] = part;
   std::vector<PartMeasures> parts(check.parts.size(), {0, 0, Vec3::Zero()});

@@ -47,7 +47,7 @@ class Turner {
 
   /// A fan over a ring; up: with its normal along the axis.
   void close(const Vec3& center, const Ring& ring, bool up) {
-    const auto middle = static_cast<Index>(vertices_.size());
+    const Index middle = vertices_.size();
     vertices_.push_back(center);
     for (Index i = 0; i < ring.count; ++i) {
       const Index from = ring.at(i), to = ring.at(i + 1);
@@ -57,9 +57,8 @@ class Turner {
 
   [[nodiscard]] const Vec3& along() const { return along_; }
   [[nodiscard]] TriangleSurface surface() const {
-    TriangleSurface surface{Points(static_cast<Index>(vertices_.size()), 3), triangles_};
-    for (std::size_t i = 0; i < vertices_.size(); ++i)
-      surface.vertices.row(static_cast<Index>(i)) = vertices_[i].transpose();
+    TriangleSurface surface{Points(vertices_.size(), 3), triangles_};
+    for (std::size_t i = 0; i < vertices_.size(); ++i) surface.vertices.row(i) = vertices_[i].transpose();
     return surface;
   }
 
@@ -98,7 +97,7 @@ FacetedSurface rounded(const Vec3& start, const Vec3& end, const Vec3& axis, dou
   if (start != end) go_on(at(end, 0));
   for (Index step = 1; step <= n; ++step) go_on(at(end, step));
   FacetedSurface faceted{turner.surface(), 0};
-  const auto half = static_cast<std::ptrdiff_t>(4 * n * n);
+  const std::ptrdiff_t half = 4 * n * n;
   const auto& triangles = faceted.surface.triangles;
   for (auto t = triangles.begin(); t != triangles.begin() + half; ++t)
     faceted.sagitta_mm = std::max(faceted.sagitta_mm, sagitta_of(faceted.surface, *t, start, radius));

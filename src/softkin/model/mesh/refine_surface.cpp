@@ -46,7 +46,7 @@ class Edges {
 
   /// The vertices with those in the middle of marked edges.
   Points split() {
-    Index count = static_cast<Index>(surface_.vertices.rows());
+    Index count = surface_.vertices.rows();
     for (Index& middle : middle_)
       if (middle >= 0) middle = count++;
     Points vertices(count, 3);

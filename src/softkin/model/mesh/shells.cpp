@@ -82,7 +82,7 @@ std::vector<bool> to_turn(const Points& vertices, const std::vector<Triangle>& t
   for (std::size_t first = 0; first < triangles.size(); ++first) {
     if (seen[first]) continue;
     seen[first] = true;
-    next.push_back(static_cast<Index>(first));
+    next.push_back(first);
     while (!next.empty()) {
       const Index t = next.back();
       next.pop_back();
@@ -128,12 +128,12 @@ std::vector<Shell> shells_of(const Points& vertices, const std::vector<Triangle>
   std::vector<Index> shell_at(triangles.size(), -1);
   std::vector<Shell> shells;
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    Index& shell = shell_at[sets.find(static_cast<Index>(t))];
+    Index& shell = shell_at[sets.find(t)];
     if (shell < 0) {
-      shell = static_cast<Index>(shells.size());
+      shell = shells.size();
       shells.emplace_back();
     }
-    shells[shell].triangles.push_back(static_cast<Index>(t));
+    shells[shell].triangles.push_back(t);
   }
   visit_edges(sides, [&](const Side* begin, const Side* end) {
     for (const Side* side = begin; side != end; ++side) {
@@ -183,7 +183,7 @@ std::vector<EmptySpace> empty_spaces_in(const Points& vertices, const std::vecto
   std::vector<Index> owners;
   std::vector<Triangle> triangles = triangulated(boundary_of(tetrahedra, prisms), &owners);
   for (std::size_t t = 0; t < triangles.size(); ++t) {
-    const auto owner = static_cast<std::size_t>(owners[t]);
+    const std::size_t owner = owners[t];
     const double volume = owner < tetrahedra.size() ? signed_volume(vertices, tetrahedra[owner])
                                                     : signed_volume(vertices, prisms[owner - tetrahedra.size()]);
     if (volume > 0) std::swap(triangles[t][1], triangles[t][2]);  // into the body, out of what is empty

@@ -140,13 +140,13 @@ void SmoothSurface::find_sectors() {
   sectors_of_vertex_.clear();
   sector_.assign(halves_.size(), -1);
   sign_.assign(halves_.size(), 1);
-  for (Index corner = 0; corner < static_cast<Index>(halves_.size()); ++corner)
+  for (Index corner = 0; corner < std::ssize(halves_); ++corner)
     if (sector_[corner] < 0) spread_sector(corner);
   std::sort(sectors_of_vertex_.begin(), sectors_of_vertex_.end());
 }
 
 void SmoothSurface::spread_sector(Index first) {
-  const auto number = static_cast<Index>(sectors_.size());
+  const Index number = sectors_.size();
   const Index vertex = vertex_of(first);
   Sector sector{around_.size(), around_.size(), true};
   sector_[first] = number;
@@ -198,7 +198,7 @@ void SmoothSurface::find_flat_faces() {
 }
 
 void SmoothSurface::part_flat_faces() {
-  for (Index half = 0; half < static_cast<Index>(halves_.size()); ++half) {
+  for (Index half = 0; half < std::ssize(halves_); ++half) {
     const Index other = partner_[half];
     if (other < 0 || !(flat_[half / 3] || flat_[other / 3])) continue;
     const double least = flat_[half / 3] && flat_[other / 3] ? flat_crease : flat_to_round;
@@ -271,13 +271,13 @@ Vec3 SmoothSurface::fitted_normal(const Sector& sector, const Vec3& mean) const 
   double size = 0;
   for (const Index other : near) size += (vertex_at(vertices_, other) - here).norm();
   size /= static_cast<double>(near.size() - 1);
-  Eigen::Matrix<double, Eigen::Dynamic, 5> rows(static_cast<Index>(near.size()), 5);
+  Eigen::Matrix<double, Eigen::Dynamic, 5> rows(near.size(), 5);
   Eigen::VectorXd heights(rows.rows());
   for (std::size_t i = 0; i < near.size(); ++i) {
     const Vec3 offset = (vertex_at(vertices_, near[i]) - here) / size;
     const double x = offset.dot(u), y = offset.dot(v), distance2 = offset.squaredNorm();
     const double weight = distance2 > 0 ? 1 / distance2 : 0;
-    rows.row(static_cast<Index>(i)) << weight * x, weight * y, weight * x * x, weight * x * y, weight * y * y;
+    rows.row(i) << weight * x, weight * y, weight * x * x, weight * x * y, weight * y * y;
     heights[i] = weight * offset.dot(mean);
   }
   Eigen::CompleteOrthogonalDecomposition<Eigen::MatrixXd> solver;

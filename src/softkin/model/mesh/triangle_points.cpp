@@ -22,7 +22,7 @@ std::span<const TrianglePoint> triangle_points(std::size_t nodes) {
 
 SurfaceEdges::SurfaceEdges(const TrianglePoint& point, std::span<const Index> nodes, const Points& positions) {
   for (std::size_t i = 0; i < nodes.size(); ++i) {
-    const auto k = static_cast<Eigen::Index>(i);
+    const Eigen::Index k = i;
     u += point.along_u[k] * positions.row(nodes[i]).transpose();
     v += point.along_v[k] * positions.row(nodes[i]).transpose();
   }

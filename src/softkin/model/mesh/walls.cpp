@@ -42,7 +42,7 @@ std::vector<WallSample> wall_samples(const Points& vertices, const std::vector<T
   samples.reserve(taken);
   for (std::size_t i = 0; i < taken; ++i) {
     const std::size_t face = i * count / taken;
-    const auto owner = static_cast<std::size_t>(boundary.triangle_owners[face]);
+    const std::size_t owner = boundary.triangle_owners[face];
     const Vec3 normal = doubled_area(vertices, boundary.triangles[face]);
     const double doubled = normal.norm();
     if (owner >= tetrahedra.size() || !(doubled > 0)) continue;

@@ -37,7 +37,7 @@ void ActuatorLoads::fill(Index actuator, double volume, double pressure, const D
 
 void ActuatorLoads::stiffness(const Iterate& at, LargeVector<double>& slots, Team& team) const {
   Eigen::VectorXd scale(measures_.count());
-  std::vector<Eigen::VectorXd> shares(static_cast<std::size_t>(measures_.count()));
+  std::vector<Eigen::VectorXd> shares(measures_.count());
   for (Index a = 0; a < measures_.count(); ++a) {
     scale[a] = measures_.sign(a) * at.multipliers[a];
     if (tendons_.rubs(a)) shares[a] = tendons_.shares(a, at);

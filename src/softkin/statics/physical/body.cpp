@@ -101,7 +101,7 @@ Body::Result Body::pull(const Demand& demand, const Points& positions, Scratch& 
   Result result;
   each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {
     const bool pulls = set.viscous.branches > 0 && scratch.pulls_viscously();
-    team.pieces(static_cast<Index>(blocks.size()), [&](Index begin, Index end) {
+    team.pieces(blocks.size(), [&](Index begin, Index end) {
       Shape<K> shape;
       ElasticForce<K> out;
       for (Index b = begin; b < end; ++b) {
@@ -225,7 +225,7 @@ void Body::field_force(Index actuator, double voltage_kV, const Points& position
   std::fill(scratch.pulls.begin(), scratch.pulls.end(), 0.0);
   for (const auto& set : prisms_)
     if (set.charged && set.actuator == actuator)
-      team.pieces(static_cast<Index>(set.blocks.size()), [&](Index begin, Index end) {
+      team.pieces(set.blocks.size(), [&](Index begin, Index end) {
         Shape<6> shape;
         for (Index b = begin; b < end; ++b) {
           ElasticForce<6> out{};
@@ -238,7 +238,7 @@ void Body::field_force(Index actuator, double voltage_kV, const Points& position
 }
 
 double Body::largest_pull(const Scratch& scratch, Team& team) const {
-  std::vector<double> sums(static_cast<std::size_t>(vertices_));
+  std::vector<double> sums(vertices_);
   team.pieces(vertices_, [&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v)
       for (Index i = pull_starts_[v]; i < pull_starts_[v + 1]; ++i)
@@ -256,7 +256,7 @@ void Body::stress(const Demand& demand, const Points& positions, Scratch& scratc
   out.von_mises.resize(count);
   out.principal.resize(count);
   each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {
-    team.pieces(static_cast<Index>(blocks.size()), [&](Index begin, Index end) {
+    team.pieces(blocks.size(), [&](Index begin, Index end) {
       Shape<K> shape;
       Pack33 points[Q];
       for (Index b = begin; b < end; ++b) {
@@ -293,7 +293,7 @@ void Body::stiffness(const Demand& demand, const Points& positions, bool project
   each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {
     constexpr int matrices = K * (K + 1) / 2;
     const int others = set.matrices() - matrices;
-    team.pieces(static_cast<Index>(blocks.size()), [&](Index begin, Index end) {
+    team.pieces(blocks.size(), [&](Index begin, Index end) {
       Shape<K> shape;
       ElasticStiffness<K> out;
       for (Index b = begin; b < end; ++b) {
@@ -326,7 +326,7 @@ void Body::stiffness(const Demand& demand, const Points& positions, bool project
 
 void Body::turning(const Points& positions, const Points& step, Scratch& scratch, Points& residual, Team& team) const {
   const auto run = [&]<int K, int Q>(const Set<K, Q>& set) {
-    team.pieces(static_cast<Index>(set.blocks.size()), [&](Index begin, Index end) {
+    team.pieces(set.blocks.size(), [&](Index begin, Index end) {
       Shape<K> current, moves, pull;
       for (Index b = begin; b < end; ++b) {
         load<K>(positions, set.nodes[b], current);

@@ -143,17 +143,17 @@ void Body::add_elements(const Model& model, const Pressures* pressures) {
     }
   }
   for (const Index e : spatial_order(model.rest, model.elements.prisms))
-    add(prisms_, model, model.elements.prism_roles[e], static_cast<Index>(model.elements.tetrahedra.size()) + e,
+    add(prisms_, model, model.elements.prism_roles[e], std::ssize(model.elements.tetrahedra) + e,
         model.elements.prisms[e], nullptr, grower(growers.prisms, e));
   for (auto& set : prisms_)
     if (set.charged) add_field(model, set);
 }
 
 Body::Body(const Model& model, const Pressures* pressures)
-    : vertices_(static_cast<Index>(model.rest.rows())), pressure_unit_(pressures ? pressures->unit : 1) {
+    : vertices_(model.rest.rows()), pressure_unit_(pressures ? pressures->unit : 1) {
   add_elements(model, pressures);
   add_directions(model);
-  for (Index a = 0; a < static_cast<Index>(model.actuators.size()); ++a) {
+  for (Index a = 0; a < std::ssize(model.actuators); ++a) {
     if (model.actuators[a].is<DeaDrive>()) (under_voltage(model.actuators[a]) ? voltages_ : ratios_).push_back(a);
     if (model.actuators[a].is<GrowthDrive>()) growths_.push_back(a);
   }
@@ -199,10 +199,10 @@ void Body::number_pulls() {
           visit(set.corners.pressures[e / lanes][i][e % lanes], set.corners.first_miss + 4 * e + i);
     });
   };
-  pull_starts_.assign(static_cast<std::size_t>(vertices_) + 1, 0);
+  pull_starts_.assign(vertices_ + 1, 0);
   each_pull([&](Index vertex, Index) { ++pull_starts_[vertex + 1]; });
   std::partial_sum(pull_starts_.begin(), pull_starts_.end(), pull_starts_.begin());
-  pull_order_.resize(static_cast<std::size_t>(pulls_ + misses_));
+  pull_order_.resize(pulls_ + misses_);
   std::vector<Index> next(pull_starts_.begin(), pull_starts_.end() - 1);
   each_pull([&](Index vertex, Index pull) { pull_order_[next[vertex]++] = pull; });
 }
@@ -210,7 +210,7 @@ void Body::number_pulls() {
 /// The permittivities of a set under voltage, whose elements are there.
 void Body::add_field(const Model& model, Set<6, 6>& set) {
   const std::vector<double> permittivity = layer_permittivity(model, set.actuator);
-  const auto tetrahedra = static_cast<Index>(model.elements.tetrahedra.size());
+  const Index tetrahedra = model.elements.tetrahedra.size();
   set.permittivity.assign(set.blocks.size(), Pack{});
   for (Index e = 0; e < set.count; ++e)
     set.permittivity[e / lanes][e % lanes] = permittivity[set.elements[e] - tetrahedra];
@@ -235,7 +235,7 @@ void Body::add_cliques(linear::Cliques& cliques) {
     for (Index e = 0; e < set.count; ++e) {
       for (int i = 0; i < K; ++i) nodes[i] = set.nodes[e / lanes][i][e % lanes];
       for (int i = 0; set.mixed && i < 4; ++i) nodes[K + i] = set.corners.pressures[e / lanes][i][e % lanes];
-      cliques.add(std::span(nodes).first(static_cast<std::size_t>(set.mixed ? K + 4 : K)));
+      cliques.add(std::span(nodes).first(set.mixed ? K + 4 : K));
     }
   });
 }
@@ -245,7 +245,7 @@ std::vector<std::int64_t> Body::element_slots() const {
   each_set([&]<int K, int Q>(const Set<K, Q>& set) {
     const int matrices = set.matrices();
     for (Index e = 0; e < set.count; ++e) {
-      const auto element = static_cast<std::size_t>(set.elements[e]);
+      const std::size_t element = set.elements[e];
       if (slots.size() <= element) slots.resize(element + 1);
       slots[element] = set.first_slot + static_cast<std::int64_t>(matrices) * e;
     }
@@ -255,7 +255,7 @@ std::vector<std::int64_t> Body::element_slots() const {
 
 Eigen::SparseMatrix<double> Body::laplacian() const {
   std::vector<Eigen::Triplet<double>> entries;
-  std::vector<bool> stretched(static_cast<std::size_t>(vertices_));
+  std::vector<bool> stretched(vertices_);
   const auto add_set = [&]<int K, int Q>(const Set<K, Q>& set) {
     for (Index e = 0; e < set.count; ++e) {
       const ElasticBlock<K, Q>& block = set.blocks[e / lanes];

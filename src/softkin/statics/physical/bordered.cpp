@@ -40,7 +40,7 @@ void Bordered::multiply(const Columns& columns, Columns& product) {
 linear::Remainder Bordered::solve(const Columns& right, double accuracy, int rounds, Columns& found,
                                   const Columns* guess) {
   constexpr Index most = 16;
-  const auto all = static_cast<Index>(right.moves.cols());
+  const Index all = right.moves.cols();
   if (all <= most) return solve_block(right, accuracy, rounds, found, guess);
   const auto block = [](const Columns& of, Index first, Index count) {
     return Columns{of.moves.middleCols(first, count), of.multipliers.middleCols(first, count)};
@@ -69,15 +69,14 @@ Eigen::VectorXd Bordered::weights_of(const Columns& about, const Columns& right)
   const double energy = std::abs(about.moves.cwiseProduct(right.moves - pulls() * about.multipliers).sum());
   const double stiffness = squares > 0 && energy > 0 ? energy / squares : 1;
   Eigen::VectorXd weights(slopes_.cols());
-  for (Index i = 0; i < static_cast<Index>(weights.size()); ++i)
-    weights[i] = 1 / (saddle_.scale()[i] * std::sqrt(stiffness));
+  for (Index i = 0; i < std::ssize(weights); ++i) weights[i] = 1 / (saddle_.scale()[i] * std::sqrt(stiffness));
   return weights;
 }
 
 linear::Remainder Bordered::solve_block(const Columns& right, double accuracy, int rounds, Columns& found,
                                         const Columns* guess) {
   constexpr linear::Remainder failed{1, 1};
-  const Index size = static_cast<Index>(slopes_.rows()), count = static_cast<Index>(slopes_.cols());
+  const Index size = slopes_.rows(), count = slopes_.cols();
   if (count > 0 && saddle_.schur().rank() < count) return failed;
   Columns begin = right;
   if (guess != nullptr) {
@@ -125,7 +124,7 @@ linear::Remainder Bordered::solve_block(const Columns& right, double accuracy, i
 
 linear::Remainder Bordered::step(const Balance& balance, double accuracy, int rounds, Eigen::VectorXd& step,
                                  Eigen::VectorXd& change) {
-  const Index count = static_cast<Index>(saddle_.active().size());
+  const Index count = saddle_.active().size();
   Columns right{-balance.force, Eigen::MatrixXd(count, 1)}, found;
   for (Index i = 0; i < count; ++i)
     right.multipliers(i, 0) = -system_.measures().sign(saddle_.active()[i]) * balance.constraint[saddle_.active()[i]];

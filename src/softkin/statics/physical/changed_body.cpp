@@ -15,7 +15,7 @@ namespace {
 template <int K, int Q, class Matrix>
 void reshape(const std::vector<ElasticBlock<K, Q>>& from, Index count, std::vector<ElasticBlock<K, Q>>& to,
              const Matrix& matrix, Team& team) {
-  team.pieces(static_cast<Index>(from.size()), [&](Index begin, Index end) {
+  team.pieces(from.size(), [&](Index begin, Index end) {
     for (Index b = begin; b < end; ++b)
       for (int l = 0; l < lanes; ++l) {
         const Mat3 shrink = matrix(std::min<Index>(count - 1, lanes * b + l));

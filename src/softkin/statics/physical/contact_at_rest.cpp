@@ -32,7 +32,7 @@ class RestingSurfaces {
         surface(contact::make_surface(of.contact.triangles, points)),
         team(1) {
     contact::Exclusions exclusions;
-    exclusions.group.assign(static_cast<std::size_t>(model.rest.rows()), -1);
+    exclusions.group.assign(model.rest.rows(), -1);
     for (std::size_t t = 0; t < of.contact.triangles.size(); ++t) {
       const Index part = of.contact.part_of[t];
       const ContactRank rank = of.contact.parts[part].rank;
@@ -110,7 +110,7 @@ std::string place_text(const Vec3& point) {
 std::vector<Triangle> triangles_where(const RestingSurfaces& at, const std::function<bool(Index)>& accept) {
   std::vector<Triangle> triangles;
   for (std::size_t t = 0; t < at.surface.triangles.size(); ++t)
-    if (accept(static_cast<Index>(t))) triangles.push_back(at.surface.triangles[t]);
+    if (accept(t)) triangles.push_back(at.surface.triangles[t]);
   return triangles;
 }
 
@@ -130,7 +130,7 @@ std::string turned_text(const Vec3& normal) {
 void refuse_behind_planes(const RestingSurfaces& at) {
   const Model& model = at.model;
   for (std::size_t t = 0; t < at.surface.triangles.size(); ++t) {
-    const Index plane = at.part(static_cast<Index>(t));
+    const Index plane = at.part(t);
     const ContactPart& part = part_at(model, plane);
     if (!part.halfspace) continue;
     const auto& [a, b, c] = at.surface.triangles[t];
@@ -139,7 +139,7 @@ void refuse_behind_planes(const RestingSurfaces& at) {
     Vec3 lowest;
     Index deepest = -1;
     for (std::size_t i = 0; i < at.surface.vertices.size(); ++i) {
-      const Index v = at.surface.vertices[i], own = at.at_vertex(static_cast<Index>(i));
+      const Index v = at.surface.vertices[i], own = at.at_vertex(i);
       if (at.rank(own) == ContactRank::obstacle) continue;
       const double height = normal.dot(at.rest(v) - at.rest(a));
       most = std::max(most, height);
@@ -214,7 +214,7 @@ struct Crossing {
 std::optional<Crossing> find_crossing(RestingSurfaces& at) {
   std::optional<Crossing> found;
   const contact::Surface& surface = at.surface;
-  Points centres(static_cast<Index>(surface.triangles.size()), 3);
+  Points centres(surface.triangles.size(), 3);
   const auto box_of = [&](Index t) {
     contact::Box box;
     for (const Index v : at.corners(t)) box.extend(at.rest(v));
@@ -226,7 +226,7 @@ std::optional<Crossing> find_crossing(RestingSurfaces& at) {
   tree.refit([&](Index t) { return still(box_of(t)); }, at.team);
   for (std::size_t e = 0; e < surface.edges.size() && !found; ++e) {
     const Index p = surface.edges[e][0], q = surface.edges[e][1];
-    const Index own = at.at_edge(static_cast<Index>(e));
+    const Index own = at.at_edge(e);
     contact::Box box(at.rest(p));
     box.extend(at.rest(q));
     tree.each_met(still(box), [&](Index t) {
@@ -282,7 +282,7 @@ void refuse_inside(const RestingSurfaces& at) {
     std::optional<SurfaceTree> tree;  // where it is closed
   };
   std::vector<Solid> solids;
-  for (Index p = 0; p < static_cast<Index>(at.model.contact.parts.size()); ++p) {
+  for (Index p = 0; p < std::ssize(at.model.contact.parts); ++p) {
     const ContactPart& part = part_at(at.model, p);
     if (part.halfspace || (part.rank == ContactRank::robot && part.robot != p)) continue;
     Solid solid{p, part.rank, triangles_where(at, [&](Index t) { return at.solid(t) == p; }), {}, {}};
@@ -328,7 +328,7 @@ std::vector<Vec3> vertex_normals(const RestingSurfaces& at) {
 class SurfaceWalk {
  public:
   explicit SurfaceWalk(const RestingSurfaces& at)
-      : at_(at), next_(contact::neighbours_of(at.surface, static_cast<Index>(at.points.rows()), 1)) {}
+      : at_(at), next_(contact::neighbours_of(at.surface, at.points.rows(), 1)) {}
 
   /// Is the point of a triangle at most so far from the vertex, along edges to a corner and from there straight [mm]?
   [[nodiscard]] bool reaches(Index vertex, const contact::Corners& corners, const Vec3& point, double length) const {
@@ -342,7 +342,7 @@ class SurfaceWalk {
       if (std::find(corners.begin(), corners.end(), from) != corners.end() &&
           gone + (at_.rest(from) - point).norm() <= length)
         return true;
-      const auto v = static_cast<std::size_t>(from);
+      const std::size_t v = from;
       for (Index i = next_.begin[v]; i < next_.begin[v + 1]; ++i) {
         const Index to = next_.items[i];
         const double way = gone + (at_.rest(to) - at_.rest(from)).norm();

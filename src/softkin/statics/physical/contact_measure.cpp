@@ -25,13 +25,13 @@ class PressedSurface {
       const Vec3 a = positions.row(t[0]), b = positions.row(t[1]), c = positions.row(t[2]);
       area_.push_back(0.5 * (b - a).cross(c - a));
     }
-    place_.assign(static_cast<std::size_t>(positions.rows()), -1);
-    for (std::size_t v = 0; v < surface.vertices.size(); ++v) place_[surface.vertices[v]] = static_cast<Index>(v);
+    place_.assign(positions.rows(), -1);
+    for (std::size_t v = 0; v < surface.vertices.size(); ++v) place_[surface.vertices[v]] = v;
   }
 
   /// Of a vertex of the model.
   [[nodiscard]] Index place(Index vertex) const { return place_[vertex]; }
-  [[nodiscard]] Index size() const { return static_cast<Index>(surfaces_.surface.vertices.size()); }
+  [[nodiscard]] Index size() const { return surfaces_.surface.vertices.size(); }
 
   struct Pressures {
     std::vector<double> pressure_MPa, area_mm2;  // of every vertex; area: 0 of guards and where nothing presses
@@ -47,12 +47,12 @@ class PressedSurface {
           visit_bearers(v, force, [&](Index by, double share) { borne.row(by) += share * force.transpose(); });
       if (passed) guards.push_back(v);
     }
-    Pressures out{std::vector<double>(static_cast<std::size_t>(size())), {}};
+    Pressures out{std::vector<double>(size()), {}};
     out.area_mm2 = out.pressure_MPa;
     for (Index v = 0; v < size(); ++v) {
       const double force = borne.row(v).norm();
       if (!(force > 0)) continue;
-      const auto at = static_cast<std::size_t>(v);
+      const std::size_t at = v;
       out.area_mm2[at] = area_facing(v, borne.row(v) / force);
       out.pressure_MPa[at] = force / out.area_mm2[at];
     }
@@ -82,7 +82,7 @@ class PressedSurface {
 
   void visit_around(Index v, const auto& visit) const {
     const contact::Lists& around = surfaces_.surface.vertex_triangles;
-    for (Index i = around.begin[v]; i < around.begin[static_cast<std::size_t>(v) + 1]; ++i) visit(around.items[i]);
+    for (Index i = around.begin[v]; i < around.begin[v + 1]; ++i) visit(around.items[i]);
   }
 
   [[nodiscard]] double facing(Index triangle, const Vec3& direction) const {
@@ -279,7 +279,7 @@ ContactForces contact_forces(const ContactSurfaces& surfaces, const ContactPoten
       add_friction(positions, friction, hold, surfaces.rules->pair(own, hold.part).friction, own, found->second);
   }
   ContactForces out;
-  if (friction.any()) out.slip_mm.assign(static_cast<std::size_t>(positions.rows()), 0);
+  if (friction.any()) out.slip_mm.assign(positions.rows(), 0);
   for (const Anchor& anchor : anchors) {
     if (anchor.vertex >= surface.size()) continue;  // of no surface
     const Index vertex = surfaces.surface.vertices[anchor.vertex];
@@ -288,7 +288,7 @@ ContactForces contact_forces(const ContactSurfaces& surfaces, const ContactPoten
   }
   for (const auto& [pair, sum] : sums)
     if (sum.forces.normal_N > 0) out.pairs.push_back(finished(sum, surface));
-  out.pressure_kPa.assign(static_cast<std::size_t>(positions.rows()), 0);
+  out.pressure_kPa.assign(positions.rows(), 0);
   const PressedSurface::Pressures found = surface.under(all);
   for (Index v = 0; v < surface.size(); ++v)
     out.pressure_kPa[surfaces.surface.vertices[v]] = kPa_per_MPa * found.pressure_MPa[v];

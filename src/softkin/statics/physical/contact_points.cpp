@@ -11,8 +11,8 @@ constexpr double node_share = 4.0 / 3, end_share = -1.0 / 6;
 
 ContactPoints::ContactPoints(const Model& model) : edges_(model.contact.edges) {
   if (are_nodes()) return;
-  edge_of_.assign(static_cast<std::size_t>(model.rest.rows()), -1);
-  for (std::size_t e = 0; e < edges_.size(); ++e) edge_of_[edges_[e][2]] = static_cast<Index>(e);
+  edge_of_.assign(model.rest.rows(), -1);
+  for (std::size_t e = 0; e < edges_.size(); ++e) edge_of_[edges_[e][2]] = e;
 }
 
 const Points& ContactPoints::of(const Points& nodes, Points& room) const {

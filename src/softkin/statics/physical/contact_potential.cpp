@@ -15,8 +15,7 @@ using contact::Separation;
 namespace {
 
 bool contains(const contact::Lists& lists, Index of, Index item) {
-  const auto begin = lists.items.begin() + lists.begin[of],
-             end = lists.items.begin() + lists.begin[static_cast<std::size_t>(of) + 1];
+  const auto begin = lists.items.begin() + lists.begin[of], end = lists.items.begin() + lists.begin[of + 1];
   return std::binary_search(begin, end, item);
 }
 
@@ -114,7 +113,7 @@ contact::Lists lying_together(const Points& rest, contact::BroadPhase& broad, Te
   for (const Pair& pair : close.edge_edge)
     if (sheet_at(surface.edge_triangles, pair.first) || sheet_at(surface.edge_triangles, pair.second))
       add(nodes_of_edge_edge(surface, pair), 2);
-  return lists_of(static_cast<std::size_t>(rest.rows()), together);
+  return lists_of(rest.rows(), together);
 }
 
 namespace {
@@ -124,7 +123,7 @@ void add_lying_together(const contact::Surface& surface, const contact::Lists& t
                         std::vector<Pair>& edges) {
   if (together.items.empty()) return;
   const auto each = [](const contact::Lists& lists, Index of, const auto& visit) {
-    for (Index i = lists.begin[of]; i < lists.begin[static_cast<std::size_t>(of) + 1]; ++i) visit(lists.items[i]);
+    for (Index i = lists.begin[of]; i < lists.begin[of + 1]; ++i) visit(lists.items[i]);
   };
   std::vector<Pair> around, at;  // of every row its edges and triangles
   for (std::size_t e = 0; e < surface.edges.size(); ++e)
@@ -170,9 +169,9 @@ struct ContactPotential::Feature {
 };
 
 ContactPotential::ContactPotential(const ContactSurfaces& surfaces, const Points& rest)
-    : surfaces_(surfaces), rest_(rest), place_(static_cast<std::size_t>(rest.rows()), -1) {
+    : surfaces_(surfaces), rest_(rest), place_(rest.rows(), -1) {
   const contact::Surface& surface = surfaces.surface;
-  for (std::size_t v = 0; v < surface.vertices.size(); ++v) place_[surface.vertices[v]] = static_cast<Index>(v);
+  for (std::size_t v = 0; v < surface.vertices.size(); ++v) place_[surface.vertices[v]] = v;
 }
 
 bool ContactPotential::felt(Index vertex, Index triangle) const {
@@ -188,8 +187,7 @@ bool ContactPotential::edges_felt(const Pair& edges) const {
 Index ContactPotential::felt_at(Index vertex, Index edge) const {
   const contact::Lists& around = surfaces_.surface.edge_triangles;
   Index count = 0;
-  for (Index i = around.begin[edge]; i < around.begin[static_cast<std::size_t>(edge) + 1]; ++i)
-    count += felt(vertex, around.items[i]);
+  for (Index i = around.begin[edge]; i < around.begin[edge + 1]; ++i) count += felt(vertex, around.items[i]);
   return count;
 }
 
@@ -225,7 +223,7 @@ void ContactPotential::count(Index triangle, const Separation& separation, Index
                              std::vector<Feature>& features) const {
   if (!(separation.squared < reach * reach)) return;
   const contact::Surface& surface = surfaces_.surface;
-  const auto t = static_cast<std::size_t>(triangle);
+  const std::size_t t = triangle;
   const int corners = std::popcount(static_cast<unsigned>(separation.nodes)) - 1;
   Index place = triangle;
   if (corners == 2) place = surface.triangle_edges[t][side_of(separation.nodes)];
@@ -241,7 +239,7 @@ void ContactPotential::count(Index triangle, const Separation& separation, Index
 /// Of a corner of a triangle: 1, less the triangles around it that are felt, plus the edges between those.
 Index ContactPotential::count_at(Index vertex, Index corner) const {
   const contact::Surface& surface = surfaces_.surface;
-  const auto place = static_cast<std::size_t>(place_[corner]);
+  const std::size_t place = place_[corner];
   Index triangles = 0;
   std::vector<Index> edges;
   for (Index i = surface.vertex_triangles.begin[place]; i < surface.vertex_triangles.begin[place + 1]; ++i) {
@@ -253,7 +251,7 @@ Index ContactPotential::count_at(Index vertex, Index corner) const {
       if (ends[0] == corner || ends[1] == corner) note_once(edges, e, [] {});
     }
   }
-  return 1 + triangles - static_cast<Index>(edges.size());  // every triangle has two of the edges
+  return 1 + triangles - std::ssize(edges);  // every triangle has two of the edges
 }
 
 namespace {
@@ -279,7 +277,7 @@ void ContactPotential::add_vertex(const Points& positions, const Candidates& can
     const Separation found = contact::vertex_triangle(points_of(positions, nodes_of_vertex_triangle(surface, pair)));
     const double reach = firmness.foresight * reach_of(vertex, pair.second, firmness);
     if (!(found.squared < reach * reach)) continue;
-    count(pair.second, found, 1, static_cast<Index>(i), reach, features);
+    count(pair.second, found, 1, i, reach, features);
     near.push_back(i);
   }
   std::vector<Index> edges, corners;
@@ -291,12 +289,12 @@ void ContactPotential::add_vertex(const Points& positions, const Candidates& can
       const Index edge = surface.triangle_edges[pair.second][k];
       note_once(edges, edge, [&] {
         const Index more = felt_at(vertex, edge) - 1;
-        if (more != 0) count(pair.second, contact::vertex_side(x, k), -more, static_cast<Index>(i), reach, features);
+        if (more != 0) count(pair.second, contact::vertex_side(x, k), -more, i, reach, features);
       });
       const Index corner = surface.triangles[pair.second][k];
       note_once(corners, corner, [&] {
         const Index more = count_at(vertex, corner);
-        if (more != 0) count(pair.second, contact::vertex_corner(x, k), more, static_cast<Index>(i), reach, features);
+        if (more != 0) count(pair.second, contact::vertex_corner(x, k), more, i, reach, features);
       });
     }
   }

@@ -57,7 +57,7 @@ std::vector<ContactPush> ContactPotential::pushes(const std::vector<Term>& terms
   for (std::size_t i = 0; i < terms.size(); ++i) {
     if (!(terms[i].weight > 0)) continue;
     all.push_back(push_of(terms[i]));
-    all.back().term = static_cast<Index>(i);
+    all.back().term = i;
   }
   std::sort(all.begin(), all.end(), strongest_first);
   for (const ContactPush& push : all) {
@@ -83,7 +83,7 @@ void ContactPotential::straighten(std::vector<Term>& terms, std::vector<ContactP
     if (!(terms[i].weight > 0)) continue;
     ContactPush as = push_of(terms[i]);
     ContactPush* known = same_push(known_pushes, as);
-    as.term = static_cast<Index>(i);
+    as.term = i;
     if (known == nullptr && as.push > 0)
       fresh.push_back(as);
     else if (known != nullptr &&

@@ -113,7 +113,7 @@ void Contacts::choose_areas() {
 /// Obstacles do not touch each other, nor a body itself, nor a robot where that is not asked for.
 contact::Exclusions Contacts::exclusions() const {
   const ContactModel& rules = *surfaces_.rules;
-  const auto parts = static_cast<Index>(rules.parts.size());
+  const Index parts = rules.parts.size();
   std::vector<Index> group_of_part;
   for (Index part = 0; part < parts; ++part) {
     const ContactRank rank = rules.parts[part].rank;
@@ -124,7 +124,7 @@ contact::Exclusions Contacts::exclusions() const {
                                                           : 1 + part);
   }
   contact::Exclusions out;
-  out.group.assign(static_cast<std::size_t>(model_.rest.rows()), -1);
+  out.group.assign(model_.rest.rows(), -1);
   for (std::size_t v = 0; v < surfaces_.surface.vertices.size(); ++v)
     out.group[surfaces_.surface.vertices[v]] = group_of_part[surfaces_.vertex_part[v]];
   return out;
@@ -253,8 +253,7 @@ Index place_of(const Candidates& pairs, const Pair& pair, bool edges) {
   const std::vector<Pair>& all = edges ? pairs.edge_edge : pairs.vertex_triangle;
   const auto found = std::lower_bound(all.begin(), all.end(), pair);
   if (found == all.end() || *found != pair) return -1;
-  return static_cast<Index>(found - all.begin() +
-                            (edges ? static_cast<std::ptrdiff_t>(pairs.vertex_triangle.size()) : 0));
+  return found - all.begin() + (edges ? static_cast<std::ptrdiff_t>(pairs.vertex_triangle.size()) : 0);
 }
 
 }  // namespace
@@ -344,7 +343,7 @@ void Contacts::stiffness(const Points& positions, bool projected, const Scratch&
   const auto slot_of = [&](Index place) {
     return starts.empty() ? clique_slots * static_cast<std::int64_t>(place) : starts[place];
   };
-  std::fill_n(slots, 9 * slot_of(static_cast<Index>(pairs.vertex_triangle.size() + pairs.edge_edge.size())), 0.0);
+  std::fill_n(slots, 9 * slot_of(pairs.vertex_triangle.size() + pairs.edge_edge.size()), 0.0);
   contact::Hessian block;
   const auto add = [&](const Pair& pair, bool edges) {
     double* slot = slots + 9 * slot_of(place_of(pairs, pair, edges));

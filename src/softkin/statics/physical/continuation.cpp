@@ -172,7 +172,7 @@ Status Continuation::follow(const Demand& from, const Demand& to, Iterate& at) {
 }
 
 Status Continuation::follow_whole(const Demand& from, const Demand& to, Iterate& at) {
-  settler_.active.resize(static_cast<std::size_t>(system_.actuators()));
+  settler_.active.resize(system_.actuators());
   for (Index a = 0; a < system_.actuators(); ++a) settler_.active[a] = system_.measures().constrains(a);
   set_out(from, to);
   (void)settler_.release(to, at, false);

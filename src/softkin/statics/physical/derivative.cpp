@@ -24,11 +24,7 @@ constexpr double verge = 1e-9;
 }  // namespace
 
 Derivative::Derivative(const System& system, Workspace& work, double accuracy, Team& team)
-    : system_(system),
-      work_(work),
-      accuracy_(accuracy),
-      team_(team),
-      active_(static_cast<std::size_t>(system.actuators())) {}
+    : system_(system), work_(work), accuracy_(accuracy), team_(team), active_(system.actuators()) {}
 
 /// Measures that are held: of chambers, and of cables that pull or are as long as they may be.
 void Derivative::hold(const Iterate& at, const Demand& demand) {
@@ -45,15 +41,15 @@ void Derivative::hold(const Iterate& at, const Demand& demand) {
 
 void Derivative::make_room(Index columns) {
   right_.moves.setZero(system_.freedoms().size(), columns);
-  right_.multipliers.setZero(static_cast<Index>(held_.size()), columns);
-  moves_.resize(static_cast<std::size_t>(columns));
+  right_.multipliers.setZero(held_.size(), columns);
+  moves_.resize(columns);
 }
 
 /// A right-hand side, of forces that change and of what is held and moves: that takes measures along.
 void Derivative::ask(const Iterate& at, Index column, const Points& force, Points moves) {
   system_.freedoms().reduce(-force, at.positions, right_.moves.col(column));
   if (moves.isZero(0)) return;
-  for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)
+  for (Index i = 0; i < std::ssize(held_); ++i)
     right_.multipliers(i, column) -=
         system_.measures().sign(held_[i]) * work_.slopes[held_[i]].cwiseProduct(moves).sum();
   moves_[column] = std::move(moves);
@@ -70,7 +66,7 @@ void Derivative::by_command(const Iterate& at, const Demand& demand, Index actua
 void Derivative::ask(const Iterate& at, const Demand& demand) {
   by_commands_ = true;
   make_room(system_.actuators());
-  for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)
+  for (Index i = 0; i < std::ssize(held_); ++i)
     right_.multipliers(i, held_[i]) =
         system_.measures().sign(held_[i]) * system_.measures().target_by_command(held_[i], at.multipliers[held_[i]]);
   Points force, moves;
@@ -107,7 +103,7 @@ Points Derivative::positions(const Iterate& at, Index column) const {
 /// Of the measures that are held, as users know them.
 Eigen::VectorXd Derivative::multipliers(Index column) const {
   Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(system_.actuators());
-  for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)
+  for (Index i = 0; i < std::ssize(held_); ++i)
     multipliers[held_[i]] = found_.multipliers(i, column) / system_.measures().unit(held_[i]);
   return multipliers;
 }
@@ -116,7 +112,7 @@ Eigen::VectorXd Derivative::multipliers(Index column) const {
 /// held measures' multipliers pull with. force: the first of these
 Points Derivative::reactions(const Iterate& at, const Demand& demand, Index column, Points force) {
   system_.add_pull(at, demand, balance_, positions(at, column), work_, force, team_);
-  for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)
+  for (Index i = 0; i < std::ssize(held_); ++i)
     force += system_.measures().sign(held_[i]) * found_.multipliers(i, column) * system_.pull(held_[i], at);
   for (Index v = 0; v < force.rows(); ++v)
     for (int axis = 0; axis < 3; ++axis)
@@ -152,7 +148,7 @@ Sensitivity Derivative::of(const Iterate& at, const Demand& demand) {
   hold(at, demand);
   ask(at, demand);
   const Index actuators = system_.actuators();
-  if (!find(at, demand)) return no_sensitivity(static_cast<Index>(at.positions.rows()), actuators);
+  if (!find(at, demand)) return no_sensitivity(at.positions.rows(), actuators);
   Sensitivity result{{}, Eigen::MatrixXd(actuators, actuators), true};
   for (Index a = 0; a < actuators; ++a) {
     result.positions.push_back(positions(at, a));
@@ -168,7 +164,7 @@ Sensitivity Derivative::of(const Iterate& at, const Demand& demand) {
 
 /// The right-hand side of a change of the commands. Returns how forces change by it where nothing moves.
 Points Derivative::ask_along(const Iterate& at, const Demand& demand, Index column, const Actuation& change) {
-  for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)
+  for (Index i = 0; i < std::ssize(held_); ++i)
     right_.multipliers(i, column) = system_.measures().sign(held_[i]) * change[held_[i]] *
                                     system_.measures().target_by_command(held_[i], at.multipliers[held_[i]]);
   Points force, moves, pulled = Points::Zero(at.positions.rows(), 3);
@@ -190,7 +186,7 @@ Points Derivative::ask_along(const Iterate& at, const Demand& demand, Index colu
 
 ParameterSensitivity Derivative::of(const Iterate& at, const Demand& demand, const std::vector<Actuation>& changes,
                                     bool reactions) {
-  const auto count = static_cast<Index>(changes.size());
+  const Index count = changes.size();
   const Points nothing = Points::Zero(at.positions.rows(), 3);
   hold(at, demand);
   make_room(count);
@@ -216,12 +212,11 @@ ParameterSensitivity Derivative::of(const Iterate& at, const Demand& demand, con
 
 std::vector<Points> Derivative::under(const Iterate& at, const Demand& demand, const std::vector<Points>& forces) {
   hold(at, demand);
-  make_room(static_cast<Index>(forces.size()));
-  for (std::size_t p = 0; p < forces.size(); ++p)
-    ask(at, static_cast<Index>(p), -forces[p], Points::Zero(at.positions.rows(), 3));
+  make_room(forces.size());
+  for (std::size_t p = 0; p < forces.size(); ++p) ask(at, p, -forces[p], Points::Zero(at.positions.rows(), 3));
   std::vector<Points> found;
   if (forces.empty() || !find(at, demand)) return found;
-  for (std::size_t p = 0; p < forces.size(); ++p) found.push_back(positions(at, static_cast<Index>(p)));
+  for (std::size_t p = 0; p < forces.size(); ++p) found.push_back(positions(at, p));
   return found;
 }
 
@@ -257,7 +252,7 @@ Derivative::Direct Derivative::ask_number(const Iterate& at, const Demand& deman
   const Direct direct{(more.gradient - less.gradient) / number.difference,
                       (more.multipliers - less.multipliers) / number.difference};
   Points moves = (more.held - less.held) / number.difference, force = direct.force;
-  for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)
+  for (Index i = 0; i < std::ssize(held_); ++i)
     right_.multipliers(i, column) = -system_.measures().sign(held_[i]) *
                                     (more.constraint[held_[i]] - less.constraint[held_[i]]) / number.difference;
   if (!moves.isZero(0)) system_.add_pull(at, demand, balance_, moves, work_, force, team_);
@@ -269,7 +264,7 @@ ParameterSensitivity Derivative::of(const Iterate& at, const Demand& demand,
                                     const std::vector<Perturbation>& perturbations,
                                     const std::shared_ptr<const ViscousHistory>& history, double elapsed_s,
                                     bool reactions) {
-  const auto count = static_cast<Index>(perturbations.size());
+  const Index count = perturbations.size();
   hold(at, demand);
   make_room(count);
   std::vector<Direct> direct;
@@ -292,7 +287,7 @@ ParameterSensitivity Derivative::of(const Iterate& at, const Demand& demand,
 void Derivative::ask_adjoint(const Iterate& at, Index column, const ShapeGradient& told) {
   if (told.by_places.rows() > 0) system_.freedoms().reduce(told.by_places, at.positions, right_.moves.col(column));
   if (told.by_loads.size() == 0) return;
-  for (Index i = 0; i < static_cast<Index>(held_.size()); ++i)
+  for (Index i = 0; i < std::ssize(held_); ++i)
     right_.multipliers(i, column) = told.by_loads[held_[i]] / system_.measures().unit(held_[i]);
 }
 
@@ -301,7 +296,7 @@ void Derivative::ask_adjoint(const Iterate& at, Index column, const ShapeGradien
 Eigen::MatrixXd Derivative::of(const Iterate& at, const Demand& demand, const std::vector<Perturbation>& perturbations,
                                const std::shared_ptr<const ViscousHistory>& history, double elapsed_s,
                                const std::vector<ShapeGradient>& told) {
-  const auto rows = static_cast<Index>(told.size()), count = static_cast<Index>(perturbations.size());
+  const Index rows = told.size(), count = perturbations.size();
   hold(at, demand);
   make_room(rows);
   for (Index r = 0; r < rows; ++r) ask_adjoint(at, r, told[r]);
@@ -317,7 +312,7 @@ Eigen::MatrixXd Derivative::of(const Iterate& at, const Demand& demand, const st
       double sum =
           adjoint.moves.col(r).dot(right_.moves.col(0)) + adjoint.multipliers.col(r).dot(right_.multipliers.col(0));
       if (each.by_places.rows() > 0 && moves_[0].rows() > 0) sum += each.by_places.cwiseProduct(moves_[0]).sum();
-      for (Index a = 0; a < static_cast<Index>(each.by_loads.size()); ++a)
+      for (Index a = 0; a < std::ssize(each.by_loads); ++a)
         sum += each.by_loads[a] * direct.loads[a] / system_.measures().unit(a);
       result(r, p) = sum;
     }

@@ -118,7 +118,7 @@ std::vector<std::vector<Vec3>> Equilibria::pressing_changes(const State& state, 
     const Points change = system_.contacts()->change_along(shape.positions, *lease.work().contacts, own);
     for (std::size_t p = 0; p < contact.parts.size(); ++p) {
       if (contact.parts[p].rank == ContactRank::robot) continue;
-      const auto [begin, end] = system_.model().vertices_of_part(static_cast<Index>(p));
+      const auto [begin, end] = system_.model().vertices_of_part(p);
       if (begin < end) changes[k][p] = -change.middleRows(begin, end - begin).colwise().sum().transpose();
     }
   }

@@ -115,7 +115,7 @@ bool FibreFamilies::any(const Model& model) {
 template <int K, int Q, class Nodes>
 void FibreFamilies::add(Elements<K, Q>& elements, const Model& model, const Nodes& nodes,
                         std::vector<Family>&& families, Index number, std::int64_t slot) {
-  places_[number] = static_cast<Index>(elements.size());
+  places_[number] = elements.size();
   Element<K, Q>& element = elements.emplace_back();
   std::copy(nodes.begin(), nodes.end(), element.nodes.begin());
   Eigen::Matrix<double, K, 3> rest;
@@ -131,7 +131,7 @@ void FibreFamilies::add(Elements<K, Q>& elements, const Model& model, const Node
 
 FibreFamilies::FibreFamilies(const Model& model, const std::vector<std::int64_t>& slots)
     : places_(model.elements.tetrahedra.size() + model.elements.prisms.size(), -1),
-      tetrahedra_(static_cast<Index>(model.elements.tetrahedra.size())) {
+      tetrahedra_(model.elements.tetrahedra.size()) {
   for (const Material& material : model.elements.materials) {
     if (!material.families) continue;
     const Families& all = *material.families;
@@ -145,7 +145,7 @@ FibreFamilies::FibreFamilies(const Model& model, const std::vector<std::int64_t>
       return families;
     };
     for (std::size_t i = 0; i < all.tetrahedra.size(); ++i) {
-      const auto e = static_cast<std::size_t>(all.tetrahedra[i]);
+      const std::size_t e = all.tetrahedra[i];
       if (model.elements.edge_nodes.empty()) {
         add(linear_, model, model.elements.tetrahedra[e], of_element(i), all.tetrahedra[i], slots[e]);
         continue;
@@ -177,8 +177,8 @@ void FibreFamilies::evaluate(const Iterate& at, const Demand& /*demand*/, Term::
   each([&]<int K, int Q>(const Elements<K, Q>& elements, std::size_t first) {
     energies.assign(elements.size(), 0);
     using Pulls = Eigen::Map<Eigen::Matrix<double, 3, K>>;
-    team.pieces(static_cast<Index>(elements.size()), [&](Index begin, Index end) {
-      for (auto e = static_cast<std::size_t>(begin); e < static_cast<std::size_t>(end); ++e) {
+    team.pieces(elements.size(), [&](Index begin, Index end) {
+      for (std::size_t e = begin; e < static_cast<std::size_t>(end); ++e) {
         const Element<K, Q>& element = elements[e];
         const Eigen::Matrix<double, 3, K> nodes = nodes_at<K>(at.positions, element.nodes);
         Pulls pull(pulls.data() + first + 3 * K * e);
@@ -205,8 +205,8 @@ void FibreFamilies::stiffness(const Iterate& at, const Demand& /*demand*/, bool 
                               LargeVector<double>& slots, Team& team) const {
   using Block = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
   each([&]<int K, int Q>(const Elements<K, Q>& elements, std::size_t /*first*/) {
-    team.pieces(static_cast<Index>(elements.size()), [&](Index begin, Index end) {
-      for (auto e = static_cast<std::size_t>(begin); e < static_cast<std::size_t>(end); ++e) {
+    team.pieces(elements.size(), [&](Index begin, Index end) {
+      for (std::size_t e = begin; e < static_cast<std::size_t>(end); ++e) {
         const Element<K, Q>& element = elements[e];
         const Eigen::Matrix<double, 3, K> nodes = nodes_at<K>(at.positions, element.nodes);
         for (std::size_t q = 0; q < Q; ++q) {

@@ -78,7 +78,7 @@ void Fibres::add_cliques(linear::Cliques& cliques) {
 void Fibres::stiffness(const Iterate& at, const Demand& /*demand*/, bool projected, Term::Scratch& /*scratch*/,
                        LargeVector<double>& slots, Team& team) const {
   using Block = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
-  team.pieces(static_cast<Index>(groups_.size()), [&](Index begin, Index end) {
+  team.pieces(groups_.size(), [&](Index begin, Index end) {
     for (Index g = begin; g < end; ++g) {
       const Group& group = groups_[g];
       const std::size_t count = group.vertices.size();

@@ -147,7 +147,7 @@ Fields::Setting Fields::setting(const Demand& demand) const {
     const auto* drive = model_.actuators[a].as<MagneticDrive>();
     if (!drive) continue;
     const FieldCommand command = drive->command;
-    const auto place = static_cast<std::size_t>(drive->source);
+    const std::size_t place = drive->source;
     const double value = demand.actuation[a];
     if (command == FieldCommand::current)
       setting.sources[place].current = value;
@@ -167,7 +167,7 @@ Fields::Setting Fields::setting(const Demand& demand) const {
 Fields::Setting Fields::derivative(Index actuator, const Demand& demand) const {
   const auto& drive = std::get<MagneticDrive>(model_.actuators[actuator].drive);
   const FieldCommand command = drive.command;
-  const auto place = static_cast<std::size_t>(drive.source);
+  const std::size_t place = drive.source;
   Setting setting = this->setting(demand), result;
   result.sources.resize(setting.sources.size());
   if (command == FieldCommand::current) {

@@ -183,7 +183,7 @@ Hydrostatics::Blocks Hydrostatics::slopes(std::size_t number, const Points& posi
     const Mat3 by_v = push * cross_matrix(place.u), by_u = push * cross_matrix(place.v),
                by_depth = area * face.deeper.transpose();
     for (std::size_t j = 0; j < count; ++j) {
-      const auto k = static_cast<Eigen::Index>(j);
+      const Eigen::Index k = j;
       const Mat3 change = place.shape[k] * by_depth + place.along_v[k] * by_v - place.along_u[k] * by_u;
       for (std::size_t i = 0; i < count; ++i) blocks[i][j] += place.shape[i] * change;
     }

@@ -179,7 +179,7 @@ void Layers::add_bending(const Layer& layer) {
     for (std::size_t s = 0; s < 2; ++s)
       for (std::size_t i = 0; i < of.sides[s].vertices.size(); ++i) {
         const auto at = std::lower_bound(joint.vertices.begin(), joint.vertices.end(), of.sides[s].vertices[i]);
-        joint.parts[at - joint.vertices.begin()].segment<3>(3 * static_cast<Eigen::Index>(s)) = of.sides[s].parts[i];
+        joint.parts[at - joint.vertices.begin()].segment<3>(3 * s) = of.sides[s].parts[i];
       }
     joints_.push_back(std::move(joint));
   }
@@ -276,7 +276,7 @@ void Layers::stiffness(const Iterate& at, const Demand& /*demand*/, bool project
     std::fill_n(first, 9 * count * (count + 1) / 2, 0.0);
     return first;
   };
-  team.pieces(static_cast<Index>(faces_.size()), [&](Index begin, Index end) {
+  team.pieces(faces_.size(), [&](Index begin, Index end) {
     for (Index n = begin; n < end; ++n) {
       const Face& face = faces_[n];
       double* const first = room(face.slot, face.vertices.size());
@@ -292,10 +292,10 @@ void Layers::stiffness(const Iterate& at, const Demand& /*demand*/, bool project
     const Eigen::MatrixXd hessian = bend(bent, at.positions, true).hessian;
     put_stiffness(bent, projected ? positive(hessian) : hessian, slots.data() + 9 * bent.slot);
   };
-  team.pieces(static_cast<Index>(places_.size()), [&](Index begin, Index end) {
+  team.pieces(places_.size(), [&](Index begin, Index end) {
     for (Index n = begin; n < end; ++n) put(places_[n]);
   });
-  team.pieces(static_cast<Index>(joints_.size()), [&](Index begin, Index end) {
+  team.pieces(joints_.size(), [&](Index begin, Index end) {
     for (Index n = begin; n < end; ++n) put(joints_[n]);
   });
 }

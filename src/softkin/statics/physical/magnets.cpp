@@ -100,7 +100,7 @@ void Magnets::add(Set<K, Q>& set, const Model& model, const Nodes& nodes, const 
 }
 
 Magnets::Magnets(const Model& model, const std::vector<std::int64_t>& slots)
-    : fields_(model), vertices_(static_cast<Index>(model.rest.rows())), turning_(model, slots) {
+    : fields_(model), vertices_(model.rest.rows()), turning_(model, slots) {
   set_shapes(linear_.shapes);
   set_shapes(quadratic_.shapes);
   set_shapes(prisms_.shapes);
@@ -119,9 +119,9 @@ Magnets::Magnets(const Model& model, const std::vector<std::int64_t>& slots)
       add(quadratic_, model, nodes, remanence[e], slots[e]);
     }
   }
-  for (Index a = 0; a < static_cast<Index>(model.actuators.size()); ++a)
+  for (Index a = 0; a < std::ssize(model.actuators); ++a)
     if (model.actuators[a].is<MagneticDrive>()) commands_.push_back(a);
-  std::vector<double> sums(static_cast<std::size_t>(vertices_));
+  std::vector<double> sums(vertices_);
   each([&]<int K, int Q>(const Set<K, Q>& set) {
     for (std::size_t e = 0; e < set.nodes.size(); ++e)
       for (const auto& poles : set.poles[e])
@@ -146,9 +146,9 @@ std::optional<double> Magnets::add_gradient(const Fields::Setting& setting, cons
   if (!setting.in_space()) return energy;
   std::atomic<bool> known = true;
   each([&]<int K, int Q>(const Set<K, Q>& set) {
-    const auto count = static_cast<Index>(set.nodes.size());
+    const Index count = set.nodes.size();
     LargeVector<std::array<energy::FluxPoint, Q>> fluxes((set.nodes.size() + lanes - 1) / lanes);
-    team.pieces(static_cast<Index>(fluxes.size()), [&](Index begin, Index end) {
+    team.pieces(fluxes.size(), [&](Index begin, Index end) {
       for (Index b = begin; b < end; ++b)
         for (int q = 0; q < Q; ++q) {
           const auto points = points_of<K>(set, b, q, positions);
@@ -216,7 +216,7 @@ void Magnets::stiffness(const Iterate& at, const Demand& demand, bool projected,
             for (int c = 0; c < 3; ++c) slot[3 * r + c] += block(r, c);
         }
     };
-    const auto count = static_cast<Index>(set.nodes.size());
+    const Index count = set.nodes.size();
     team.pieces((count + lanes - 1) / lanes, [&](Index begin, Index end) {
       energy::FluxPoint flux;
       for (Index b = begin; b < end; ++b)

@@ -49,7 +49,7 @@ class Couples {
 Moments::Moments(const Model& model) : model_(model) {
   for (const RegionMoment& of : model.loads.moments)
     for (int axis = 0; axis < 3; ++axis) components_.push_back({of, axis});
-  for (Index a = 0; a < static_cast<Index>(model.actuators.size()); ++a)
+  for (Index a = 0; a < std::ssize(model.actuators); ++a)
     if (const auto* command = model.actuators[a].as<MomentCommand>())
       components_[3 * static_cast<std::size_t>(command->moment) + static_cast<std::size_t>(command->axis)].command = a;
 }

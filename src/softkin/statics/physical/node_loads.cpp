@@ -13,8 +13,8 @@ void NodeLoads::add_cliques(linear::Cliques& cliques) {
 void NodeLoads::stiffness(const Iterate& at, const Demand& demand, bool projected, Term::Scratch& /*scratch*/,
                           LargeVector<double>& slots, Team& team) const {
   using Block = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
-  team.pieces(static_cast<Index>(parts()), [&](Index begin, Index end) {
-    for (auto f = static_cast<std::size_t>(begin); f < static_cast<std::size_t>(end); ++f) {
+  team.pieces(parts(), [&](Index begin, Index end) {
+    for (std::size_t f = begin; f < static_cast<std::size_t>(end); ++f) {
       const std::size_t count = nodes_of_part(f).size();
       double* out = slots.data() + 9 * slots_[f];
       const double share = projected ? 0 : scale(f, demand) / 2;  // a load has no positive part of its own

@@ -38,7 +38,7 @@ bool Placement::changes(const Demand& from, const Demand& to) const {
   if (from.share != to.share) return true;
   for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
     const Actuator& command = model_.actuators[a];
-    const Index i = static_cast<Index>(a);
+    const Index i = a;
     if ((command.is<MotionCommand>() || command.is<TurnCommand>()) && from.actuation[i] != to.actuation[i]) return true;
   }
   return false;

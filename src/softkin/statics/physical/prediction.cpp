@@ -12,7 +12,7 @@ bool are_of(const Slopes& slopes, const Iterate& at) {
 }
 
 std::vector<bool> held(const Slopes& slopes, Index actuators) {
-  std::vector<bool> active(static_cast<std::size_t>(actuators));
+  std::vector<bool> active(actuators);
   for (const Index a : slopes.held) active[a] = true;
   return active;
 }
@@ -229,11 +229,7 @@ bool follow_foretold(const Demand& here, const Demand& there, Workspace& work, I
 }
 
 Predictor::Predictor(const System& system, Workspace& work, const State& at, Team& team)
-    : system_(system),
-      work_(work),
-      at_(at),
-      iterate_(system.iterate(at)),
-      active_(static_cast<std::size_t>(system.actuators())) {
+    : system_(system), work_(work), at_(at), iterate_(system.iterate(at)), active_(system.actuators()) {
   for (Index a = 0; a < system.actuators(); ++a) {
     // chambers are held always, cables where they pull
     active_[a] = system.measures().constrains(a) && (!system.measures().only_pulls(a) || iterate_.multipliers[a] > 0);

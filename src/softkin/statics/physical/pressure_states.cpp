@@ -40,7 +40,7 @@ void Equilibria::find_pressures(State& at, Team& team) const {
   if (!known) loaded.multipliers = Eigen::VectorXd::Zero(actuators);
   const Demand demand{at.actuation.size() == actuators ? at.actuation : system_.model().rest_actuation(),
                       at.share >= 0 ? at.share : 1};
-  std::vector<bool> active(static_cast<std::size_t>(actuators));
+  std::vector<bool> active(actuators);
   for (Index a = 0; a < actuators; ++a) active[a] = !known && system_.measures().constrains(a);
   system_.set_time(at.history, at.elapsed_s, work, team);
   const Iterate shape = system_.iterate(loaded);

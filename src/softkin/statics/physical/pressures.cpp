@@ -12,7 +12,7 @@ std::unique_ptr<const Pressures> pressures_of(const Model& model, const Pressure
     return nullptr;
   constexpr double share = 30;  // of the diagonal, one over it, is a pressure of one shear modulus
   auto pressures = std::make_unique<Pressures>();
-  pressures->first = static_cast<Index>(model.rest.rows());
+  pressures->first = model.rest.rows();
   pressures->of.assign(model.elements.tetrahedra.size(), {-1, -1, -1, -1});
   double shear = 0;
   const Growers growers = growers_of(model);
@@ -39,10 +39,10 @@ std::unique_ptr<const Pressures> pressures_of(const Model& model, const Pressure
 
 std::unique_ptr<const Model> with_vertices(const Model& model, const Pressures& pressures) {
   auto own = std::make_unique<Model>(model);
-  const auto all = static_cast<std::size_t>(pressures.first + pressures.count());
+  const std::size_t all = pressures.first + pressures.count();
   const auto extend = [&](Points& points) {
     if (points.rows() == 0) return;
-    points.conservativeResize(static_cast<Index>(all), 3);
+    points.conservativeResize(all, 3);
     points.bottomRows(pressures.count()).setZero();
   };
   extend(own->rest);

@@ -14,7 +14,7 @@ struct Pressures {
   std::vector<std::array<Index, 4>> of;  // vertices by tetrahedron and corner; -1: it has none
   double unit = 1;                       // [MPa/mm]: makes them about as large as moves
 
-  [[nodiscard]] Index count() const { return static_cast<Index>(corners.size()); }
+  [[nodiscard]] Index count() const { return corners.size(); }
 };
 
 /// None where no material is mixed. like: of a robot with other numbers; null: none

@@ -8,7 +8,7 @@ namespace {
 
 /// Else it may be another load that comes to its end.
 bool voltages_alone_change(const Model& model, const Demand& from, const Demand& here) {
-  for (Index a = 0; a < static_cast<Index>(model.actuators.size()); ++a)
+  for (Index a = 0; a < std::ssize(model.actuators); ++a)
     if (from.actuation[a] != here.actuation[a] && !under_voltage(model.actuators[a])) return false;
   return true;
 }
@@ -18,7 +18,7 @@ bool voltages_alone_change(const Model& model, const Demand& from, const Demand&
 std::string pull_in_text(const Model& model, const Demand& from, const Demand& here, const Points& positions) {
   const std::string has = voltages_alone_change(model, from, here) ? "has" : "may have";
   std::string text;
-  for (Index a = 0; a < static_cast<Index>(model.actuators.size()); ++a) {
+  for (Index a = 0; a < std::ssize(model.actuators); ++a) {
     const double voltage = here.actuation[a];
     if (!under_voltage(model.actuators[a]) || !(voltage > from.actuation[a])) continue;
     const ElectricLayer layer = electric_layer(model, a, positions, voltage);

@@ -27,7 +27,7 @@ Saddle::Saddle(const supports::ActuatorMeasures& measures, std::shared_ptr<const
 
 void Saddle::activate(const std::vector<bool>& active) {
   active_.clear();
-  for (Index a = 0; a < static_cast<Index>(active.size()); ++a)
+  for (Index a = 0; a < std::ssize(active); ++a)
     if (active[a]) active_.push_back(a);
 }
 
@@ -67,7 +67,7 @@ void Saddle::solve_factorised(const Matrix& matrix, Precision precision, const B
 bool Saddle::loses_energy(const Matrix& matrix, Team& team) {
   constexpr int iterates = 5;
   constexpr double rounding = 1e-12;  // over the mean diagonal
-  const Index size = static_cast<Index>(slopes_.rows());
+  const Index size = slopes_.rows();
   Balance right;
   right.constraint.setZero(measures_.count());
   Eigen::VectorXd next = lopsided(size), multipliers;
@@ -82,7 +82,7 @@ bool Saddle::loses_energy(const Matrix& matrix, Team& team) {
   }
   Eigen::MatrixXd image = Eigen::MatrixXd::Zero(basis.rows(), iterates);
   linear::subtract_product(matrix.layout->reduced.columns(), matrix.values, basis, image, team);
-  for (Index i = 0; i < static_cast<Index>(compliance_.size()); ++i)  // what gives way is no constraint, but stiff
+  for (Index i = 0; i < std::ssize(compliance_); ++i)  // what gives way is no constraint, but stiff
     if (compliance_[i] > 0) image -= slopes_.col(i) * (slopes_.col(i).transpose() * basis) / compliance_[i];
   return symmetric_eigenvalues(-(basis.transpose() * image)).minCoeff() < -rounding * spectrum_.mean;
 }
@@ -124,7 +124,7 @@ void Saddle::ask(const Balance* step) {
 
 /// What the constraints leave of the stiffness, from their responses.
 void Saddle::close() {
-  const Index count = static_cast<Index>(active_.size());
+  const Index count = active_.size();
   spectrum_.unstable = spectrum_.negative;
   if (tendons_.count() == 0) {
     responses_ = solutions_.leftCols(count);
@@ -162,7 +162,7 @@ int Saddle::negative_with_tendons(const Eigen::MatrixXd& rates) const {
   for (Eigen::Index i = 0; i < eigen.values.size(); ++i)
     if (eigen.values[i] > nothing * largest) kept.push_back(i);
   if (kept.empty()) return spectrum_.negative;
-  Eigen::MatrixXd vectors(eigen.vectors.rows(), static_cast<Eigen::Index>(kept.size()));
+  Eigen::MatrixXd vectors(eigen.vectors.rows(), kept.size());
   Eigen::VectorXd inverse(vectors.cols());
   for (Eigen::Index i = 0; i < vectors.cols(); ++i) {
     vectors.col(i) = eigen.vectors.col(kept[i]);
@@ -183,7 +183,7 @@ void Saddle::grow(const Eigen::VectorXd& change, Eigen::VectorXd& growth) const 
 }
 
 void Saddle::close_constraints() {
-  const Index count = static_cast<Index>(active_.size());
+  const Index count = active_.size();
   if (count == 0) return;
   Eigen::MatrixXd schur = slopes_.transpose() * responses_;
   if (compliance_.size() > 0) schur.diagonal() += compliance_;
@@ -203,7 +203,7 @@ void Saddle::rub(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd&
   constexpr double settled = 1e-6;  // of lengthenings, over the largest
   const bool known = balance.slips.size() > 0;
   const Eigen::VectorXd& slips = known ? balance.slips : slips_;
-  const Index count = static_cast<Index>(active_.size());
+  const Index count = active_.size();
   // of the step without tendons, then of what the constraints pull with: by the few numbers that tendons and
   // constraints know of them
   Eigen::MatrixXd all(step.size(), 1 + count);
@@ -246,7 +246,7 @@ void Saddle::step(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd
 }
 
 void Saddle::first_step(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd& change) {
-  step = solutions_.col(static_cast<Index>(active_.size()) + tendons_.count());
+  step = solutions_.col(std::ssize(active_) + tendons_.count());
   complete(balance, step, change);
 }
 
@@ -261,8 +261,7 @@ void Saddle::complete(const Balance& balance, Eigen::VectorXd& step, Eigen::Vect
 /// What constraints miss, and a step without them so much more.
 Eigen::VectorXd Saddle::asked_of(const Balance& balance, const Eigen::VectorXd& more) const {
   Eigen::VectorXd asked = more;
-  for (Index i = 0; i < static_cast<Index>(asked.size()); ++i)
-    asked[i] += measures_.sign(active_[i]) * balance.constraint[active_[i]];
+  for (Index i = 0; i < std::ssize(asked); ++i) asked[i] += measures_.sign(active_[i]) * balance.constraint[active_[i]];
   return asked;
 }
 
@@ -277,7 +276,7 @@ void Saddle::meet_constraints(const Balance& balance, Eigen::VectorXd& step, Eig
   if (active_.empty()) return;
   const Eigen::VectorXd multipliers = closing(balance, slopes_.transpose() * step);
   step -= responses_ * multipliers;
-  for (Index i = 0; i < static_cast<Index>(multipliers.size()); ++i) change[active_[i]] = multipliers[i];
+  for (Index i = 0; i < std::ssize(multipliers); ++i) change[active_[i]] = multipliers[i];
 }
 
 void Saddle::correct_multipliers(const Balance& balance, Eigen::VectorXd& multipliers, Team& team) {
@@ -289,7 +288,7 @@ void Saddle::correct_multipliers(const Balance& balance, Eigen::VectorXd& multip
     return;
   }
   const Eigen::VectorXd change = closing(balance, -(responses_.transpose() * balance.force));
-  for (Index i = 0; i < static_cast<Index>(change.size()); ++i) multipliers[active_[i]] += change[i];
+  for (Index i = 0; i < std::ssize(change); ++i) multipliers[active_[i]] += change[i];
 }
 
 }  // namespace softkin::physical

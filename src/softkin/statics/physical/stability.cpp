@@ -49,7 +49,7 @@ bool as_stiff_as_factorised(const System& system, const Iterate& at, const Deman
   Eigen::VectorXd moves = direction;
   system.drop_pressures(moves);
   double curvature = moves.dot(there.force - balance.force) / reach;
-  for (Index a = 0; a < static_cast<Index>(balance.compliance.size()); ++a)  // of what is sealed in chambers
+  for (Index a = 0; a < std::ssize(balance.compliance); ++a)  // of what is sealed in chambers
     if (active[a] && balance.compliance[a] > 0)
       curvature += std::pow((there.constraint[a] - balance.constraint[a]) / reach, 2) / balance.compliance[a];
   const double expected = work.factored.softest->curvature;

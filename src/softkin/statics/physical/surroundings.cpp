@@ -23,7 +23,7 @@ double firm_slope(double command) {
 
 Surroundings::Surroundings(const Model& model)
     : model_(model), stiffest_(firmness * model.contact.modulus_MPa * model.diagonal_mm) {
-  for (Index a = 0; a < static_cast<Index>(model.actuators.size()); ++a) any_ = any_ || loads(a);
+  for (Index a = 0; a < std::ssize(model.actuators); ++a) any_ = any_ || loads(a);
 }
 
 bool Surroundings::loads(Index command) const {
@@ -93,7 +93,7 @@ void Surroundings::stiffness(const Iterate& /*at*/, const Demand& demand, bool /
 void Surroundings::add_change(const Demand& from, const Demand& to, const Points& positions, Scratch& scratch,
                               Points& force, Team& team) const {
   Points slope;
-  for (Index a = 0; a < static_cast<Index>(model_.actuators.size()); ++a) {
+  for (Index a = 0; a < std::ssize(model_.actuators); ++a) {
     const double change = to.actuation[a] - from.actuation[a];
     if (change == 0 || !loads(a)) continue;
     if (const auto* command = model_.actuators[a].as<ForceCommand>()) {

@@ -41,7 +41,7 @@ Eigen::VectorXd push_of(const System& system, const Demand& there, const std::ve
 class Drum {
  public:
   Drum(const System& system, const Points& positions) : system_(system), positions_(positions) {
-    alone_.assign(static_cast<std::size_t>(positions.rows()), false);
+    alone_.assign(positions.rows(), false);
     for (const Index v : system.layers()->alone()) alone_[v] = true;
   }
 

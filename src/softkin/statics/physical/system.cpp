@@ -65,7 +65,7 @@ System::System(const Model& given, std::unique_ptr<const Pressures> pressures, c
 }
 
 void System::make_layout() {
-  linear::BlockPattern pattern(static_cast<Index>(model_.rest.rows()), coupling_.cliques);
+  linear::BlockPattern pattern(model_.rest.rows(), coupling_.cliques);
   freedoms_ = std::make_unique<const supports::Freedoms>(model_, pattern,
                                                          pressures_ ? pressures_->corners : std::vector<Index>());
   supports::ReducedMatrix reduced(*freedoms_, pattern);
@@ -121,7 +121,7 @@ void System::set_time(std::shared_ptr<const ViscousHistory> history, double elap
 
 Demand System::unbalanced(const Iterate& at, const Demand& demand, Workspace& work, Team& team) const {
   Balance balance;
-  evaluate(at, demand, std::vector<bool>(static_cast<std::size_t>(actuators()), false), work, balance, team);
+  evaluate(at, demand, std::vector<bool>(actuators(), false), work, balance, team);
   work.fading.force = work.gradient;
   constexpr double balanced = 1e-6;  // of what elements pull with: Newton's method does not need a way for that
   const Imbalance left = imbalance(balance, work, team);
@@ -147,7 +147,7 @@ void System::give_slots(const Iterate& at, Workspace& work, Team& team) const {
   if (!lacking) return;
   linear::Cliques cliques = coupling_.cliques;
   each_term(work, [&](const Term& term, Term::Scratch& scratch) { term.add_cliques_of(at, scratch, cliques, team); });
-  linear::BlockPattern pattern(static_cast<Index>(model_.rest.rows()), cliques);
+  linear::BlockPattern pattern(model_.rest.rows(), cliques);
   supports::ReducedMatrix reduced = supports::ReducedMatrix::wider(*freedoms_, pattern);
   auto symbolic = std::make_shared<const linear::FrontTree>(linear::make_front_tree(reduced.columns()));
   work.stiffness.layout = std::make_shared<const Layout>(
@@ -205,15 +205,15 @@ void System::reduce_slopes(const Iterate& at, const Balance& balance, const Work
                            Eigen::MatrixXd& pulls) const {
   require_last(balance, work);
   const std::vector<Index>& active = work.saddle.active();
-  slopes.resize(freedoms_->size(), static_cast<Index>(active.size()));
-  for (Index i = 0; i < static_cast<Index>(slopes.cols()); ++i) {
+  slopes.resize(freedoms_->size(), active.size());
+  for (Index i = 0; i < slopes.cols(); ++i) {
     freedoms_->reduce(work.slopes[active[i]], at.positions, slopes.col(i));
     slopes.col(i) *= measures().sign(active[i]);
   }
   if (std::none_of(active.begin(), active.end(), [&](Index a) { return tendons().rubs(a); })) return pulls.resize(0, 0);
   pulls = slopes;
   Points pull;
-  for (Index i = 0; i < static_cast<Index>(slopes.cols()); ++i) {
+  for (Index i = 0; i < slopes.cols(); ++i) {
     if (!tendons().rubs(active[i])) continue;
     actuator_loads_.pull(active[i], at, pull);
     freedoms_->reduce(pull, at.positions, pulls.col(i));
@@ -224,8 +224,7 @@ void System::reduce_slopes(const Iterate& at, const Balance& balance, const Work
 Eigen::VectorXd System::compliance(const Balance& balance, const Workspace& work) const {
   const std::vector<Index>& active = work.saddle.active();
   if (balance.compliance.size() == 0) return {};
-  return Eigen::VectorXd::NullaryExpr(static_cast<Index>(active.size()),
-                                      [&](Eigen::Index i) { return balance.compliance[active[i]]; });
+  return Eigen::VectorXd::NullaryExpr(active.size(), [&](Eigen::Index i) { return balance.compliance[active[i]]; });
 }
 
 Points System::upset_by_held(const Iterate& at, const Demand& to, const std::vector<bool>& active, Workspace& work,
@@ -265,7 +264,7 @@ void System::upset(const Iterate& at, const Demand& from, const Demand& to, cons
 void System::measure(const Iterate& at, const Demand& demand, Workspace& work, ElementDeformation& out,
                      Team& team) const {
   Balance balance;
-  evaluate(at, demand, std::vector<bool>(static_cast<std::size_t>(actuators()), false), work, balance, team);
+  evaluate(at, demand, std::vector<bool>(actuators(), false), work, balance, team);
   out.reactions = work.gradient;
   for (Index v = 0; v < out.reactions.rows(); ++v)
     for (int axis = 0; axis < 3; ++axis)
@@ -273,7 +272,7 @@ void System::measure(const Iterate& at, const Demand& demand, Workspace& work, E
   each_term(work, [&](const Term& term, Term::Scratch& scratch) { term.tell(at, demand, scratch, out, team); });
   for (Index a = 0; a < actuators(); ++a) {
     if (!tendons().rubs(a)) continue;
-    out.tendons.resize(static_cast<std::size_t>(actuators()));
+    out.tendons.resize(actuators());
     out.tendons[a] = tendons().forces(a, at.multipliers[a], at);
   }
 }

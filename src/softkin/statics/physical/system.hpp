@@ -156,7 +156,7 @@ class System {
   /// Are there sheets beside elements, which have no stiffness where they are flat and slack?
   [[nodiscard]] bool limp() const { return layers_ && layers_->limp(); }
   [[nodiscard]] const Tendons& tendons() const { return actuator_loads_.tendons(); }
-  [[nodiscard]] Index actuators() const { return static_cast<Index>(model_.actuators.size()); }
+  [[nodiscard]] Index actuators() const { return model_.actuators.size(); }
   /// Of a shape whose multipliers are known.
   [[nodiscard]] Iterate iterate(const State& at) const {
     Iterate shape{at.positions, at.multipliers, at.anchors, at.eyelets};

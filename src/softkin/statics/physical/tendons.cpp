@@ -72,11 +72,11 @@ Tendons::Way Tendons::way(Index actuator, const Points& positions) const {
   const Cable& cable = cables_[actuator];
   Way way;
   for (const EmbeddedPoint& point : points_of(actuator)) way.points.push_back(point.at(positions));
-  const auto count = static_cast<Index>(way.points.size()) - 1;
+  const Index count = std::ssize(way.points) - 1;
   way.lengths.resize(count);
   way.beyond.resize(count);
   way.limits.setZero(count);
-  way.turns.resize(static_cast<std::size_t>(count), {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
+  way.turns.resize(count, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
   for (Index j = 0; j < count; ++j) {
     const Vec3 step = way.points[j + 1] - way.points[j];
     way.lengths[j] = step.norm();
@@ -101,7 +101,7 @@ Tendons::Way Tendons::way(Index actuator, const Points& positions) const {
 Tendons::Way Tendons::way(Index actuator, const Iterate& at) const {
   Way found = way(actuator, at.positions);
   const Cable& cable = cables_[actuator];
-  const Index count = static_cast<Index>(found.lengths.size());
+  const Index count = found.lengths.size();
   found.slips.setZero(count);
   found.share.resize(count);
   double exponent = 0;
@@ -126,7 +126,7 @@ std::vector<double> Tendons::lengths(const Points& positions) const {
 
 std::vector<double> Tendons::lengths(const Points& positions, const Eigen::VectorXd& slips) const {
   std::vector<double> all;
-  for (Index a = 0; a < static_cast<Index>(cables_.size()); ++a) {
+  for (Index a = 0; a < std::ssize(cables_); ++a) {
     if (!rubs(a)) continue;
     for (const double beyond : way(a, positions).beyond)
       all.push_back(beyond + cables_[a].creep * (slips.size() == remembered_ ? slips[all.size()] : 1));
@@ -139,7 +139,7 @@ void Tendons::slide(const Points& positions, std::vector<double>& eyelets) const
   if (eyelets.empty()) eyelets = now;
   for (const Cable& cable : cables_) {
     for (Index j = 0; j < cable.count; ++j) {
-      const auto i = static_cast<std::size_t>(cable.memory + j);
+      const std::size_t i = cable.memory + j;
       eyelets[i] = std::clamp(eyelets[i], now[i] - cable.creep, now[i] + cable.creep);
     }
   }
@@ -147,7 +147,7 @@ void Tendons::slide(const Points& positions, std::vector<double>& eyelets) const
 
 Eigen::VectorXd Tendons::slips(const Iterate& at) const {
   Eigen::VectorXd all(remembered_);
-  for (Index a = 0; a < static_cast<Index>(cables_.size()); ++a) {
+  for (Index a = 0; a < std::ssize(cables_); ++a) {
     if (!rubs(a)) continue;
     const Way found = way(a, at);
     all.segment(cables_[a].memory, found.slips.size()) = found.slips;
@@ -162,7 +162,7 @@ Eigen::VectorXd Tendons::shares(Index actuator, const Iterate& at) const {
 void Tendons::pull(Index actuator, const Iterate& at, Points& force) const {
   const Way found = way(actuator, at);
   std::vector<Vec3> vectors(found.points.size(), Vec3::Zero());
-  for (Index j = 0; j < static_cast<Index>(found.share.size()); ++j) {
+  for (Index j = 0; j < std::ssize(found.share); ++j) {
     vectors[j] -= found.share[j] * found.directions[j];
     vectors[j + 1] += found.share[j] * found.directions[j];
   }
@@ -174,7 +174,7 @@ void Tendons::add_response(Index actuator, double tension, const Iterate& at, co
                            Points& force) const {
   const Way found = way(actuator, at);
   const double creep = cables_[actuator].creep;
-  const auto count = static_cast<Index>(found.share.size());
+  const Index count = found.share.size();
   std::vector<Vec3> steps, vectors(found.points.size(), Vec3::Zero());
   for (const EmbeddedPoint& point : points_of(actuator)) steps.push_back(point.at(moves));
   Eigen::VectorXd slip(count);  // of the moves
@@ -197,7 +197,7 @@ void Tendons::add_response(Index actuator, double tension, const Iterate& at, co
 TendonForces Tendons::forces(Index actuator, double tension, const Iterate& at) const {
   const Way found = way(actuator, at);
   double sticks = 0;
-  for (Index j = 0; j < static_cast<Index>(found.slips.size()); ++j)
+  for (Index j = 0; j < std::ssize(found.slips); ++j)
     if (std::abs(found.slips[j]) < whole) sticks += found.limits[j];
   const double all = found.limits.sum();
   return {tension * found.share[found.share.size() - 1], all > 0 ? sticks / all : 0};
@@ -206,7 +206,7 @@ TendonForces Tendons::forces(Index actuator, double tension, const Iterate& at) 
 TendonColumns Tendons::columns(const Iterate& at, const supports::Freedoms& freedoms) const {
   TendonColumns columns;
   Index count = 0;
-  for (Index a = 0; a < static_cast<Index>(cables_.size()); ++a) {
+  for (Index a = 0; a < std::ssize(cables_); ++a) {
     if (!rubs(a) || at.multipliers[a] == 0) continue;
     const Cable& cable = cables_[a];
     columns.tendons.push_back({count, cable.count, a, cable.memory, cable.creep, at.multipliers[a]});

@@ -25,7 +25,7 @@ struct TendonColumns {
   Eigen::VectorXd tensions{};  // of segments [N]
   Eigen::VectorXd limits{};    // mu theta of the eyelet where each begins [-]
 
-  [[nodiscard]] Index count() const { return static_cast<Index>(tensions.size()); }
+  [[nodiscard]] Index count() const { return tensions.size(); }
 
   /// How tensions follow moves, a column each, by the turns that change [N].
   [[nodiscard]] Eigen::MatrixXd turned(const Eigen::Ref<const Eigen::MatrixXd>& moves) const;
@@ -53,7 +53,7 @@ class Tendons {
   [[nodiscard]] bool any() const { return remembered_ > 0; }
   [[nodiscard]] bool rubs(Index actuator) const { return cables_[actuator].memory >= 0; }
   /// Numbers that are remembered: per eyelet of every cable that rubs.
-  [[nodiscard]] std::size_t remembered() const { return static_cast<std::size_t>(remembered_); }
+  [[nodiscard]] std::size_t remembered() const { return remembered_; }
 
   /// What is remembered where nothing rubs: the lengths beyond each eyelet [mm].
   [[nodiscard]] std::vector<double> lengths(const Points& positions) const;

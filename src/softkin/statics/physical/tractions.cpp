@@ -136,7 +136,7 @@ Tractions::Blocks Tractions::slopes(std::size_t number, const Points& positions)
       }
     const TrianglePoint& point = *place.point;
     for (std::size_t j = 0; j < face.nodes.size(); ++j) {
-      const auto k = static_cast<Eigen::Index>(j);
+      const Eigen::Index k = j;
       const Eigen::RowVector2d slope = Eigen::RowVector2d(point.along_u[k], point.along_v[k]) * place.to_frame;
       const Mat3 change = slope[0] * by[0] + slope[1] * by[1];
       for (std::size_t i = 0; i < face.nodes.size(); ++i) blocks[i][j] -= point.shape[i] * change;

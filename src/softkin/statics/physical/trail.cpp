@@ -17,7 +17,7 @@ constexpr double worth = 0.3, most_tolerances = 100;
 
 /// Weights of the polynomial through values at `nodes`, from `first` on, `degree` + 1 of them, at zero.
 std::vector<double> lagrange(const std::vector<double>& nodes, std::size_t first, int degree, double at) {
-  std::vector<double> weights(static_cast<std::size_t>(degree) + 1, 1.0);
+  std::vector<double> weights(degree + 1, 1.0);
   for (std::size_t i = 0; i < weights.size(); ++i)
     for (std::size_t j = 0; j < weights.size(); ++j)
       if (j != i) weights[i] *= (at - nodes[first + j]) / (nodes[first + i] - nodes[first + j]);

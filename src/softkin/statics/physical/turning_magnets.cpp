@@ -106,7 +106,7 @@ std::optional<double> TurningMagnets::add_gradient(const Fields& fields, const F
       energy::Shape<K> gradient;
       energy::Pack energy;
     };
-    const auto count = static_cast<Index>(set.blocks.size());
+    const Index count = set.blocks.size();
     LargeVector<Pull> pulls(set.blocks.size());
     team.pieces(count, [&](Index begin, Index end) {
       energy::Shape<K> shape;
@@ -139,7 +139,7 @@ void TurningMagnets::add_stiffness(const Fields& fields, const Fields::Setting& 
                                    bool projected, LargeVector<double>& slots, Team& team) const {
   each([&]<int K, int Q>(const Set<K, Q>& set) {
     constexpr int matrices = K * (K + 1) / 2;
-    team.pieces(static_cast<Index>(set.blocks.size()), [&](Index begin, Index end) {
+    team.pieces(set.blocks.size(), [&](Index begin, Index end) {
       energy::Shape<K> shape;
       energy::FluxBlock<Q> flux = uniform_flux<Q>(setting);
       energy::ElasticStiffness<K> out;

@@ -40,7 +40,7 @@ void Body::set_time(std::shared_ptr<const ViscousHistory> history, double elapse
   scratch.begun.resize(begun_);
   each_set([&]<int K, int Q>(const Set<K, Q>& set) {
     if (set.viscous.branches == 0) return;
-    team.pieces(static_cast<Index>(set.blocks.size()), [&](Index begin, Index end) {
+    team.pieces(set.blocks.size(), [&](Index begin, Index end) {
       for (Index b = begin; b < end; ++b) {
         const auto block = static_cast<std::size_t>(b), first = block * static_cast<std::size_t>(set.viscous.branches);
         for (std::size_t i = first; !same_step && i < first + static_cast<std::size_t>(set.viscous.branches); ++i)
@@ -63,11 +63,11 @@ std::shared_ptr<const ViscousHistory> Body::flow(const Demand& demand, const Poi
   each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {
     if (set.viscous.branches == 0) return;
     of_blocks.resize(blocks.size());
-    team.pieces(static_cast<Index>(blocks.size()), [&](Index begin, Index end) {
+    team.pieces(blocks.size(), [&](Index begin, Index end) {
       Shape<K> shape;
       for (Index b = begin; b < end; ++b) {
         load<K>(positions, set.nodes[b], shape);
-        const auto block = static_cast<std::size_t>(b);
+        const std::size_t block = b;
         double* strains = after->strains.data() + set.viscous.first_strain + set.strains_each() * block;
         const Pack* rates =
             scratch.rates.data() + set.viscous.first_branch + block * static_cast<std::size_t>(set.viscous.branches);

@@ -119,14 +119,13 @@ void term_second_derivative(int count, const Vec3* nodes, Mat3 (&blocks)[6][6]) 
 
 }  // namespace
 
-ActuatorMeasures::ActuatorMeasures(const Model& model)
-    : vertices_(static_cast<Index>(model.rest.rows())), terms_(model.actuators.size()) {
+ActuatorMeasures::ActuatorMeasures(const Model& model) : vertices_(model.rest.rows()), terms_(model.actuators.size()) {
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const Actuator& actuator = model.actuators[a];
-    const Index first = vertices_ + static_cast<Index>(points_.size());
+    const Index first = vertices_ + std::ssize(points_);
     if (const auto* cable = actuator.as<CableDrive>()) {
       for (const EmbeddedPoint& point : cable->points) points_.push_back(&point);
-      for (Index i = 0; i + 1 < static_cast<Index>(cable->points.size()); ++i)
+      for (Index i = 0; i + 1 < std::ssize(cable->points); ++i)
         terms_[a].push_back({2, {first + i, first + i + 1}, {}});
     }
     const auto* chamber = actuator.as<ChamberDrive>();
@@ -141,10 +140,10 @@ ActuatorMeasures::ActuatorMeasures(const Model& model)
         terms_[a].push_back({6, {c[0], c[1], c[2], face.edges[0], face.edges[1], face.edges[2]}, {}});
     }
   }
-  for (Index a = 0; a < static_cast<Index>(terms_.size()); ++a)
+  for (Index a = 0; a < std::ssize(terms_); ++a)
     rest_.push_back(measures(a) && !flat_at_rest(model.actuators[a]) ? value(a, model.rest)
                                                                      : model.actuators[a].rest_measure);
-  for (Index a = 0; a < static_cast<Index>(terms_.size()); ++a) {
+  for (Index a = 0; a < std::ssize(terms_); ++a) {
     const Actuator& actuator = model.actuators[a];
     const auto* cable = actuator.as<CableDrive>();
     const bool stretches = actuator.is<DeaDrive>() || actuator.is<GrowthDrive>();
@@ -215,7 +214,7 @@ void ActuatorMeasures::add_cliques(linear::Cliques& cliques) {
         cliques_.push_back({static_cast<Index>(a), cliques.slots.back(), vertices, {}});
         cliques.add(vertices);
       }
-      cliques_[found->second].terms.push_back(static_cast<Index>(t));
+      cliques_[found->second].terms.push_back(t);
       for (auto& shares : term.parts)
         for (Part& part : shares)
           part.first =
@@ -251,7 +250,7 @@ void ActuatorMeasures::second_derivative(const Clique& clique, const Points& pos
 void ActuatorMeasures::second_derivatives(const Points& positions, const Eigen::VectorXd& scale,
                                           const std::vector<Eigen::VectorXd>& shares, LargeVector<double>& slots,
                                           Team& team) const {
-  team.pieces(static_cast<Index>(cliques_.size()), [&](Index begin, Index end) {
+  team.pieces(cliques_.size(), [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i) {
       const Index a = cliques_[i].actuator;
       second_derivative(cliques_[i], positions, scale[a], shares[a], slots);

@@ -14,7 +14,7 @@ class ActuatorMeasures {
   explicit ActuatorMeasures(const Model& model);
 
   /// Of actuators, of all kinds.
-  [[nodiscard]] Index count() const { return static_cast<Index>(rest_.size()); }
+  [[nodiscard]] Index count() const { return rest_.size(); }
   /// Is actuator a a cable or a chamber?
   [[nodiscard]] bool measures(Index actuator) const { return !terms_[actuator].empty(); }
   /// At rest.

@@ -32,7 +32,7 @@ void Freedoms::find_regions(const Model& model) {
       if (region.turns[axis]) region.turn_axes.push_back(axis);
     }
     for (const Index v : region.vertices) {
-      region_of_[v] = static_cast<Index>(regions_.size());
+      region_of_[v] = regions_.size();
       fixed_[v] = {true, true, true};  // no unknowns of its own
     }
     regions_.push_back(std::move(region));
@@ -42,7 +42,7 @@ void Freedoms::find_regions(const Model& model) {
 /// Per node, those of the ends of the edge that it stands in the middle of; -1: none.
 std::vector<std::array<Index, 2>> Freedoms::ends_of(const Model& model) const {
   const Index count = 1 + *std::max_element(node_of_.begin(), node_of_.end());
-  std::vector<std::array<Index, 2>> ends(static_cast<std::size_t>(count), {-1, -1});
+  std::vector<std::array<Index, 2>> ends(count, {-1, -1});
   for (std::size_t t = 0; t < model.elements.edge_nodes.size(); ++t)
     for (int e = 0; e < 6; ++e) {
       const Index middle = model.elements.edge_nodes[t][e];
@@ -54,26 +54,26 @@ std::vector<std::array<Index, 2>> Freedoms::ends_of(const Model& model) const {
 }
 
 void Freedoms::number(const Model& model, const linear::BlockPattern& pattern) {
-  node_of_.assign(static_cast<std::size_t>(rest_.rows()), -1);
+  node_of_.assign(rest_.rows(), -1);
   std::vector<Index> vertex_of;
   for (Index v = 0; v < rest_.rows(); ++v)
     if (fixed_[v] != std::array<bool, 3>{true, true, true}) {
-      node_of_[v] = static_cast<Index>(vertex_of.size());
+      node_of_[v] = vertex_of.size();
       vertex_of.push_back(v);
     }
-  const Index vertex_nodes = static_cast<Index>(vertex_of.size());
-  const Index count = vertex_nodes + static_cast<Index>(regions_.size());
+  const Index vertex_nodes = vertex_of.size();
+  const Index count = vertex_nodes + std::ssize(regions_);
   for (Index v = 0; v < rest_.rows(); ++v)
     if (region_of_[v] >= 0) node_of_[v] = vertex_nodes + region_of_[v];
   const Eigen::SparseMatrix<double> graph = node_graph(pattern, node_of_, count);
   const linear::Ordering ordering = ordering_of(model, graph);
   pieces_ = ordering.pieces;
 
-  std::vector<Index> place(static_cast<std::size_t>(count));
+  std::vector<Index> place(count);
   for (Index k = 0; k < count; ++k) place[ordering.order[k]] = k;
   for (Index& node : node_of_)
     if (node >= 0) node = place[node];
-  first_unknown_.assign(static_cast<std::size_t>(rest_.rows()), -1);
+  first_unknown_.assign(rest_.rows(), -1);
   for (Index k = 0; k < count; ++k) {
     const Index node = ordering.order[k], first = unknowns_.back();
     Index width = 0;
@@ -87,7 +87,7 @@ void Freedoms::number(const Model& model, const linear::BlockPattern& pattern) {
       Region& region = regions_[node - vertex_nodes];
       vertex_of_.push_back(-1);
       region.node = k;
-      width = static_cast<Index>(region.slide_axes.size() + region.turn_axes.size());
+      width = region.slide_axes.size() + region.turn_axes.size();
     }
     unknowns_.push_back(first + width);
   }
@@ -156,7 +156,7 @@ double Freedoms::largest(const Eigen::VectorXd& reduced) const {
   for (Index node = 0; node < nodes(); ++node)
     if (vertex_of_[node] >= 0) count(reduced.segment(unknowns_[node], width(node)).squaredNorm());
   for (const Region& region : regions_) {
-    const Index slides = static_cast<Index>(region.slide_axes.size()), first = unknowns_[region.node];
+    const Index slides = region.slide_axes.size(), first = unknowns_[region.node];
     const Index turns = width(region.node) - slides;
     count(reduced.segment(first, slides).squaredNorm());
     if (turns > 0)
@@ -216,7 +216,7 @@ Freedoms::Size Freedoms::size_of(const Eigen::Ref<const Eigen::VectorXd>& unknow
   Points moves;
   expand(unknowns, positions, moves);
   double largest = 0, sum = 0;
-  const Index count = static_cast<Index>(moves.rows()) - static_cast<Index>(scalars_.size());
+  const Index count = moves.rows() - std::ssize(scalars_);
   for (Index v = 0; v < count; ++v) {
     const double square = moves.row(v).squaredNorm();
     if (!(square <= largest)) largest = square;  // also where it is not a number
@@ -229,7 +229,7 @@ void Freedoms::add_turning(const Points& gradient, const Points& positions,
                            const Eigen::Ref<const Eigen::VectorXd>& unknowns, Eigen::Ref<Eigen::VectorXd> out) const {
   for (const Region& region : regions_) {
     const Mat3 bend = bend_of(region, gradient, positions);
-    const Index first = unknowns_[region.node] + static_cast<Index>(region.slide_axes.size());
+    const Index first = unknowns_[region.node] + std::ssize(region.slide_axes);
     for (std::size_t i = 0; i < region.turn_axes.size(); ++i)
       for (std::size_t k = 0; k < region.turn_axes.size(); ++k)
         out[first + static_cast<Index>(i)] +=

@@ -65,10 +65,8 @@ class Freedoms {
   [[nodiscard]] std::vector<std::array<Index, 2>> ends_of(const Model& model) const;
   void number(const Model& model, const linear::BlockPattern& pattern);
   [[nodiscard]] linear::Ordering ordering_of(const Model& model, const Eigen::SparseMatrix<double>& graph) const;
-  [[nodiscard]] bool is_scalar(Index vertex) const {
-    return vertex >= static_cast<Index>(rest_.rows()) - static_cast<Index>(scalars_.size());
-  }
-  [[nodiscard]] Index nodes() const { return static_cast<Index>(vertex_of_.size()); }
+  [[nodiscard]] bool is_scalar(Index vertex) const { return vertex >= rest_.rows() - std::ssize(scalars_); }
+  [[nodiscard]] Index nodes() const { return vertex_of_.size(); }
   [[nodiscard]] Index width(Index node) const { return unknowns_[node + 1] - unknowns_[node]; }
   [[nodiscard]] Eigen::Matrix<double, 3, Eigen::Dynamic> tangent(Index vertex, const std::vector<Vec3>& centers,
                                                                  const Points& positions) const;

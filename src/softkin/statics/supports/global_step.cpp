@@ -35,20 +35,19 @@ void GlobalStep::add_regions(const Model& model) {
   regions_ = movable_bodies(model, fixed_, held_);
   for (std::size_t r = 0; r < regions_.size(); ++r)
     for (const Index v : regions_[r].vertices) {
-      region_of_[v] = static_cast<Index>(r);
+      region_of_[v] = r;
       fixed_[v] = {false, false, false};
     }
 }
 
 void GlobalStep::make_group(const Eigen::SparseMatrix<double>& matrix, const std::vector<Index>& order, Group& group) {
-  const Index handles = 4 * static_cast<Index>(regions_.size());
-  const Index count = static_cast<Index>(group.free.size());
+  const Index handles = 4 * std::ssize(regions_);
+  const Index count = group.free.size();
   std::vector<Index> place(rest_.rows(), -1);
   for (Index i = 0; i < count; ++i) place[group.free[i]] = i;
   Points basis = Points::Zero(rest_.rows(), 3);
   for (const RigidBody& region : regions_)
-    for (std::size_t i = 0; i < region.vertices.size(); ++i)
-      basis.row(region.vertices[i]) = region.offsets.row(static_cast<Index>(i));
+    for (std::size_t i = 0; i < region.vertices.size(); ++i) basis.row(region.vertices[i]) = region.offsets.row(i);
   const auto handle_row = [&](Index v) { return Eigen::Vector4d(1, basis(v, 0), basis(v, 1), basis(v, 2)); };
 
   group.coupling = Eigen::MatrixXd::Zero(count, handles);
@@ -66,7 +65,7 @@ void GlobalStep::make_group(const Eigen::SparseMatrix<double>& matrix, const std
   };
   for (Index j = 0; j < matrix.cols(); ++j)
     for (Eigen::SparseMatrix<double>::InnerIterator it(matrix, j); it; ++it) {
-      const Index i = static_cast<Index>(it.row());
+      const Index i = it.row();
       add(i, j, it.value());
       if (i != j) add(j, i, it.value());
     }
@@ -91,27 +90,25 @@ void GlobalStep::make_group(const Eigen::SparseMatrix<double>& matrix, const std
 
 void GlobalStep::place(const RigidBody& region, const Pose& pose, Points& positions) const {
   for (std::size_t i = 0; i < region.vertices.size(); ++i)
-    positions.row(region.vertices[i]) =
-        (pose.center + pose.rotation * region.offsets.row(static_cast<Index>(i)).transpose()).transpose();
+    positions.row(region.vertices[i]) = (pose.center + pose.rotation * region.offsets.row(i).transpose()).transpose();
 }
 
 GlobalStep::Handles GlobalStep::handles_of(const Points& residual) const {
-  Handles sums = Handles::Zero(4 * static_cast<Index>(regions_.size()), 3);
+  Handles sums = Handles::Zero(4 * std::ssize(regions_), 3);
   for (std::size_t r = 0; r < regions_.size(); ++r)
     for (std::size_t i = 0; i < regions_[r].vertices.size(); ++i) {
       const auto pull = residual.row(regions_[r].vertices[i]);
-      sums.row(4 * static_cast<Index>(r)) += pull;
-      sums.middleRows<3>(4 * static_cast<Index>(r) + 1) +=
-          regions_[r].offsets.row(static_cast<Index>(i)).transpose() * pull;
+      sums.row(4 * r) += pull;
+      sums.middleRows<3>(4 * r + 1) += regions_[r].offsets.row(i).transpose() * pull;
     }
   return sums;
 }
 
 GlobalStep::Handles GlobalStep::handles_of(const std::vector<Pose>& poses) const {
-  Handles handles(4 * static_cast<Index>(poses.size()), 3);
+  Handles handles(4 * std::ssize(poses), 3);
   for (std::size_t r = 0; r < poses.size(); ++r) {
-    handles.row(4 * static_cast<Index>(r)) = poses[r].center.transpose();
-    handles.middleRows<3>(4 * static_cast<Index>(r) + 1) = poses[r].rotation.transpose();
+    handles.row(4 * r) = poses[r].center.transpose();
+    handles.middleRows<3>(4 * r + 1) = poses[r].rotation.transpose();
   }
   return handles;
 }
@@ -119,10 +116,10 @@ GlobalStep::Handles GlobalStep::handles_of(const std::vector<Pose>& poses) const
 /// J of one coordinate of the handles: dH = J (slide, turn) to first order, center moves by the slide, column k of R by
 /// turn x R_k.
 Eigen::MatrixXd GlobalStep::tangent_of(const std::vector<Pose>& poses, int axis) const {
-  const auto count = static_cast<Index>(poses.size());
+  const Index count = poses.size();
   Eigen::MatrixXd tangent = Eigen::MatrixXd::Zero(4 * count, 6 * count);
   for (std::size_t r = 0; r < poses.size(); ++r) {
-    const Index row = 4 * static_cast<Index>(r), column = 6 * static_cast<Index>(r);
+    const Index row = 4 * r, column = 6 * r;
     if (regions_[r].slides[axis]) tangent(row, column + axis) = 1;
     for (int k = 0; k < 3; ++k)
       for (int about = 0; about < 3; ++about)
@@ -134,7 +131,7 @@ Eigen::MatrixXd GlobalStep::tangent_of(const std::vector<Pose>& poses, int axis)
 
 /// Slides and turns that minimise the quadratic to first order of the poses.
 Eigen::VectorXd GlobalStep::gauss_newton_move(const Handles& slope, const std::vector<Pose>& poses) const {
-  const Index unknowns = 6 * static_cast<Index>(poses.size());
+  const Index unknowns = 6 * std::ssize(poses);
   Eigen::MatrixXd normal = Eigen::MatrixXd::Zero(unknowns, unknowns);
   Eigen::VectorXd right = Eigen::VectorXd::Zero(unknowns);
   for (const Group& group : groups_)
@@ -169,8 +166,8 @@ void GlobalStep::move_poses(const Handles& asked, std::vector<Pose>& poses) cons
     for (; scale > 1e-3 && !better; scale /= 2) {
       std::vector<Pose> trial = poses;
       for (std::size_t r = 0; r < poses.size(); ++r) {
-        trial[r].center += scale * move.segment<3>(6 * static_cast<Index>(r));
-        trial[r].rotation = rotation_about(scale * move.segment<3>(6 * static_cast<Index>(r) + 3)) * trial[r].rotation;
+        trial[r].center += scale * move.segment<3>(6 * r);
+        trial[r].rotation = rotation_about(scale * move.segment<3>(6 * r + 3)) * trial[r].rotation;
       }
       double trial_value = 0;
       const Handles trial_slope = slope_at(handles_of(trial), trial_value);
@@ -188,7 +185,7 @@ void GlobalStep::step(const Points& residual, Points& positions, std::vector<Pos
   Handles asked = handles_of(residual);
   std::vector<Points> moves;
   for (const Group& group : groups_) {
-    const Index count = static_cast<Index>(group.free.size());
+    const Index count = group.free.size();
     Points& move = moves.emplace_back(Points::Zero(count, 3));
     for (Index i = 0; i < count; ++i)
       for (const int axis : group.axes) move(i, axis) = residual(group.free[i], axis);
@@ -205,7 +202,7 @@ void GlobalStep::step(const Points& residual, Points& positions, std::vector<Pos
     for (std::size_t r = 0; r < regions_.size(); ++r) place(regions_[r], poses[r], positions);
   }
   for (std::size_t g = 0; g < groups_.size(); ++g)
-    for (Index i = 0; i < static_cast<Index>(groups_[g].free.size()); ++i)
+    for (Index i = 0; i < std::ssize(groups_[g].free); ++i)
       for (const int axis : groups_[g].axes) positions(groups_[g].free[i], axis) += moves[g](i, axis);
 }
 
@@ -244,7 +241,7 @@ double GlobalStep::free_norm(const Points& residual, const std::vector<Pose>& po
     for (std::size_t i = 0; i < region.vertices.size(); ++i) {
       const Vec3 pull = residual.row(region.vertices[i]).transpose();
       force += pull;
-      torque += (poses[r].rotation * region.offsets.row(static_cast<Index>(i)).transpose()).cross(pull);
+      torque += (poses[r].rotation * region.offsets.row(i).transpose()).cross(pull);
     }
     const double size = region.offsets.rowwise().norm().maxCoeff();
     for (int axis = 0; axis < 3; ++axis) {

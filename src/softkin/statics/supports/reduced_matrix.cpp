@@ -21,7 +21,7 @@ Eigen::SparseMatrix<double> node_graph(const linear::BlockPattern& pattern, cons
 namespace {
 
 std::vector<Index> as_they_stand(Index nodes) {
-  std::vector<Index> order(static_cast<std::size_t>(nodes));
+  std::vector<Index> order(nodes);
   std::iota(order.begin(), order.end(), 0);
   return order;
 }
@@ -44,7 +44,7 @@ ReducedMatrix::ReducedMatrix(const Freedoms& freedoms, const linear::BlockPatter
     : freedoms_(&freedoms) {
   const Index count = freedoms.nodes();
   columns_.pieces = pieces;
-  std::vector<Index> place(static_cast<std::size_t>(count));
+  std::vector<Index> place(count);
   bool in_order = true;
   for (Index k = 0; k < count; ++k) {
     const Index node = order[k];
@@ -57,7 +57,7 @@ ReducedMatrix::ReducedMatrix(const Freedoms& freedoms, const linear::BlockPatter
     for (Index i = 0; i < columns_.width(k); ++i) unknown_at_.push_back(freedoms.unknowns_[order[k]] + i);
   for (const Freedoms::Region& region : freedoms.regions_) region_nodes_.push_back(place[region.node]);
 
-  std::vector<std::vector<Index>> rows(static_cast<std::size_t>(count));
+  std::vector<std::vector<Index>> rows(count);
   for (Index j = 0; j < count; ++j)
     for (Eigen::SparseMatrix<double>::InnerIterator it(graph, j); it; ++it) {
       const Index a = place[it.row()], b = place[j];
@@ -70,7 +70,7 @@ ReducedMatrix::ReducedMatrix(const Freedoms& freedoms, const linear::BlockPatter
       columns_.offsets.push_back(columns_.offsets.back() +
                                  static_cast<std::int64_t>(columns_.width(row)) * columns_.width(j));
     }
-    columns_.starts.push_back(static_cast<Index>(columns_.rows.size()));
+    columns_.starts.push_back(columns_.rows.size());
   }
   find_sources(pattern, place);
 }
@@ -102,11 +102,11 @@ void ReducedMatrix::find_sources(const linear::BlockPattern& pattern, const std:
 
 void ReducedMatrix::to_columns(const Eigen::Ref<const Eigen::MatrixXd>& unknowns, Eigen::MatrixXd& out) const {
   out.resize(unknowns.rows(), unknowns.cols());
-  for (std::size_t u = 0; u < unknown_at_.size(); ++u) out.row(static_cast<Index>(u)) = unknowns.row(unknown_at_[u]);
+  for (std::size_t u = 0; u < unknown_at_.size(); ++u) out.row(u) = unknowns.row(unknown_at_[u]);
 }
 
 void ReducedMatrix::to_unknowns(const Eigen::MatrixXd& columns, Eigen::Ref<Eigen::MatrixXd> out) const {
-  for (std::size_t u = 0; u < unknown_at_.size(); ++u) out.row(unknown_at_[u]) = columns.row(static_cast<Index>(u));
+  for (std::size_t u = 0; u < unknown_at_.size(); ++u) out.row(unknown_at_[u]) = columns.row(u);
 }
 
 void ReducedMatrix::reduce(const linear::BlockPattern& pattern, const LargeVector<double>& slots,
@@ -121,7 +121,7 @@ void ReducedMatrix::reduce(const linear::BlockPattern& pattern, const LargeVecto
 /// All blocks but those of a region, which become zero.
 void ReducedMatrix::reduce_vertices(const LargeVector<double>& slots, LargeVector<double>& values, Team& team) const {
   const Freedoms& f = *freedoms_;
-  values.resize(static_cast<std::size_t>(columns_.offsets.back()));
+  values.resize(columns_.offsets.back());
   const auto sources = static_cast<std::int64_t>(sources_.size());
   team.pieces(columns_.nodes(), [&](Index begin, Index end) {
     constexpr std::int64_t ahead = 12;  // the slots lie all over the memory
@@ -177,8 +177,7 @@ void ReducedMatrix::add_turning(const Points& gradient, const Points& positions,
   for (std::size_t r = 0; r < f.regions_.size(); ++r) {
     const Freedoms::Region& region = f.regions_[r];
     const Mat3 bend = Freedoms::bend_of(region, gradient, positions);
-    const Index node = region_nodes_[r], width = columns_.width(node),
-                slides = static_cast<Index>(region.slide_axes.size());
+    const Index node = region_nodes_[r], width = columns_.width(node), slides = region.slide_axes.size();
     Eigen::Map<Eigen::MatrixXd> target(values.data() + columns_.offsets[columns_.starts[node]], width, width);
     for (Index i = slides; i < width; ++i)
       for (Index k = slides; k < width; ++k)

@@ -25,7 +25,7 @@ class ReducedMatrix {
   [[nodiscard]] bool is_scalar(Index node) const {
     return vertex_at_[node] >= 0 && freedoms_->is_scalar(vertex_at_[node]);
   }
-  [[nodiscard]] Index scalars() const { return static_cast<Index>(freedoms_->scalars_.size()); }
+  [[nodiscard]] Index scalars() const { return freedoms_->scalars_.size(); }
 
   /// The second derivative in the unknowns of an energy with the given gradient and Hessian in x: T^T H T and, for
   /// turns, what the gradient adds. values: of columns(). The Hessian is given by the slots of the pattern.

@@ -33,7 +33,7 @@ std::vector<RigidBody> movable_bodies(const Model& model, std::vector<std::array
       }
       continue;
     }
-    const Index count = static_cast<Index>(rigid.vertices.size());
+    const Index count = rigid.vertices.size();
     body.offsets.resize(count, 3);
     for (Index i = 0; i < count; ++i) body.offsets.row(i) = model.rest.row(rigid.vertices[i]);
     body.rest_center = body.offsets.colwise().mean().transpose();

@@ -21,9 +21,9 @@ Graph graph_of(const Graph& graph, const Others& others) {
   std::vector<Eigen::Triplet<double>> links;
   for (Index j = 0; j < graph.cols(); ++j)
     for (Graph::InnerIterator it(graph, j); it; ++it)
-      if (const auto i = static_cast<Index>(it.row()); others.has(i) && others.has(j))
+      if (const Index i = it.row(); others.has(i) && others.has(j))
         links.emplace_back(others.place(i), others.place(j), 1.0);
-  const auto size = static_cast<Index>(graph.cols()) - (others.end - others.first);
+  const Index size = graph.cols() - (others.end - others.first);
   Graph result(size, size);
   result.setFromTriplets(links.begin(), links.end());
   return result;
@@ -31,7 +31,7 @@ Graph graph_of(const Graph& graph, const Others& others) {
 
 /// For every node from first to end - 1, the place of the last of the others that it is linked with; -1: none.
 std::vector<Index> last_links(const Graph& graph, const Others& others, const std::vector<Index>& place) {
-  std::vector<Index> last(static_cast<std::size_t>(others.end - others.first), -1);
+  std::vector<Index> last(others.end - others.first, -1);
   const auto link = [&](Index scalar, Index node) {
     if (others.has(scalar) || !others.has(node)) return;
     Index& found = last[scalar - others.first];
@@ -39,8 +39,8 @@ std::vector<Index> last_links(const Graph& graph, const Others& others, const st
   };
   for (Index j = 0; j < graph.cols(); ++j)
     for (Graph::InnerIterator it(graph, j); it; ++it) {
-      link(static_cast<Index>(it.row()), j);
-      link(j, static_cast<Index>(it.row()));
+      link(it.row(), j);
+      link(j, it.row());
     }
   return last;
 }
@@ -55,15 +55,15 @@ linear::Ordering Freedoms::ordering_of(const Model& model, const Graph& graph) c
   const bool quadratic = !model.elements.edge_nodes.empty();
   if (scalars_.empty())
     return quadratic ? linear::nested_dissection(graph, ends_of(model)) : linear::nested_dissection(graph);
-  const auto count = static_cast<Index>(scalars_.size());
-  const auto end = static_cast<Index>(graph.cols()) - static_cast<Index>(regions_.size());
+  const Index count = scalars_.size();
+  const Index end = graph.cols() - std::ssize(regions_);
   const Others others{end - count, end};
   const Graph links = graph_of(graph, others);
   linear::Ordering ordering;
   if (quadratic) {
     const std::vector<std::array<Index, 2>> of_all = ends_of(model);
-    std::vector<std::array<Index, 2>> ends(static_cast<std::size_t>(links.cols()), {-1, -1});
-    for (Index node = 0; node < static_cast<Index>(of_all.size()); ++node)
+    std::vector<std::array<Index, 2>> ends(links.cols(), {-1, -1});
+    for (Index node = 0; node < std::ssize(of_all); ++node)
       for (std::size_t i = 0; others.has(node) && i < 2; ++i)
         if (const Index at = of_all[node][i]; at >= 0) ends[others.place(node)][i] = others.place(at);
     ordering = linear::nested_dissection(links, ends);
@@ -71,9 +71,9 @@ linear::Ordering Freedoms::ordering_of(const Model& model, const Graph& graph) c
     ordering = linear::nested_dissection(links);
   }
   std::vector<Index> place(ordering.order.size());
-  for (std::size_t k = 0; k < place.size(); ++k) place[ordering.order[k]] = static_cast<Index>(k);
+  for (std::size_t k = 0; k < place.size(); ++k) place[ordering.order[k]] = k;
 
-  std::vector<Index> behind_edges(static_cast<std::size_t>(rest_.rows()), -1);  // by corner
+  std::vector<Index> behind_edges(rest_.rows(), -1);  // by corner
   const auto own_place = [&](Index vertex) {
     const Index node = node_of_[vertex];
     return node < 0 || region_of_[vertex] >= 0 ? -1 : place[others.place(node)];

@@ -39,8 +39,8 @@ bool Tangent::solve_exactly(const System::Scratch& local, const Points& position
 }
 
 Sensitivity Newton::sensitivity(const State& at, bool reuse_factor, double accuracy, Team& team) const {
-  const Index actuators = static_cast<Index>(at.actuation.size());
-  Sensitivity result = no_sensitivity(static_cast<Index>(at.positions.rows()), actuators);
+  const Index actuators = at.actuation.size();
+  Sensitivity result = no_sensitivity(at.positions.rows(), actuators);
   std::unique_ptr<Workspace> workspace = take_workspace(&at.positions);
   Tangent& tangent = workspace->tangent;
   System::Scratch& local = workspace->local;
@@ -48,7 +48,7 @@ Sensitivity Newton::sensitivity(const State& at, bool reuse_factor, double accur
   (void)unknowns_.system.local_step(at.actuation, at.positions, local, team);
   Eigen::MatrixXd rights(unknowns_.freedoms.size(), actuators), steps;
   const supports::Turning turning(unknowns_.model);
-  std::vector<Points> turned(static_cast<std::size_t>(actuators));  // what is held, of commands that turn it
+  std::vector<Points> turned(actuators);  // what is held, of commands that turn it
   for (Index a = 0; a < actuators; ++a) {
     if (unknowns_.model.actuators[a].is<TurnCommand>()) {
       Points& moves = turned[a];

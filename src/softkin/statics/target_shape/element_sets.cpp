@@ -124,7 +124,7 @@ ActuationSet<3> cable_set(const Model& model, const CableDrive& cable, double we
   const double mean = printed ? mean_volume(model) : 0;
   const auto node = [&](const EmbeddedPoint& point) {
     points.push_back(&point);
-    return static_cast<Index>(model.rest.rows() + static_cast<Index>(points.size()) - 1);
+    return static_cast<Index>(model.rest.rows() + std::ssize(points) - 1);
   };
   std::vector<Index> along(cable.points.size(), -1);
   const auto node_along = [&](Index i) { return along[i] >= 0 ? along[i] : along[i] = node(cable.points[i]); };
@@ -155,7 +155,7 @@ ElementSets make_element_sets(const Model& model) {
 
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const Actuator& actuator = model.actuators[a];
-    const Index index = static_cast<Index>(a);
+    const Index index = a;
     if (const auto* cable = actuator.as<CableDrive>()) {
       sets.cables.push_back(cable_set(model, *cable, actuator.weight, sets.points));
       sets.cables.back().actuator = index;

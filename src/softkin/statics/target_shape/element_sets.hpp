@@ -17,7 +17,7 @@ struct ElementSet {
   std::vector<Block> blocks;
   std::vector<std::array<std::array<Index, energy::lanes>, K>> nodes;
 
-  [[nodiscard]] Index block_count() const { return static_cast<Index>(blocks.size()); }
+  [[nodiscard]] Index block_count() const { return blocks.size(); }
   /// How least-norm ratios share a change: by measure where sum a^2 is least, which gives more to larger elements;
   /// alike where sum u a^2 is, which does not depend on how the mesh divides a chamber.
   [[nodiscard]] energy::Pack share(Index block) const { return even ? energy::pack(1) : blocks[block].measure; }

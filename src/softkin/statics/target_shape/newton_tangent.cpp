@@ -33,12 +33,12 @@ constexpr int krylov_columns = 40, krylov_rounds = 1;
 }  // namespace
 
 NewtonMatrix::NewtonMatrix(const Model& model, const System& system)
-    : system_(system), pattern_(static_cast<Index>(model.rest.rows()), make_cliques(model)) {}
+    : system_(system), pattern_(model.rest.rows(), make_cliques(model)) {}
 
 linear::Cliques NewtonMatrix::make_cliques(const Model& model) {
   linear::Cliques cliques;
   const ElementSets& sets = system_.sets();
-  const Index vertices = static_cast<Index>(model.rest.rows());
+  const Index vertices = model.rest.rows();
   std::vector<Index> members;
   sets.each([&]<int K, class Block>(const ElementSet<K, Block>& set) {
     for (Index e = 0; e < set.count; ++e) {
@@ -119,8 +119,8 @@ void NewtonMatrix::assemble(const System::Scratch& local, bool projected, LargeV
         store_block(stiffness, b);
       }
     });
-    element += static_cast<std::size_t>(set.count);
-    if constexpr (K == 3) triangle += static_cast<std::size_t>(set.count);
+    element += set.count;
+    if constexpr (K == 3) triangle += set.count;
     ++index;
   });
 }
@@ -193,7 +193,7 @@ bool Tangent::factorise(const System::Scratch& local, const Points& positions, b
 
 void Tangent::update_coupling(const System::Scratch& local, const Points& positions, Team& team) {
   unknowns_.system.redistributions(local, work_, redistributions_, team);
-  const Index count = static_cast<Index>(redistributions_.size());
+  const Index count = redistributions_.size();
   sources_.resize(factor_.size(), count);
   targets_.resize(factor_.size(), count);
   if (count == 0) return;

@@ -26,7 +26,7 @@ void run(const ElementSet<K, Block>& set, const Points& nodes, std::vector<PackR
 }  // namespace
 
 System::System(const Model& model) : model_(model), sets_(make_element_sets(model)) {
-  const Index nodes = static_cast<Index>(model.rest.rows()) + static_cast<Index>(sets_.points.size());
+  const Index nodes = model.rest.rows() + std::ssize(sets_.points);
   const auto each_slot = [&](const auto& visit) {
     sets_.each([&]<int K, class Block>(const ElementSet<K, Block>& set) {
       for (Index e = 0; e < set.count; ++e)
@@ -52,7 +52,7 @@ System::Scratch System::make_scratch() const {
   });
   scratch.energies.resize(blocks);
   scratch.pulls.resize(3 * static_cast<std::size_t>(sets_.slots));
-  scratch.nodes.resize(model_.rest.rows() + static_cast<Index>(sets_.points.size()), 3);
+  scratch.nodes.resize(model_.rest.rows() + std::ssize(sets_.points), 3);
   scratch.residual.resize(model_.rest.rows(), 3);
   return scratch;
 }
@@ -118,7 +118,7 @@ double System::local_step(const Actuation& actuation, const Points& positions, S
 
 /// Embedded points' places, or moves, from the vertices'.
 void System::spread(const Points& positions, Points& nodes) const {
-  const Index vertices = static_cast<Index>(positions.rows());
+  const Index vertices = positions.rows();
   nodes.topRows(vertices) = positions;
   for (std::size_t i = 0; i < sets_.points.size(); ++i)
     nodes.row(vertices + static_cast<Index>(i)) = sets_.points[i]->at(positions).transpose();
@@ -131,7 +131,7 @@ void System::gather(const std::vector<double>& pulls, Points& residual, Team& te
       total += Eigen::Map<const Vec3>(pulls.data() + 3 * static_cast<std::size_t>(slots_[i]));
     return total;
   };
-  const Index vertices = static_cast<Index>(residual.rows());
+  const Index vertices = residual.rows();
   team.pieces(vertices, [&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v) residual.row(v) = pull_at(v).transpose();
   });
