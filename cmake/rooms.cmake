@@ -121,6 +121,13 @@ function(softkin_kernels room)
     target_link_libraries(${kernels} PRIVATE softkin_settings)
     target_compile_options(${kernels} PRIVATE ${softkin_flags_${target}})
     target_compile_definitions(${kernels} PRIVATE SOFTKIN_TARGET=${target} SOFTKIN_VECTOR_BYTES=${bytes})
+    if(softkin_targets MATCHES sse4 AND CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 12)
+      # for any x86-64 gcc copies packs by 16 bytes, which what reads whole vectors then waits for, and what is made of
+      # many by `rep movs`, which takes longer to begin than they take
+      math(EXPR bits "8 * ${bytes}")
+      target_compile_options(${kernels} PRIVATE -mmove-max=${bits} -mstore-max=${bits}
+                             -mmemcpy-strategy=vector_loop:-1:noalign -mmemset-strategy=vector_loop:-1:noalign)
+    endif()
     target_sources(softkin_${room} PRIVATE $<TARGET_OBJECTS:${kernels}>)
   endforeach()
 endfunction()

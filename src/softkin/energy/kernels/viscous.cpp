@@ -40,21 +40,6 @@ Pack determinant(const Symmetric& a, const Symmetric& cofactors) {
   return a.at[0] * cofactors.at[0] + a.at[3] * cofactors.at[3] + a.at[5] * cofactors.at[5];
 }
 
-/// a b a
-Symmetric sandwich(const Symmetric& a, const Symmetric& b) {
-  Pack ab[3][3];
-  for (int i = 0; i < 3; ++i)
-    for (int j = 0; j < 3; ++j)
-      ab[i][j] = a.at[place[i][0]] * b.at[place[0][j]] + a.at[place[i][1]] * b.at[place[1][j]] +
-                 a.at[place[i][2]] * b.at[place[2][j]];
-  Symmetric result;
-  for (int e = 0; e < 6; ++e) {
-    const int i = rows[e], j = columns[e];
-    result.at[e] = ab[i][0] * a.at[place[0][j]] + ab[i][1] * a.at[place[1][j]] + ab[i][2] * a.at[place[2][j]];
-  }
-  return result;
-}
-
 /// The strain at a quadrature point.
 struct Strain {
   Pack33 gradient;  // F
@@ -80,8 +65,7 @@ Strain strain_at(const Pack3 (&slope)[K], const Shape<K>& current) {
 
 /// A branch at the end of the step.
 struct Branch {
-  Symmetric before;  // what M has from the step's begin, and the cube root of its determinant
-  Pack before_root;
+  Pack before_root;   // cube root of the determinant of what M has from the step's begin
   Symmetric flowed;   // M
   Symmetric inverse;  // A = C_v^-1 at the end
   Pack root;          // cube root of the determinant of M, and its inverse
@@ -106,10 +90,9 @@ Symmetric remembered(const ViscousBlock& viscous, int q, int branch) {
 Branch branch_at(const ViscousBlock& viscous, int q, int branch, const Strain& s) {
   Branch b;
   const double* begun = viscous.begun + begun_entries * lanes * (viscous.branches * q + branch);
-  std::memcpy(b.before.at, begun, sizeof(b.before.at));
+  std::memcpy(b.flowed.at, begun, sizeof(b.flowed.at));
   std::memcpy(&b.before_root, begun + 6 * lanes, sizeof(b.before_root));
   b.ended = viscous.shares[branch].ended;
-  b.flowed = b.before;
   add(b.flowed, b.ended, s.barred);
   const Symmetric cofactors = cofactor(b.flowed);
   const Pack size = determinant(b.flowed, cofactors);
@@ -120,27 +103,31 @@ Branch branch_at(const ViscousBlock& viscous, int q, int branch, const Strain& s
   return b;
 }
 
-/// 3 (root - root at no strain's share) / ended - 3, without the cancellation of a short step.
+/// 3 (root - root at no strain's share) / ended - 3, without the cancellation of a short step: det M less what it is
+/// without ended bar C, over ended, is cof M : bar C - ended M : cof bar C + ended^2.
 Pack stored(const Branch& b, const Strain& s, const Symmetric& barred_cofactors) {
-  const Pack first = inner(cofactor(b.before), s.barred), second = inner(b.before, barred_cofactors);
-  const Pack above = first + b.ended * (second + b.ended);
-  return 3 * (above / (b.root * b.root + b.root * b.before_root + b.before_root * b.before_root) - 1);
+  const Pack square = b.root * b.root;
+  const Pack above = square * inner(b.inverse, s.barred) - b.ended * (inner(b.flowed, barred_cofactors) - b.ended);
+  return 3 * (above / (square + b.before_root * (b.root + b.before_root)) - 1);
 }
 
-/// Second Piola-Kirchhoff stress of the branches, and C^-1.
-struct BranchStress {
-  Symmetric stress{};
-  Symmetric inverse_right;
-};
-
-void add_stress(const Pack& modulus, const Branch& b, const Strain& s, BranchStress& out) {
-  const Pack scale = modulus * s.scale;
-  add(out.stress, scale, b.inverse);
-  add(out.stress, (-1.0 / 3) * scale * inner(b.inverse, s.right), out.inverse_right);
+/// C^-1, from the cofactors of bar C, whose determinant is 1.
+Symmetric inverse_of_right(const Strain& s, const Symmetric& barred_cofactors) {
+  return scaled(s.scale, barred_cofactors);
 }
 
-Symmetric inverse_of_right(const Strain& s) {
-  return scaled(1 / (s.jacobian * s.jacobian), cofactor(s.right));
+/// Second Piola-Kirchhoff stress of the branches, from the sum of their G A.
+Symmetric stress_of(const Symmetric& inverses, const Strain& s, const Symmetric& inverse_right) {
+  Symmetric stress = scaled(s.scale, inverses);
+  add(stress, (-1.0 / 3) * inner(stress, s.right), inverse_right);
+  return stress;
+}
+
+/// Sum of G A at a quadrature point.
+Symmetric inverses_at(const ViscousBlock& viscous, int q, const Strain& s) {
+  Symmetric inverses{};
+  for (int i = 0; i < viscous.branches; ++i) add(inverses, viscous.modulus[i], branch_at(viscous, q, i, s).inverse);
+  return inverses;
 }
 
 Pack33 full(const Symmetric& a) {
@@ -151,6 +138,10 @@ Pack33 full(const Symmetric& a) {
 struct Moduli {
   Pack at[6][6];
 };
+
+const Pack& entry(const Moduli& c, int e, int f) {
+  return e < f ? c.at[e][f] : c.at[f][e];
+}
 
 /// c += alpha a (x) a
 void add_square(Moduli& c, const Pack& alpha, const Symmetric& a) {
@@ -168,11 +159,34 @@ void add_both(Moduli& c, const Symmetric& a, const Symmetric& b) {
 
 /// c_ijkl += alpha (a_ik a_jl + a_il a_jk) / 2
 void add_crossed(Moduli& c, const Pack& alpha, const Symmetric& a) {
+  const Symmetric half = scaled(0.5 * alpha, a);
   for (int e = 0; e < 6; ++e)
     for (int f = e; f < 6; ++f) {
       const int i = rows[e], j = columns[e], k = rows[f], l = columns[f];
-      c.at[e][f] += 0.5 * alpha * (a.at[place[i][k]] * a.at[place[j][l]] + a.at[place[i][l]] * a.at[place[j][k]]);
+      c.at[e][f] += half.at[place[i][k]] * a.at[place[j][l]] + half.at[place[i][l]] * a.at[place[j][k]];
     }
+}
+
+/// alpha (p_ijkl / 3 - (p_ikjl + p_iljk) / 2)
+Moduli uncrossed(const Pack& alpha, const Moduli& p) {
+  const Pack third = (1.0 / 3) * alpha, half = 0.5 * alpha;
+  Moduli c;
+  for (int e = 0; e < 6; ++e)
+    for (int f = e; f < 6; ++f) {
+      const int i = rows[e], j = columns[e], k = rows[f], l = columns[f];
+      c.at[e][f] =
+          third * p.at[e][f] - half * (entry(p, place[i][k], place[j][l]) + entry(p, place[i][l], place[j][k]));
+    }
+  return c;
+}
+
+/// c : a
+Symmetric along(const Moduli& c, const Symmetric& a) {
+  Symmetric result;
+  for (int e = 0; e < 6; ++e)
+    result.at[e] = entry(c, e, 0) * a.at[0] + entry(c, e, 1) * a.at[1] + entry(c, e, 2) * a.at[2] +
+                   2 * (entry(c, e, 3) * a.at[3] + entry(c, e, 4) * a.at[4] + entry(c, e, 5) * a.at[5]);
+  return result;
 }
 
 /// What a quadrature point adds to the stiffness, times its volume.
@@ -182,68 +196,75 @@ struct PointStiffness {
   Pack33 gradient;
 };
 
-/// source  Holzapfel 2000, Nonlinear Solid Mechanics, Eqs. (6.167)-(6.169): moduli of what depends on bar C alone
+/// source  Holzapfel 2000, Nonlinear Solid Mechanics, Eqs. (6.167)-(6.169): moduli of what depends on bar C alone; of a
+///         branch they are 2 G ended / root (A (x) A / 3 - A (.) A), and the sums over branches are taken first
 template <int K>
 void set_point(const Pack3 (&slope)[K], const Pack& volume, const ViscousBlock& viscous, int q, const Shape<K>& current,
                PointStiffness& out) {
   const Strain s = strain_at<K>(slope, current);
-  BranchStress sum;
-  sum.inverse_right = inverse_of_right(s);
-  Moduli& c = out.moduli;
-  c = Moduli{};
-  Symmetric mixed{};  // with C^-1
-  Pack of_inverse{}, traces{};
+  const Symmetric inverse_right = inverse_of_right(s, cofactor(s.barred));
+  Symmetric inverses{};
+  Moduli squares{};
   for (int i = 0; i < viscous.branches; ++i) {
     const Branch b = branch_at(viscous, q, i, s);
     const Pack modulus = volume * viscous.modulus[i];
-    add_stress(modulus, b, s, sum);
-    const Pack alpha = 2 * modulus * b.ended * b.inverse_root * s.scale * s.scale;
-    const Pack trace = inner(b.inverse, s.right);
-    const Symmetric turned = sandwich(b.inverse, s.right);
-    add_square(c, (1.0 / 3) * alpha, b.inverse);
-    add_crossed(c, -alpha, b.inverse);
-    add(mixed, (-1.0 / 9) * alpha * trace, b.inverse);
-    add(mixed, (1.0 / 3) * alpha, turned);
-    of_inverse += (1.0 / 9) * alpha * ((1.0 / 3) * trace * trace - inner(turned, s.right));
-    traces += modulus * s.scale * trace;
+    add(inverses, modulus, b.inverse);
+    add_square(squares, 2 * modulus * b.ended * b.inverse_root, b.inverse);
   }
-  add(mixed, pack(-2.0 / 3), sum.stress);
-  add_both(c, mixed, sum.inverse_right);
-  add_square(c, of_inverse - (2.0 / 9) * traces, sum.inverse_right);
-  add_crossed(c, (2.0 / 3) * traces, sum.inverse_right);
-  out.stress = sum.stress;
+  Moduli& c = out.moduli;
+  c = uncrossed(s.scale * s.scale, squares);
+  out.stress = stress_of(inverses, s, inverse_right);
+  const Symmetric once = along(c, s.right);
+  const Pack twice = inner(once, s.right), traces = s.scale * inner(inverses, s.right);
+  Symmetric mixed = scaled(pack(-1.0 / 3), once);  // with C^-1
+  add(mixed, pack(-2.0 / 3), out.stress);
+  add(mixed, (1.0 / 18) * twice - (1.0 / 9) * traces, inverse_right);
+  add_both(c, mixed, inverse_right);
+  add_crossed(c, (2.0 / 3) * traces, inverse_right);
   out.gradient = s.gradient;
 }
 
-/// Change of C / 2 by a move of a node along each axis, entries of one row doubled where they stand for two.
-template <int K>
-void strain_slopes(const Pack33& f, const Pack3& slope, Pack3 (&out)[6]) {
-  const Pack* g = &slope.x;
-  for (int e = 0; e < 6; ++e) {
-    const int i = rows[e], j = columns[e];
-    const auto column = [&](int c) { return Pack3{(&f.row[0].x)[c], (&f.row[1].x)[c], (&f.row[2].x)[c]}; };
-    out[e] = i == j ? g[i] * column(i) : g[j] * column(i) + g[i] * column(j);
+/// dP_iJ / dF_kL = F_iI c_IJKL F_kK + delta_ik S_JL, its upper triangle by (i, J) and (k, L).
+struct Tangent {
+  Pack at[9][9];
+
+  explicit Tangent(const PointStiffness& p) {
+    const Pack* f = &p.gradient.row[0].x;  // by rows
+    Pack left[9][6];
+    for (int r = 0; r < 9; ++r)
+      for (int e = 0; e < 6; ++e)
+        left[r][e] = f[r - r % 3] * entry(p.moduli, place[0][r % 3], e) +
+                     f[r - r % 3 + 1] * entry(p.moduli, place[1][r % 3], e) +
+                     f[r - r % 3 + 2] * entry(p.moduli, place[2][r % 3], e);
+    for (int r = 0; r < 9; ++r)
+      for (int c = r; c < 9; ++c) {
+        const int k = c / 3, l = c % 3;
+        at[r][c] =
+            f[3 * k] * left[r][place[0][l]] + f[3 * k + 1] * left[r][place[1][l]] + f[3 * k + 2] * left[r][place[2][l]];
+        if (r / 3 == k) at[r][c] += p.stress.at[place[r % 3][l]];
+      }
   }
-}
+
+  [[nodiscard]] const Pack& operator()(int r, int c) const { return r < c ? at[r][c] : at[c][r]; }
+};
 
 template <int K>
 void add_point(const PointStiffness& p, const Pack3 (&slope)[K], ElasticStiffness<K>& out) {
-  static_assert(sizeof(Pack3) == 3 * sizeof(Pack));
-  Pack3 moves[K][6];
-  for (int a = 0; a < K; ++a) strain_slopes<K>(p.gradient, slope[a], moves[a]);
-  const Pack33 stress = full(p.stress);
+  static_assert(sizeof(Pack33) == 9 * sizeof(Pack));
+  const Tangent tangent(p);
   for (int b = 0; b < K; ++b) {
-    Pack3 response[6];
-    for (int e = 0; e < 6; ++e) {
-      response[e] = p.moduli.at[0][e] * moves[b][0];
-      for (int f = 1; f < 6; ++f)
-        response[e] = response[e] + (e < f ? p.moduli.at[e][f] : p.moduli.at[f][e]) * moves[b][f];
+    Pack3 pulled[9];  // by (i, J), along each axis of node b
+    for (int r = 0; r < 9; ++r) {
+      const auto along_axis = [&](int k) {
+        return tangent(r, 3 * k) * slope[b].x + tangent(r, 3 * k + 1) * slope[b].y + tangent(r, 3 * k + 2) * slope[b].z;
+      };
+      pulled[r] = {along_axis(0), along_axis(1), along_axis(2)};
     }
-    const Pack3 pulled = stress * slope[b];
     for (int a = b; a < K; ++a) {
       Pack33& block = out.block[a * (a + 1) / 2 + b];
-      for (int e = 0; e < 6; ++e) add_outer(block, moves[a][e], response[e]);
-      add_to_diagonal(block, dot(slope[a], pulled));
+      for (int i = 0; i < 3; ++i)
+        block.row[i] = block.row[i] +
+                       (slope[a].x * pulled[3 * i] + slope[a].y * pulled[3 * i + 1] + slope[a].z * pulled[3 * i + 2]);
     }
   }
 }
@@ -252,10 +273,7 @@ template <int K>
 void add_projected(const Pack3 (&slope)[K], const Pack& volume, const ViscousBlock& viscous, int q,
                    const Shape<K>& current, ElasticStiffness<K>& out) {
   const Strain s = strain_at<K>(slope, current);
-  Symmetric sum{};
-  for (int i = 0; i < viscous.branches; ++i)
-    add(sum, volume * viscous.modulus[i] * s.scale, branch_at(viscous, q, i, s).inverse);
-  const Pack33 stress = full(sum);
+  const Pack33 stress = full(scaled(volume * s.scale, inverses_at(viscous, q, s)));
   for (int b = 0; b < K; ++b) {
     const Pack3 pulled = stress * slope[b];
     for (int a = b; a < K; ++a) add_to_diagonal(out.block[a * (a + 1) / 2 + b], dot(slope[a], pulled));
@@ -288,17 +306,17 @@ void add_viscous_force(const energy::ElasticBlock<K, Q>& elements, const energy:
   ElasticForce<K>& out = wide(force);
   for (int q = 0; q < Q; ++q) {
     const Strain s = strain_at<K>(block.slope[q], current);
-    BranchStress sum;
-    sum.inverse_right = inverse_of_right(s);
     const Symmetric cofactors = cofactor(s.barred);
+    Symmetric inverses{};
     Pack energy{};
     for (int i = 0; i < viscous.branches; ++i) {
       const Branch b = branch_at(viscous, q, i, s);
       energy += 0.5 * viscous.modulus[i] * stored(b, s, cofactors);
-      add_stress(viscous.modulus[i], b, s, sum);
+      add(inverses, viscous.modulus[i], b.inverse);
     }
     out.energy += block.volume[q] * energy;
-    const Pack33 first = times(s.gradient, full(scaled(block.volume[q], sum.stress)));
+    const Symmetric stress = stress_of(inverses, s, inverse_of_right(s, cofactors));
+    const Pack33 first = times(s.gradient, full(scaled(block.volume[q], stress)));
     for (int a = 0; a < K; ++a) out.gradient[a] = out.gradient[a] + first * block.slope[q][a];
   }
 }
@@ -330,10 +348,9 @@ void add_viscous_stress(const energy::ElasticBlock<K, Q>& elements, const energy
   Pack33(&stress)[Q] = wide(out);
   for (int q = 0; q < Q; ++q) {
     const Strain s = strain_at<K>(block.slope[q], current);
-    BranchStress sum;
-    sum.inverse_right = inverse_of_right(s);
-    for (int i = 0; i < viscous.branches; ++i) add_stress(viscous.modulus[i], branch_at(viscous, q, i, s), s, sum);
-    const Pack33 cauchy = times(times(s.gradient, full(scaled(1 / s.jacobian, sum.stress))), transposed(s.gradient));
+    const Symmetric inverse_right = inverse_of_right(s, cofactor(s.barred));
+    const Symmetric pulled_back = stress_of(inverses_at(viscous, q, s), s, inverse_right);
+    const Pack33 cauchy = times(times(s.gradient, full(scaled(1 / s.jacobian, pulled_back))), transposed(s.gradient));
     for (int r = 0; r < 3; ++r) stress[q].row[r] = stress[q].row[r] + cauchy.row[r];
   }
 }
