@@ -176,14 +176,14 @@ void find_duplicates(const std::vector<std::array<Index, K>>& elements, Index fi
 class TopologyCheck {
  public:
   TopologyCheck(const Mesh& mesh, const Points& points, MeshCheck& check)
-      : mesh_(mesh), points_(points), check_(check), kept_(size(element_count(mesh)), true), solid_(kept_) {}
+      : mesh_(mesh), points_(points), check_(check), kept_(element_count(mesh), true), solid_(kept_) {}
 
   void run() {
     find_duplicates(mesh_.tetrahedra, 0, check_.duplicate_elements);
     find_duplicates(mesh_.prisms, mesh_.tetrahedra.size(), check_.duplicate_elements);
     std::sort(check_.duplicate_elements.begin(), check_.duplicate_elements.end());
-    for (const Index element : check_.duplicate_elements) kept_[size(element)] = false;
-    for (const Index element : check_.degenerate) solid_[size(element)] = false;
+    for (const Index element : check_.duplicate_elements) kept_[element] = false;
+    for (const Index element : check_.degenerate) solid_[element] = false;
     check_faces();
     check_edges();
     list_elements_of_vertices();
@@ -193,8 +193,6 @@ class TopologyCheck {
   }
 
  private:
-  static std::size_t size(Index i) { return i; }
-
   void check_faces() {
     ElementFaces faces = faces_of(mesh_.tetrahedra, mesh_.prisms);
     check_shared(faces.triangles, check_.nonmanifold_faces);
@@ -204,7 +202,7 @@ class TopologyCheck {
 
   template <std::size_t K>
   void check_shared(std::vector<ElementFace<K>>& faces, std::vector<std::array<Index, K>>& nonmanifold) {
-    std::erase_if(faces, [&](const ElementFace<K>& face) { return !kept_[size(face.owner)]; });
+    std::erase_if(faces, [&](const ElementFace<K>& face) { return !kept_[face.owner]; });
     visit_same_faces(faces, [&](const ElementFace<K>* begin, const ElementFace<K>* end) {
       if (end == begin + 1) add_edges(begin->vertices);
       if (end > begin + 2) nonmanifold.push_back(begin->vertices);
@@ -217,7 +215,7 @@ class TopologyCheck {
   void check_sides(const ElementFace<K>* begin, const ElementFace<K>* end) {
     Index first[2] = {-1, -1};
     for (const ElementFace<K>* face = begin; face != end; ++face) {
-      if (!solid_[size(face->owner)]) continue;
+      if (!solid_[face->owner]) continue;
       const double height = height_over(begin->vertices, face->owner);
       if (height == 0) continue;
       Index& other = first[height > 0 ? 1 : 0];
@@ -259,35 +257,35 @@ class TopologyCheck {
   }
 
   void list_elements_of_vertices() {
-    starts_.assign(size(points_.rows()) + 1, 0);
+    starts_.assign(points_.rows() + 1, 0);
     for (Index e = 0; e < element_count(mesh_); ++e)
-      for (const Index v : vertices_of(mesh_, e)) ++starts_[size(v) + 1];
+      for (const Index v : vertices_of(mesh_, e)) ++starts_[v + 1];
     std::partial_sum(starts_.begin(), starts_.end(), starts_.begin());
     around_.resize(starts_.back());
     std::vector<std::size_t> next(starts_.begin(), starts_.end() - 1);
     for (Index e = 0; e < element_count(mesh_); ++e)
-      for (const Index v : vertices_of(mesh_, e)) around_[next[size(v)]++] = e;
+      for (const Index v : vertices_of(mesh_, e)) around_[next[v]++] = e;
   }
 
   void find_edge_nodes() {
-    on_edge_.assign(size(points_.rows()), false);
+    on_edge_.assign(points_.rows(), false);
     for (const EdgeNodes& nodes : mesh_.edge_nodes)
-      for (const Index v : nodes) on_edge_[size(v)] = true;
+      for (const Index v : nodes) on_edge_[v] = true;
   }
 
   /// Elements around a vertex belong together where they share another vertex.
   void check_vertices() {
-    std::vector<Index> seen_from(size(points_.rows()), -1), seen_by(seen_from);
+    std::vector<Index> seen_from(points_.rows(), -1), seen_by(seen_from);
     for (Index v = 0; v < points_.rows(); ++v) {
-      const std::size_t begin = starts_[size(v)], count = starts_[size(v) + 1] - begin;
-      if (count == 0 && !on_edge_[size(v)]) check_.unreferenced.push_back(v);
+      const std::size_t begin = starts_[v], count = starts_[v + 1] - begin;
+      if (count == 0 && !on_edge_[v]) check_.unreferenced.push_back(v);
       DisjointSets groups(count);
       for (std::size_t i = 0; i < count; ++i)
         for (const Index w : vertices_of(mesh_, around_[begin + i])) {
           if (w == v) continue;
-          if (seen_from[size(w)] == v) groups.join(i, seen_by[size(w)]);
-          seen_from[size(w)] = v;
-          seen_by[size(w)] = i;
+          if (seen_from[w] == v) groups.join(i, seen_by[w]);
+          seen_from[w] = v;
+          seen_by[w] = i;
         }
       bool one = true;
       for (std::size_t i = 1; i < count; ++i) one = one && groups.find(i) == groups.find(0);
@@ -296,7 +294,7 @@ class TopologyCheck {
   }
 
   void find_parts() {
-    const auto count = size(points_.rows());
+    const auto count = points_.rows();
     DisjointSets sets(count);
     for (Index e = 0; e < element_count(mesh_); ++e)
       for (const Index v : vertices_of(mesh_, e)) sets.join(v, vertices_of(mesh_, e)[0]);
@@ -304,13 +302,13 @@ class TopologyCheck {
       for (const Index v : mesh_.edge_nodes[t]) sets.join(v, mesh_.tetrahedra[t][0]);
     std::vector<Index> part_of_root(count, -1);
     for (Index v = 0; v < points_.rows(); ++v) {
-      if (starts_[size(v)] == starts_[size(v) + 1] && !on_edge_[size(v)]) continue;
-      Index& part = part_of_root[size(sets.find(v))];
+      if (starts_[v] == starts_[v + 1] && !on_edge_[v]) continue;
+      Index& part = part_of_root[sets.find(v)];
       if (part < 0) {
         part = check_.parts.size();
         check_.parts.emplace_back();
       }
-      check_.parts[size(part)].push_back(v);
+      check_.parts[part].push_back(v);
     }
     std::stable_sort(check_.parts.begin(), check_.parts.end(),
                      [](const auto& a, const auto& b) { return a.size() > b.size(); });
