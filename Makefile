@@ -21,7 +21,7 @@ BENCH ?= iteration factor tracking newton
 # tested under the address and undefined-behaviour sanitizers too; large rooms with some files only (tests/CMakeLists.txt)
 sanitized := core model io statics kinematics drive runs view
 empty :=
-sanitized_pattern = ^($(subst $(empty) $(empty),|,$(strip $(sanitized))))(_deep)?$$
+sanitized_pattern = ^($(subst $(empty) $(empty),|,$(strip $(sanitized))))$$
 
 .PHONY: help setup build run python docs bench paper random fuzz format format-check tidy clean
 .PHONY: test setup-tests test-release test-page test-python
@@ -170,10 +170,10 @@ docs: build
 
 fuzz:
 	@$(SETUP) --tests
-	cmake --preset sanitize
-	cmake --build --preset sanitize --target softkin_fuzz softkin_fuzz_journals
-	scripts/fuzz.sh build-sanitize/tests/softkin_fuzz full $(TARGETS)
-	$(if $(TARGETS),,scripts/fuzz.sh build-sanitize/tests/softkin_fuzz_journals full)
+	cmake --preset fuzz
+	cmake --build --preset fuzz --target softkin_fuzz softkin_fuzz_journals
+	scripts/fuzz.sh build-fuzz/tests/softkin_fuzz full $(TARGETS)
+	$(if $(TARGETS),,scripts/fuzz.sh build-fuzz/tests/softkin_fuzz_journals full)
 
 random:
 	@$(SETUP) --tests
@@ -207,4 +207,4 @@ tidy:
 	run-clang-tidy-14 -quiet -p build-tidy -j $(cores) '^(?!.*/page/)'
 
 clean:
-	rm -rf build build-arm build-debug build-docs build-sanitize build-threads build-tidy
+	rm -rf build build-arm build-debug build-docs build-fuzz build-sanitize build-threads build-tidy

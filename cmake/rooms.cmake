@@ -10,9 +10,10 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LES
 endif()
 cmake_host_system_information(RESULT softkin_memory_MiB QUERY TOTAL_PHYSICAL_MEMORY)
 cmake_host_system_information(RESULT softkin_cores QUERY NUMBER_OF_LOGICAL_CORES)
-math(EXPR softkin_compilers_MiB "1500 * (${softkin_cores} + 2)")
-if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND softkin_memory_MiB GREATER softkin_compilers_MiB)
-  add_compile_options(--param=ggc-min-heapsize=524288)  # collects its garbage seldom: an eighth less of its time
+# as many compilers as ninja starts may each take half of their share before they collect garbage: a tenth of their time
+math(EXPR softkin_compiler_KiB "512 * ${softkin_memory_MiB} / (${softkin_cores} + 2)")
+if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND softkin_compiler_KiB GREATER 262144)
+  add_compile_options(--param=ggc-min-heapsize=${softkin_compiler_KiB})
 endif()
 add_compile_definitions(SOFTKIN_VERSION="${PROJECT_VERSION}" EIGEN_DONT_PARALLELIZE)
 if(NOT SOFTKIN_SANITIZE)
@@ -45,14 +46,14 @@ target_compile_features(softkin_settings INTERFACE cxx_std_20)
 target_compile_definitions(softkin_settings INTERFACE EIGEN_MAX_ALIGN_BYTES=64 EIGEN_MAX_STATIC_ALIGN_BYTES=64)
 target_link_libraries(softkin_settings INTERFACE Eigen3::Eigen Threads::Threads)
 
-# softkin_under_sanitizers(TARGET): what libFuzzer watches; and what spends no time in loops of its own, which is not worth
-# optimising for sanitizers, a third of what compiling it takes.
+# softkin_under_sanitizers(TARGET): what libFuzzer watches; and optimised is what spends its time in loops of its own, all
+# else is not: a third of what compiling it takes.
 function(softkin_under_sanitizers target)
   if(SOFTKIN_SANITIZE MATCHES fuzzer AND target IN_LIST softkin_fuzzed)
     target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
   endif()
-  if(SOFTKIN_SANITIZE AND target MATCHES "_(runs|view)$")
-    target_compile_options(${target} PRIVATE -O0)
+  if(SOFTKIN_SANITIZE MATCHES address AND target MATCHES "_(linear|energy|contact)(_plain)?$")
+    target_compile_options(${target} PRIVATE -O1)
     set_target_properties(${target} PROPERTIES DISABLE_PRECOMPILE_HEADERS ON)
   endif()
 endfunction()
@@ -67,7 +68,7 @@ function(softkin_precompile target)
   endif()
   set(owner softkin_core)
   if(SOFTKIN_SANITIZE MATCHES fuzzer AND NOT target IN_LIST softkin_fuzzed)
-    set(owner softkin_linear)
+    set(owner softkin_statics)
   endif()
   if(TARGET ${owner} AND NOT target STREQUAL owner)
     target_precompile_headers(${target} REUSE_FROM ${owner})
@@ -78,7 +79,7 @@ endfunction()
 
 # softkin_compile_together(TARGET): its files in groups, for half the work; not kernels. So what a file has for itself has
 # a name that no other file of its room gives to something else. Groups of 20 take up to a fifth less of the compiler's
-# time than those of 10, and up to 2.8 GiB each in place of 1.6.
+# time than those of 10, and up to 3.4 GiB each in place of 2.
 math(EXPR softkin_large_groups_MiB "3000 * (${softkin_cores} + 2)")
 function(softkin_compile_together target)
   set(files 20)
@@ -119,6 +120,7 @@ function(softkin_kernels room)
     set(kernels softkin_${room}_${target})
     add_library(${kernels} OBJECT ${ARGN})
     target_link_libraries(${kernels} PRIVATE softkin_settings)
+    softkin_under_sanitizers(${kernels})
     target_compile_options(${kernels} PRIVATE ${softkin_flags_${target}})
     target_compile_definitions(${kernels} PRIVATE SOFTKIN_TARGET=${target} SOFTKIN_VECTOR_BYTES=${bytes})
     if(softkin_targets MATCHES sse4 AND CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_GREATER_EQUAL 12)
