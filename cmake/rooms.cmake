@@ -46,8 +46,8 @@ target_compile_features(softkin_settings INTERFACE cxx_std_20)
 target_compile_definitions(softkin_settings INTERFACE EIGEN_MAX_ALIGN_BYTES=64 EIGEN_MAX_STATIC_ALIGN_BYTES=64)
 target_link_libraries(softkin_settings INTERFACE Eigen3::Eigen Threads::Threads)
 
-# softkin_under_sanitizers(TARGET): what libFuzzer watches; and optimised is what spends its time in loops of its own, all
-# else is not: a third of what compiling it takes.
+# softkin_under_sanitizers(TARGET): what libFuzzer watches; and optimised is what spends its time in loops of its own, as
+# for all else the compiler takes four fifths more if it is.
 function(softkin_under_sanitizers target)
   if(SOFTKIN_SANITIZE MATCHES fuzzer AND target IN_LIST softkin_fuzzed)
     target_compile_options(${target} PRIVATE -fsanitize=fuzzer-no-link)
