@@ -212,9 +212,10 @@ TEST(Estimator, DeviationsOfWeakForcesAreHonest) {
   constexpr int draws = 40;
   int held = 0, places_held = 0;
   for (int d = 0; d < draws; ++d) {
-    const Vec3 direction = Vec3(normal(random), normal(random), normal(random)).normalized();
-    const Touch touch = touched(0.1 * uniform(random) * direction,
-                                {10 + 45 * uniform(random), 2 + 8 * uniform(random), 16}, 20 * uniform(random));
+    // each draw has its place: compilers evaluate the arguments of a call in orders of their own
+    const double z = normal(random), y = normal(random), x = normal(random), air = 20 * uniform(random);
+    const double along = 10 + 45 * uniform(random), across = 2 + 8 * uniform(random), newtons = 0.1 * uniform(random);
+    const Touch touch = touched(newtons * Vec3(x, y, z).normalized(), {along, across, 16}, air);
     estimator.forget();
     const Estimate& told = estimator.update(touch.commands, noisy(touch.readings, 0.1, random));
     ASSERT_EQ(told.status, Status::converged) << told.remark;
@@ -289,8 +290,9 @@ TEST(Estimator, FitsConvergeWhereReadingsTellLittle) {
   const Model model = compile(touched_finger());
   Estimator estimator = of_touch(model, 0.2);
   for (int draw = 0; draw < 40; ++draw) {
-    const Vec3 force(0.3 * any(random), 0.2 * any(random), 0.3 * any(random));
-    const Touch touch = touched(force, {35 + 20 * any(random), 6 + 5 * any(random), 16}, 5 + 5 * any(random));
+    const double z = 0.3 * any(random), y = 0.2 * any(random), x = 0.3 * any(random), air = 5 + 5 * any(random);
+    const double along = 35 + 20 * any(random), across = 6 + 5 * any(random);
+    const Touch touch = touched({x, y, z}, {along, across, 16}, air);
     Eigen::VectorXd values = noisy(touch.readings, 0.2, random);
     for (const Index lost : {draw % 4, (draw + 1 + draw / 4 % 3) % 4})
       values.segment<3>(3 * lost).setConstant(std::numeric_limits<double>::quiet_NaN());

@@ -31,9 +31,11 @@ void spoil_number(Making& m) {
       m.draw.chance(0.5) ? std::numeric_limits<double>::quiet_NaN() : std::numeric_limits<double>::infinity();
   RobotSpec& spec = m.made.spec;
   switch (m.draw.below(6)) {
-    case 0:
-      spec.mesh.vertices(m.draw.below(static_cast<int>(spec.mesh.vertices.rows())), m.draw.below(3)) = bad;
+    case 0: {
+      const int axis = m.draw.below(3), v = m.draw.below(static_cast<int>(spec.mesh.vertices.rows()));
+      spec.mesh.vertices(v, axis) = bad;
       break;
+    }
     case 1:
       spec.loads.gravity[m.draw.below(3)] = bad;
       break;

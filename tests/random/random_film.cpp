@@ -21,7 +21,10 @@ Sheet random_rectangle(Draw& draw) {
     for (int j = 0; j <= across; ++j) {
       const bool rim = i == 0 || j == 0 || i == along || j == across;
       Vec3 point(length * (2.0 * i / along - 1), 2.0 * j / across - 1, 0);
-      if (!rim) point += 0.2 / std::max(along, across) * Vec3(draw.between(-1, 1), draw.between(-1, 1), 0);
+      if (!rim) {
+        const double y = draw.between(-1, 1), x = draw.between(-1, 1);
+        point += 0.2 / std::max(along, across) * Vec3(x, y, 0);
+      }
       sheet.points.push_back(point);
       sheet.rim.push_back(rim);
       if (i == along || j == across) continue;

@@ -91,8 +91,8 @@ void make_submerged(Making& m) {
   const double pressure = draw.log_between(1e-6, 0.02) * slender * m.modulus;
   LiquidAroundSpec liquid;
   liquid.density = pressure / (1e-9 * gravity * size.maxCoeff());
-  liquid.surface =
-      low + size.cwiseProduct(Vec3(draw.between(-0.5, 1.5), draw.between(-0.5, 1.5), draw.between(-0.5, 1.5)));
+  const double z = draw.between(-0.5, 1.5), y = draw.between(-0.5, 1.5), x = draw.between(-0.5, 1.5);
+  liquid.surface = low + size.cwiseProduct(Vec3(x, y, z));
   m.made.spec.loads.liquid_around = liquid;
 }
 

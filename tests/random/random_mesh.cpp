@@ -170,23 +170,33 @@ void spoil_mesh(Making& m) {
     for (int i = m.draw.whole(1, 3); i > 0; --i) flatten(m);
   if (m.is(Oddity::repeated)) repeat_elements(m);
   if (m.is(Oddity::cracked)) crack(m);
-  if (m.is(Oddity::overlapping))
-    add_block(m, m.size.cwiseProduct(0.3 * (Vec3::Ones() + m.draw.offset())), m.draw.between(0.3, 1) * m.size, false);
-  if (m.is(Oddity::loose))
-    add_block(m, (Vec3::Ones() + 0.1 * m.draw.offset()).cwiseProduct(m.size), {1, 1, 1}, m.draw.chance(0.5));
+  if (m.is(Oddity::overlapping)) {
+    const double share = m.draw.between(0.3, 1);
+    add_block(m, m.size.cwiseProduct(0.3 * (Vec3::Ones() + m.draw.offset())), share * m.size, false);
+  }
+  if (m.is(Oddity::loose)) {
+    const bool joined = m.draw.chance(0.5);
+    add_block(m, (Vec3::Ones() + 0.1 * m.draw.offset()).cwiseProduct(m.size), {1, 1, 1}, joined);
+  }
   if (m.is(Oddity::isolated))
-    for (int i = m.draw.whole(1, 4); i > 0; --i)
-      (void)add_vertex(m.mesh(), m.draw.pick({1.0, 10.0, 1e6}) * m.size.cwiseProduct(m.draw.offset()));
+    for (int i = m.draw.whole(1, 4); i > 0; --i) {
+      const Vec3 offset = m.draw.offset();
+      (void)add_vertex(m.mesh(), m.draw.pick({1.0, 10.0, 1e6}) * m.size.cwiseProduct(offset));
+    }
   if (m.is(Oddity::bad_cells)) spoil_cells(m);
   if (m.is(Oddity::curved)) bend_edges(m);
 }
 
 void scale_robot(Making& m) {
   double scale = m.draw.log_between(0.1, 1e4) / m.longest();
-  Vec3 place = m.draw.chance(0.3) ? Vec3(m.draw.between(0, 3) * scale * m.longest() * m.draw.offset()) : Vec3::Zero();
+  Vec3 place = m.draw.chance(0.3) ? m.draw.offset() : Vec3::Zero();
+  if (!place.isZero()) place *= m.draw.between(0, 3) * scale * m.longest();
   if (m.is(Oddity::far_away)) {
     if (m.draw.chance(0.5)) scale *= m.draw.pick({1e-6, 1e-3, 1e3, 1e6});
-    if (m.draw.chance(0.7)) place = m.draw.log_between(1e2, 1e9) * scale * m.draw.offset();
+    if (m.draw.chance(0.7)) {
+      const Vec3 offset = m.draw.offset();
+      place = m.draw.log_between(1e2, 1e9) * scale * offset;
+    }
   }
   const auto moved = [&](const Vec3& p) { return Vec3(scale * p + place); };
   RobotSpec& spec = m.made.spec;

@@ -108,7 +108,8 @@ FixedSpec random_support(Making& m) {
 
 void add_odd_rigid(Making& m) {
   for (int i = m.draw.whole(1, 3); i > 0; --i) {
-    RigidSpec rigid{low_box(m, m.draw.between(-0.1, 0.9), m.draw.between(0.1, 1.1)), ""};
+    const double to = m.draw.between(0.1, 1.1), from = m.draw.between(-0.1, 0.9);
+    RigidSpec rigid{low_box(m, from, to), ""};
     if (m.draw.chance(0.4)) rigid.where = face(m.draw.pick({"x_low", "y_low", "z_high", "x_high"}));
     if (m.draw.chance(0.3)) rigid.name = "same";
     m.made.spec.rigid.push_back(rigid);
@@ -135,9 +136,13 @@ void make_supports(Making& m) {
   } else if (m.draw.chance(0.15) && spec.fixed.size() == 1) {
     spec.rigid.push_back({face("x_high"), "end"});
   }
-  if (m.is(Oddity::voids))
-    spec.voids.push_back(m.draw.chance(0.5) ? RegionRef{std::string("part0"), {}}
-                                            : low_box(m, m.draw.between(-0.1, 0.8), m.draw.between(0.2, 1.1)));
+  if (!m.is(Oddity::voids)) return;
+  if (m.draw.chance(0.5)) {
+    spec.voids.push_back(RegionRef{std::string("part0"), {}});
+    return;
+  }
+  const double to = m.draw.between(0.2, 1.1), from = m.draw.between(-0.1, 0.8);
+  spec.voids.push_back(low_box(m, from, to));
 }
 
 namespace {

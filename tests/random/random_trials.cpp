@@ -120,6 +120,10 @@ void make_fibres(Making& m) {
   const Vec3 low = m.mesh().vertices.colwise().minCoeff().transpose(),
              size = m.mesh().vertices.colwise().maxCoeff().transpose() - low;
   const auto place = [&](double x, double y, double z) { return Vec3(low + size.cwiseProduct(Vec3(x, y, z))); };
+  const auto anywhere = [&] {
+    const double z = draw.unit(), y = draw.unit(), x = draw.unit();
+    return place(x, y, z);
+  };
   for (int i = draw.whole(1, 2); i > 0; --i) {
     FibreSpec fibre;
     fibre.name = "fibre" + std::to_string(i);
@@ -132,8 +136,7 @@ void make_fibres(Making& m) {
                         .turns = draw.between(0.3, 2),
                         .left_handed = draw.chance(0.5)};
     else
-      fibre.way =
-          std::vector<Vec3>{place(draw.unit(), draw.unit(), draw.unit()), place(draw.unit(), draw.unit(), draw.unit())};
+      fibre.way = std::vector<Vec3>{anywhere(), anywhere()};
     if (draw.chance(0.9)) fibre.stiffness_N = draw.log_between(1e-3, 30) * m.modulus * size[1] * size[2];
     fibre.tension_only = draw.chance(0.4);
     m.made.spec.fibres.push_back(std::move(fibre));
