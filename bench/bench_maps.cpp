@@ -168,7 +168,8 @@ int errors(const Options& options) {
   panel.y.label = "largest error of the tip at checks [mm]";
   panel.x.logarithmic = panel.y.logarithmic = true;
   for (const int tendons : options.inputs) {
-    PlotSeries& series = panel.series.emplace_back(std::to_string(tendons) + (tendons == 1 ? " tendon" : " tendons"));
+    PlotSeries& series = panel.series.emplace_back();
+    series.label = std::to_string(tendons) + (tendons == 1 ? " tendon" : " tendons");
     const Model model = compile(arm(tendons));
     for (const double accuracy : {10.0, 1.0, 0.1, 0.01, 1e-3, 1e-4}) {
       MapOptions map = map_options(options);

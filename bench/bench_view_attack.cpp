@@ -221,7 +221,8 @@ Waits control(LiveClient& client, std::uint64_t& id, double seconds, pid_t serve
   Waits waits;
   for (const double end = now() + seconds; now() < end && waits.kept;) {
     const double begin = now();
-    client.command(++id, {1.2 + 0.1 * std::sin(0.05 * static_cast<double>(id))});
+    ++id;
+    client.command(id, {1.2 + 0.1 * std::sin(0.05 * static_cast<double>(id))});
     waits.kept = client.shape(static_cast<std::int64_t>(id), 20).has_value();
     waits.seconds.push_back(now() - begin);
     waits.largest_mib = std::max(waits.largest_mib, resident_mib(server));

@@ -23,5 +23,6 @@ function(softkin_page target)
     DEPENDS ${make_page} ${files} ${PROJECT_BINARY_DIR}/page/npm.txt
     COMMENT "Building the page" VERBATIM)
   target_sources(${target} PRIVATE ${embedded})
-  set_source_files_properties(${embedded} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON)
+  set_source_files_properties(${embedded} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON SKIP_PRECOMPILE_HEADERS ON
+                              COMPILE_OPTIONS -Wno-overlength-strings)
 endfunction()

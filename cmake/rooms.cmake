@@ -87,8 +87,9 @@ function(softkin_compile_together target)
     set(files 10)
   endif()
   set_target_properties(${target} PROPERTIES UNITY_BUILD ${SOFTKIN_UNITY} UNITY_BUILD_BATCH_SIZE ${files})
-  # a class of a test file is nobody else's
-  target_compile_options(${target} PRIVATE $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${SOFTKIN_UNITY}>>:-Wno-subobject-linkage>)
+  # a class of a test file is nobody else's, and what only another file of its group knows hides nothing
+  target_compile_options(${target} PRIVATE $<$<AND:$<CXX_COMPILER_ID:GNU>,$<BOOL:${SOFTKIN_UNITY}>>:-Wno-subobject-linkage>
+                         $<$<AND:$<CXX_COMPILER_ID:Clang>,$<BOOL:${SOFTKIN_UNITY}>>:-Wno-shadow>)
 endfunction()
 
 # What has inner loops, the folder `kernels` of a room, is compiled for each of these; the best that the machine has is

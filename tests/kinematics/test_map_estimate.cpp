@@ -90,7 +90,7 @@ TEST(MapEstimate, IsTheLeastCost) {
   const auto told = estimate_by_map(map, unknowns, begin, values, deviations);
   ASSERT_TRUE(told && told->converged);
   EXPECT_LT((told->commands - truth).norm(), 1e-5);
-  const auto cost = [&](const Eigen::VectorXd& at) {
+  const auto cost = [&, &map = map](const Eigen::VectorXd& at) {
     EXPECT_TRUE(map.evaluate(at.data(), outputs.data()));
     double sum = ((outputs - values).array() / 0.2).square().sum();
     for (const MapUnknown& unknown : unknowns)
@@ -98,7 +98,7 @@ TEST(MapEstimate, IsTheLeastCost) {
     return sum;
   };
   const double h = 1e-3;
-  const auto column = [&](Index i, double by) {
+  const auto column = [&, &map = map](Index i, double by) {
     Eigen::VectorXd move = Eigen::VectorXd::Zero(map.inputs());
     move[unknowns[i].input] = by;
     return move;

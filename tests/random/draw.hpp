@@ -8,8 +8,8 @@
 
 namespace softkin::random_robots {
 
-/// Random draws that are the same in every standard library: its engines are specified, its distributions are not. Those
-/// of one call have names, as its arguments are evaluated in an order that every compiler chooses for itself.
+/// Random draws that are the same in every standard library: its engines are specified, its distributions are not. Two
+/// for one call have names, as its arguments are evaluated in an order that each compiler chooses.
 class Draw {
  public:
   explicit Draw(std::uint64_t seed) : engine_(0x9E3779B97F4A7C15u * (seed + 1)) {}

@@ -28,10 +28,10 @@ TEST(OwnPixels, HueSaturationAndValueGiveTheColourBack) {
   std::uniform_real_distribution<float> byte(0, 255);
   for (int i = 0; i < 1000; ++i) {
     const std::array<float, 3> rgb{byte(random), byte(random), byte(random)};
-    const auto [hue, saturation, value] = hsv_of(rgb);
+    const std::array<float, 3> hsv = hsv_of(rgb);
     const auto channel = [&](float n) {  // Wikipedia, HSL and HSV, "HSV to RGB alternative"
-      const float k = std::fmod(n + hue / 60, 6.0F);
-      return value - value * saturation * std::max(0.0F, std::min({k, 4 - k, 1.0F}));
+      const float k = std::fmod(n + hsv[0] / 60, 6.0F);
+      return hsv[2] - hsv[2] * hsv[1] * std::max(0.0F, std::min({k, 4 - k, 1.0F}));
     };
     EXPECT_NEAR(channel(5), rgb[0], 1e-3);
     EXPECT_NEAR(channel(3), rgb[1], 1e-3);

@@ -171,7 +171,7 @@ TEST(Board, ReadsWhatItSaysAndRefusesTheRestByName) {
                                    {"charuco,7x5,square=10mm,tag=12mm", "smaller"},
                                    {"checker,2x6,square=10mm", "3x3"},
                                    {"", "columns"}}) {
-    const std::string message = message_of([&] { (void)parse_board(text); });
+    const std::string message = message_of([&, &text = text] { (void)parse_board(text); });
     EXPECT_NE(message.find(part), std::string::npos) << text << ": " << message;
   }
 }
