@@ -58,6 +58,22 @@ constexpr Moves<Lanes> make_moves() {
 template <int Lanes>
 constexpr Moves<Lanes> moves = make_moves<Lanes>();
 
+/// Each place by where it comes from; of -1 anything.
+[[gnu::always_inline]] inline Places permuted(const Places& rows, const Places& from) {
+#if defined(__AVX2__)
+  return reinterpret_cast<Places>(
+      _mm256_permutevar8x32_epi32(reinterpret_cast<__m256i>(rows), reinterpret_cast<__m256i>(from)));
+#elif defined(__SSSE3__)
+  return reinterpret_cast<Places>(_mm_shuffle_epi8(reinterpret_cast<__m128i>(rows), reinterpret_cast<__m128i>(from)));
+#elif defined(__clang__)
+  Places to;
+  for (int i = 0; i < moved; ++i) to[i] = rows[from[i] & (moved - 1)];
+  return to;
+#else
+  return __builtin_shuffle(rows, from);
+#endif
+}
+
 /// A child's next rows in the places of a pack, zero in the others.
 template <class Number>
 class SpreadOf {
@@ -69,14 +85,7 @@ class SpreadOf {
   Vector<Number> operator()(const Number* from) const {
     Places rows;
     std::memcpy(&rows, from, sizeof rows);
-    if constexpr (lanes_of < Number >> 2) {
-#ifdef __clang__
-      const Places in_order = rows;
-      for (int i = 0; i < moved; ++i) rows[i] = in_order[from_[i] & (moved - 1)];
-#else
-      rows = __builtin_shuffle(rows, from_);
-#endif
-    }
+    if constexpr (lanes_of < Number >> 2) rows = permuted(rows, from_);
     rows &= keep_;
     Vector<Number> spread;
     std::memcpy(&spread, &rows, sizeof spread);
