@@ -10,7 +10,7 @@ export CCACHE_SLOPPINESS ?= pch_defines,time_macros
 export CCACHE_BASEDIR ?= $(CURDIR)
 endif
 export CTEST_OUTPUT_ON_FAILURE = 1
-# two fifths of gcc 12's time to compile, and kernels that are a sixth faster; looked for when it has been installed
+# three quarters of gcc 12's time to compile, and kernels that are faster; looked for when it has been installed
 ifneq ($(filter default undefined,$(origin CXX)),)
 export CXX = $(shell command -v clang++ || echo c++)
 endif

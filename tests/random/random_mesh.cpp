@@ -189,8 +189,11 @@ void spoil_mesh(Making& m) {
 
 void scale_robot(Making& m) {
   double scale = m.draw.log_between(0.1, 1e4) / m.longest();
-  Vec3 place = m.draw.chance(0.3) ? m.draw.offset() : Vec3::Zero();
-  if (!place.isZero()) place *= m.draw.between(0, 3) * scale * m.longest();
+  Vec3 place = Vec3::Zero();
+  if (m.draw.chance(0.3)) {
+    place = m.draw.offset();
+    place *= m.draw.between(0, 3) * scale * m.longest();
+  }
   if (m.is(Oddity::far_away)) {
     if (m.draw.chance(0.5)) scale *= m.draw.pick({1e-6, 1e-3, 1e3, 1e6});
     if (m.draw.chance(0.7)) {
