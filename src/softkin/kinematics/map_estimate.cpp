@@ -4,6 +4,7 @@
 #include <softkin/core/dense.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
+#include <softkin/kinematics/estimate/fit.hpp>
 #include <softkin/kinematics/estimate/outliers.hpp>
 #include <softkin/kinematics/inverse_step.hpp>
 #include <softkin/kinematics/map_estimate.hpp>
@@ -14,7 +15,6 @@ namespace {
 
 constexpr int most_steps = 100;
 constexpr double arrived = 1e-3;  // length of a step, in deviations of what is told
-constexpr double first_hold = 1, most_hold = 1e9;
 
 void check_estimate(const KinematicMap& map, const std::vector<MapUnknown>& unknowns, const Eigen::VectorXd& commands,
                     const Eigen::VectorXd& values, const Eigen::VectorXd& deviations) {
@@ -136,9 +136,9 @@ std::optional<MapEstimate> estimate_by_map(const KinematicMap& map, const std::v
   MapProblem::Point at{.commands = commands};
   if (!problem.look(at)) return std::nullopt;
   MapEstimate told;
-  double hold = 0;
-  while (told.iterations < most_steps && hold <= most_hold) {
-    const Eigen::VectorXd step = problem.step(at, hold);
+  estimate::Damping hold;
+  for (bool leads_on = true; told.iterations < most_steps && leads_on;) {
+    const Eigen::VectorXd step = problem.step(at, hold.value());
     const double length = std::sqrt(std::max(0.0, step.dot(at.matrix * step)));
     told.converged = length <= arrived;  // held: at a kink, or an end of the map
     if (told.converged) break;
@@ -146,9 +146,9 @@ std::optional<MapEstimate> estimate_by_map(const KinematicMap& map, const std::v
     MapProblem::Point next{.commands = problem.moved(at.commands, step)};
     if (problem.look(next) && next.cost < at.cost) {
       at = std::move(next);
-      hold = hold > first_hold ? hold / 16 : 0;
+      hold.relax();
     } else {
-      hold = hold == 0 ? first_hold : 8 * hold;
+      leads_on = hold.tighten();
     }
   }
   told.commands = at.commands;

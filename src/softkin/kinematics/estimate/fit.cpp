@@ -9,8 +9,6 @@ namespace softkin::estimate {
 namespace {
 
 constexpr double first_damping = 1e-3, most_damping = 1e9;
-/// Of steps to other shapes, over what is known before.
-constexpr double first_hold = 1, most_hold = 1e9;
 /// Slopes of another shape are used while each step by them is so much shorter than the one before.
 constexpr double contraction = 0.15;
 /// Longest move of a vertex that a step foretells, over the diagonal: equilibria farther away take long to find, and
@@ -28,7 +26,7 @@ constexpr double inner_length = 0.01;
 
 /// Steps so far, and what one more would leave.
 struct Pace {
-  double hold = 0;
+  Damping hold{};                                         // of steps to other shapes, over what is known before
   double last = std::numeric_limits<double>::infinity();  // length of the last step by these slopes
   double rate = 1, of_length = 1;  // lengths of two steps, the next over the last, as last seen; that of the last
   double reach = 1;                // of longest_move: less where no equilibrium was found that far away
@@ -49,16 +47,15 @@ struct Pace {
     return rate * length * (fresh ? std::min(1.0, length / of_length) : 1);
   }
   void advanced(double length) {
-    last = fresh && hold > 0 ? std::numeric_limits<double>::infinity() : length;
-    hold = hold > first_hold ? hold / 16 : 0;
+    last = fresh && hold.value() > 0 ? std::numeric_limits<double>::infinity() : length;
+    hold.relax();
     reach = std::min(1.0, 2 * reach);
     fresh = false;
   }
   /// False where that leads nowhere.
   bool shorten(bool lost, int most) {
     if (lost) return ++failures < most && (reach /= 4) > least_reach;
-    hold = hold == 0 ? first_hold : 8 * hold;
-    return hold <= most_hold;
+    return hold.tighten();
   }
 };
 
@@ -175,12 +172,12 @@ Fit Fitter::refine_by(Guess from, const Readings& readings, const Start& start) 
   Pace pace;
   pace.fresh = start.nearby == nullptr;
   while (true) {
-    fit.told = least(fit, readings, pace.hold);
+    fit.told = least(fit, readings, pace.hold.value());
     set_normal(fit, readings);
     const double length = length_of(problem_.way(fit.at, fit.told), fit.normal);
     if (!std::isfinite(length)) break;
     pace.see(length);
-    fit.converged = elsewhere.size() == 0 && pace.hold == 0 && pace.left_of(length) <= options_.accuracy;
+    fit.converged = elsewhere.size() == 0 && pace.hold.value() == 0 && pace.left_of(length) <= options_.accuracy;
     if (fit.converged) return fit;
     if (fit.iterations >= start.most_iterations) break;
     if (!pace.fresh && elsewhere.size() == 0 && length > contraction * pace.last) {

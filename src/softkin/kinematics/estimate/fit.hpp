@@ -8,6 +8,19 @@ namespace softkin::estimate {
 
 struct Survey;
 
+/// What a step adds to the diagonal (Levenberg and Marquardt): less after one that helps, more after one that does not.
+class Damping {
+ public:
+  [[nodiscard]] double value() const { return value_; }
+  void relax() { value_ = value_ > first ? value_ / 16 : 0; }
+  /// False where more leads nowhere.
+  bool tighten() { return (value_ = value_ == 0 ? first : 8 * value_) <= most; }
+
+ private:
+  static constexpr double first = 1, most = 1e9;
+  double value_ = 0;
+};
+
 /// The unknowns that fit readings best, near where the search began.
 struct Fit {
   Guess at;                                // the last equilibrium
