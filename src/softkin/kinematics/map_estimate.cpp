@@ -136,8 +136,8 @@ std::optional<MapEstimate> estimate_by_map(const KinematicMap& map, const std::v
   MapProblem::Point at{.commands = commands};
   if (!problem.look(at)) return std::nullopt;
   MapEstimate told;
-  estimate::Damping hold;
-  for (bool leads_on = true; told.iterations < most_steps && leads_on;) {
+  estimate::Damping hold(1);
+  while (told.iterations < most_steps) {
     const Eigen::VectorXd step = problem.step(at, hold.value());
     const double length = std::sqrt(std::max(0.0, step.dot(at.matrix * step)));
     told.converged = length <= arrived;  // held: at a kink, or an end of the map
@@ -147,8 +147,8 @@ std::optional<MapEstimate> estimate_by_map(const KinematicMap& map, const std::v
     if (problem.look(next) && next.cost < at.cost) {
       at = std::move(next);
       hold.relax();
-    } else {
-      leads_on = hold.tighten();
+    } else if (!hold.tighten()) {
+      break;
     }
   }
   told.commands = at.commands;

@@ -8,7 +8,7 @@ namespace softkin::estimate {
 
 namespace {
 
-constexpr double first_damping = 1e-3, most_damping = 1e9;
+constexpr double first_damping = 1e-3;
 /// Slopes of another shape are used while each step by them is so much shorter than the one before.
 constexpr double contraction = 0.15;
 /// Longest move of a vertex that a step foretells, over the diagonal: equilibria farther away take long to find, and
@@ -26,7 +26,7 @@ constexpr double inner_length = 0.01;
 
 /// Steps so far, and what one more would leave.
 struct Pace {
-  Damping hold{};                                         // of steps to other shapes, over what is known before
+  Damping hold{1};                                        // of steps to other shapes, over what is known before
   double last = std::numeric_limits<double>::infinity();  // length of the last step by these slopes
   double rate = 1, of_length = 1;  // lengths of two steps, the next over the last, as last seen; that of the last
   double reach = 1;                // of longest_move: less where no equilibrium was found that far away
@@ -108,9 +108,9 @@ Guess Fitter::least(const Fit& fit, const Readings& readings, double holding) co
   Normal normal = normal_at(at);
   const Eigen::MatrixXd hold = holding * readings.known.cost(problem_.variables(), fit.at.values, fit.at.places).matrix;
   normal.matrix += hold;
-  double inner = 0;
+  Damping inner(first_damping);
   for (int i = 0; i < most_inner; ++i) {
-    const Eigen::VectorXd step = step_of(at, normal, inner);
+    const Eigen::VectorXd step = step_of(at, normal, inner.value());
     if (!(length_of(step, normal) > inner_length)) break;
     Guess next{{}, {}, {}, fit.at.computed};
     problem_.move(at, step, next.values, next.places);
@@ -123,10 +123,9 @@ Guess Fitter::least(const Fit& fit, const Readings& readings, double holding) co
     if (there.cost < normal.cost) {
       at = std::move(next);
       normal = std::move(there);
-      inner = inner > first_damping ? inner / 16 : 0;
-    } else {
-      inner = inner == 0 ? first_damping : 8 * inner;
-      if (inner > most_damping) break;
+      inner.relax();
+    } else if (!inner.tighten()) {
+      break;
     }
   }
   return at;

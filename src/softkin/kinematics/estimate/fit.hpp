@@ -11,14 +11,17 @@ struct Survey;
 /// What a step adds to the diagonal (Levenberg and Marquardt): less after one that helps, more after one that does not.
 class Damping {
  public:
+  /// first  the least above none
+  explicit Damping(double first) : first_(first) {}
+
   [[nodiscard]] double value() const { return value_; }
-  void relax() { value_ = value_ > first ? value_ / 16 : 0; }
+  void relax() { value_ = value_ > first_ ? value_ / 16 : 0; }
   /// False where more leads nowhere.
-  bool tighten() { return (value_ = value_ == 0 ? first : 8 * value_) <= most; }
+  bool tighten() { return (value_ = value_ == 0 ? first_ : 8 * value_) <= most; }
 
  private:
-  static constexpr double first = 1, most = 1e9;
-  double value_ = 0;
+  static constexpr double most = 1e9;
+  double first_, value_ = 0;
 };
 
 /// The unknowns that fit readings best, near where the search began.
