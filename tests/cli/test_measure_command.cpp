@@ -16,7 +16,9 @@ using nlohmann::json;
 
 constexpr double scale = 5;  // pixels in a mm
 
-const std::vector<Disc> three{{{10, 30}, 2, green}, {{60, 30}, 2, blue}, {{30.4, 12.2}, 2.5, red}};
+std::vector<Disc> three() {
+  return {{{10, 30}, 2, green}, {{60, 30}, 2, blue}, {{30.4, 12.2}, 2.5, red}};
+}
 
 Photograph photograph() {
   return {.width = 360, .height = 200, .to_picture = straight(scale, {0, 199}), .blur = 0.9, .noise = 3};
@@ -65,7 +67,7 @@ TEST(MeasureWithoutOpenCv, SaysHowToGetIt) {
 }
 
 TEST_F(Measure, DotsInMillimetresFromTwoOfThem) {
-  const std::string picture = shoot("a.png", discs_on(three)), table = folder_ / "a.csv";
+  const std::string picture = shoot("a.png", discs_on(three())), table = folder_ / "a.csv";
   const ProgramResult result = measure(
       {picture, "--dots", "green,blue,tip=red", "--scale", "green,blue=5cm", "--angle", "green,tip", "-o", table});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
@@ -87,7 +89,7 @@ TEST_F(Measure, DotsInMillimetresFromTwoOfThem) {
 }
 
 TEST_F(Measure, FrameFollowsOriginAndAxis) {
-  const std::string picture = shoot("a.png", discs_on(three));
+  const std::string picture = shoot("a.png", discs_on(three()));
   const ProgramResult result = measure({picture, "--dots", "green,blue,red", "--scale", "50,49,300,49=50mm", "--origin",
                                         "blue", "--x-axis", "blue,green", "--json"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
@@ -128,7 +130,7 @@ TEST_F(Measure, TrackOfAFolderSaysWhatItLeftOut) {
   std::filesystem::create_directory(folder_ / "film");
   const auto at = [](int i) { return Vec2(20 + 4 * i, 10 + 0.5 * i * i); };
   for (int i = 0; i < 6; ++i) {
-    std::vector<Disc> discs{three[0], three[1], {at(i), 2, red}};
+    std::vector<Disc> discs{three()[0], three()[1], {at(i), 2, red}};
     if (i == 3) discs.pop_back();
     shoot("film/f" + std::to_string(8 + i) + ".png", discs_on(discs));
   }
@@ -196,7 +198,7 @@ TEST_F(Measure, CameraFromCheckerBoards) {
   const std::string written = read_text(camera);
   EXPECT_NEAR(std::stod(written.substr(written.find("fx: ") + 4)), 500, 5);
   // a picture of another size does not fit the camera
-  expect_refused({shoot("a.png", discs_on(three)), "--dots", "red", "--scale", "0,0,9,0=9mm", "--camera", camera},
+  expect_refused({shoot("a.png", discs_on(three())), "--dots", "red", "--scale", "0,0,9,0=9mm", "--camera", camera},
                  {"a.png", "360 x 200", "camera.yaml", "480 x 360"});
   const std::string other = folder_ / "other.yaml";
   std::vector<std::string> missing = arguments;
@@ -208,18 +210,18 @@ TEST_F(Measure, CameraFromCheckerBoards) {
 }
 
 TEST_F(Measure, RefusesPicturesByName) {
-  const std::string good = shoot("good.png", discs_on(three)), table = folder_ / "t.csv";
+  const std::string good = shoot("good.png", discs_on(three())), table = folder_ / "t.csv";
   const auto dots = [&](const std::string& file) {
     return std::vector<std::string>{file, "--dots", "red", "--scale", "0,0,100,0=20mm", "-o", table};
   };
   expect_refused(dots(folder_ / "none.png"), {"none.png"});
   expect_refused(dots(folder_.write("text.png", "text")), {"text.png", "not a picture"});
-  expect_refused(dots(shoot("no.png", discs_on({three[0]}))), {"no.png", "no dot 'red' found"});
-  expect_refused(dots(shoot("two.png", discs_on({three[2], {{50, 12}, 2.5, red}}))), {"two.png", "two candidates"});
+  expect_refused(dots(shoot("no.png", discs_on({three()[0]}))), {"no.png", "no dot 'red' found"});
+  expect_refused(dots(shoot("two.png", discs_on({three()[2], {{50, 12}, 2.5, red}}))), {"two.png", "two candidates"});
   expect_refused(dots(shoot("cut.png", discs_on({{{71, 12}, 2.5, red}}))), {"cut.png", "outside the frame"});
   Photograph bright = photograph();
   bright.exposure = 9;
-  expect_refused(dots(shoot("bright.png", discs_on(three), bright)), {"bright.png", "over-exposed"});
+  expect_refused(dots(shoot("bright.png", discs_on(three()), bright)), {"bright.png", "over-exposed"});
   expect_refused({good, "--dots", "red", "--scale-board", "5x4,tag=12mm,gap=3mm", "-o", table},
                  {"good.png", "board is not found"});
   expect_refused({good, "--tags", "--scale", "0,0,100,0=20mm", "-o", table}, {"good.png", "no tag"});
@@ -272,7 +274,7 @@ TEST_F(Measure, OutlinesGoIntoATable) {
 }
 
 TEST_F(Measure, RefusesOptionsByName) {
-  const std::string good = shoot("good.png", discs_on(three)), table = folder_ / "t.csv";
+  const std::string good = shoot("good.png", discs_on(three())), table = folder_ / "t.csv";
   const auto refused = [&](std::vector<std::string> options, const std::vector<std::string>& words) {
     options.insert(options.begin(), good);
     options.insert(options.end(), {"-o", table});

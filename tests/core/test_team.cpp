@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cstdlib>
+#include <softkin/core/error.hpp>
 #include <softkin/core/team.hpp>
 
 namespace softkin {
@@ -44,6 +46,23 @@ TEST(Team, ResultsOfALoopAreSeenByTheNext) {
     values.swap(next);
   }
   for (const std::int64_t value : values) EXPECT_EQ(value, 501);
+}
+
+/// An instruction set that there is not is refused before a loop asks for it, where what is thrown ends the program.
+TEST(TeamDeathTest, IsNotMadeForAnInstructionSetThatThereIsNot) {
+  GTEST_FLAG_SET(death_test_style, "threadsafe");  // in a process that has not chosen yet
+  EXPECT_EXIT(
+      {
+        setenv("SOFTKIN_TARGET", "abacus", 1);
+        try {
+          Team(2).each(2, [](Index) {});
+        } catch (const InvalidInput& error) {
+          std::fputs(error.what(), stderr);
+          std::exit(3);
+        }
+        std::exit(0);
+      },
+      ::testing::ExitedWithCode(3), "SOFTKIN_TARGET=abacus: not an instruction set");
 }
 
 TEST(TeamPool, LendsATeamAgain) {

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <numbers>
+#include <random>
 #include <softkin/core/error.hpp>
 #include <softkin/vision/dots.hpp>
 #include <vision/rendering.hpp>

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <fstream>
+#include <random>
 #include <softkin/core/error.hpp>
 #include <softkin/vision/boards.hpp>
 #include <softkin/vision/camera.hpp>
