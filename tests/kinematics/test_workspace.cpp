@@ -36,9 +36,9 @@ struct PlannedRobot {
 };
 
 /// Keeps samples in memory.
-class Memory : public GroupDesk {
+class GroupMemory : public GroupDesk {
  public:
-  explicit Memory(const WorkspacePlan& plan, std::map<Index, WorkspaceSample> before = {})
+  explicit GroupMemory(const WorkspacePlan& plan, std::map<Index, WorkspaceSample> before = {})
       : samples(std::move(before)), plan_(plan) {}
 
   std::optional<GroupTask> take() override {
@@ -68,7 +68,7 @@ class Memory : public GroupDesk {
 
 std::map<Index, WorkspaceSample> solved(const PlannedRobot& robot, int threads,
                                         std::map<Index, WorkspaceSample> before = {}) {
-  Memory desk(robot.plan, std::move(before));
+  GroupMemory desk(robot.plan, std::move(before));
   solve_groups(robot.statics, robot.plan, {}, threads, desk);
   return desk.samples;
 }
@@ -183,7 +183,7 @@ TEST(Workspace, SamplesWithoutAnEquilibriumAreTold) {
 TEST(Workspace, StopsWhereProgressSaysSoAndKeepsWhatIsDone) {
   const PlannedRobot robot(two_ranged_cables(), Sampling::grid, 16);
   const auto whole = solved(robot, 1);
-  Memory desk(robot.plan);
+  GroupMemory desk(robot.plan);
   const auto go_on = [&](const Progress&) { return desk.samples.size() < 5; };
   solve_groups(robot.statics, robot.plan, {}, 1, desk, go_on);
   EXPECT_GE(desk.samples.size(), 5u);
@@ -192,8 +192,8 @@ TEST(Workspace, StopsWhereProgressSaysSoAndKeepsWhatIsDone) {
 }
 
 TEST(Workspace, FailuresOfTheDeskComeThrough) {
-  struct Full : Memory {
-    using Memory::Memory;
+  struct Full : GroupMemory {
+    using GroupMemory::GroupMemory;
     void keep(const WorkspaceSample&) override { throw std::runtime_error("full"); }
   };
   const PlannedRobot robot(two_ranged_cables(), Sampling::grid, 16);

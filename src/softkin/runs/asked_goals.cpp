@@ -28,7 +28,7 @@ bool parse_coordinates(const std::string& text, bool empty_too, Coordinates& fou
   return true;
 }
 
-Vec3 point_of(const Coordinates& coordinates) {
+Vec3 or_zero(const Coordinates& coordinates) {
   return {coordinates[0].value_or(0), coordinates[1].value_or(0), coordinates[2].value_or(0)};
 }
 
@@ -69,7 +69,7 @@ class Argument {
   }
 
   [[nodiscard]] Vec3 direction(const std::string& text) const {
-    const Vec3 found = point_of(coordinates(text));
+    const Vec3 found = or_zero(coordinates(text));
     if (!(found.stableNorm() > 0)) refuse("the direction " + excerpt(text) + " is zero");
     return found;
   }
@@ -84,7 +84,7 @@ NamedGoal target_of(const Model& model, const std::string& before, const std::st
   PositionGoal goal;
   goal.marker = argument.marker(argument.name());
   const Coordinates coordinates = argument.coordinates(argument.value(), true);
-  goal.target = point_of(coordinates);
+  goal.target = or_zero(coordinates);
   for (std::size_t axis = 0; axis < 3; ++axis) goal.axes[axis] = coordinates[axis].has_value();
   if (goal.axes == std::array<bool, 3>{}) argument.refuse("no coordinate of it is given");
   return {argument.name(), {goal}};
@@ -97,7 +97,7 @@ NamedGoal plane_of(const Model& model, const std::string& before, const std::str
     argument.refuse("expected a point in mm and a normal, PX,PY,PZ/NX,NY,NZ, not " + excerpt(argument.value()));
   PlaneGoal goal;
   goal.marker = argument.marker(argument.name());
-  goal.point = point_of(argument.coordinates(argument.value().substr(0, slash)));
+  goal.point = or_zero(argument.coordinates(argument.value().substr(0, slash)));
   goal.normal = argument.direction(argument.value().substr(slash + 1));
   return {argument.name(), {goal}};
 }
@@ -126,7 +126,7 @@ NamedGoal press_of(const Model& model, const std::string& before, const std::str
                     (names.empty() ? "; the scene has none" : suggest_name(argument.name(), names)));
   ForceGoal goal = force_on(model, argument.name());
   const Coordinates components = argument.coordinates(argument.value(), true);
-  goal.force = point_of(components);
+  goal.force = or_zero(components);
   for (std::size_t axis = 0; axis < 3; ++axis) goal.axes[axis] = components[axis].has_value();
   if (goal.axes == std::array<bool, 3>{}) argument.refuse("no component of it is given");
   goal.mm_per_N = usual_mm_per_N(goal, tolerance_mm, tolerance_N);
