@@ -24,7 +24,7 @@ namespace softkin {
 /// which wait for every thread, were five times slower there). A team of one may be shared by several threads.
 class Team {
  public:
-  /// threads >= 1, the caller's included; 0: as many as the machine has. Throws as start_threads
+  /// threads >= 1, the caller's included; 0: as many as the machine has. Throws as start_threads, and target()
   explicit Team(int threads);
   ~Team();
   Team(const Team&) = delete;
