@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <atomic>
+#include <cstdio>
 #include <cstdlib>
 #include <softkin/core/error.hpp>
 #include <softkin/core/team.hpp>

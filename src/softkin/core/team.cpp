@@ -52,8 +52,8 @@ std::vector<std::thread> start_threads(int count, const std::function<void()>& w
 }
 
 Team::Team(int threads) {
-  static_cast<void>(
-      target());  // chosen, or refused, before a loop calls a kernel: what is thrown there ends the program
+  // chosen, or refused, before a loop calls a kernel: what is thrown there ends the program
+  static_cast<void>(target());
   const int size = threads > 0 ? threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   workers_ = start_threads(
       size - 1, [this] { work(); }, [this] { end(); });
