@@ -52,6 +52,22 @@ TEST(RobotFit, FindsTheNumbersThatMadeThePoses) {
   EXPECT_EQ(fit.without_equilibrium, 0);
 }
 
+/// Poses are solved side by side; what one leaves to the next on its thread must not count.
+TEST(RobotFit, IsTheSameBitForBitWhateverTheThreads) {
+  const Arm arm;
+  const MeasuredPoses poses = arm.poses(truth, 0.1);
+  const NumberedRobot robot = arm.robot(asked);
+  RobotFitOptions options;
+  options.threads = 1;
+  const RobotFit alone = fit_robot(robot, poses, options);
+  for (options.threads = 2; options.threads < 6; ++options.threads) {
+    const RobotFit fit = fit_robot(robot, poses, options);
+    EXPECT_EQ(fit.values, alone.values) << options.threads << " threads";
+    EXPECT_EQ(fit.deviations, alone.deviations) << options.threads << " threads";
+    EXPECT_EQ(fit.iterations, alone.iterations) << options.threads << " threads";
+  }
+}
+
 /// Readings that are missing do not count, and neither do poses that are kept aside, which are foretold.
 TEST(RobotFit, LeavesOutWhatIsMissingOrKept) {
   const Arm arm;

@@ -4,6 +4,8 @@
 #include <mutex>
 #include <softkin/calibration/robot_changes.hpp>
 #include <softkin/core/error.hpp>
+#include <softkin/core/together.hpp>
+#include <softkin/kinematics/sampling.hpp>
 #include <softkin/model/backlash.hpp>
 #include <thread>
 
@@ -287,7 +289,6 @@ bool RobotProblem::each_pose(int most_threads, const std::function<bool(Index, c
   std::atomic<int> next = 0, done = 0;
   std::atomic<bool> stopped = false;
   std::mutex mutex;
-  std::exception_ptr error;
   const ProgressCallback go_on = [&](const Progress&) {
     const std::lock_guard lock(mutex);
     if (stopped || !progress_) return !stopped;
@@ -296,24 +297,13 @@ bool RobotProblem::each_pose(int most_threads, const std::function<bool(Index, c
     stopped = !progress_(progress_state_);
     return !stopped;
   };
-  const auto work = [&] {
-    for (int pose = next++; pose < count && !stopped; pose = next++) {
-      try {
-        if (!act(pose, go_on)) stopped = true;
-      } catch (...) {
-        const std::lock_guard lock(mutex);
-        error = std::current_exception();
-        stopped = true;
-      }
-      ++done;
-      (void)go_on({});
-    }
-  };
-  std::vector<std::thread> threads;
-  for (int t = 1; t < std::clamp(asked, 1, std::min(count, most_threads)); ++t) threads.emplace_back(work);
-  work();
-  for (std::thread& thread : threads) thread.join();
-  if (error) std::rethrow_exception(error);
+  work_together(std::clamp(asked, 1, std::min(count, most_threads)), stopped, [&] {
+    const int pose = next++;
+    if (pose >= count) return false;
+    if (!act(pose, go_on)) stopped = true;
+    ++done;
+    return go_on({});
+  });
   return !stopped;
 }
 
@@ -356,9 +346,7 @@ std::optional<RobotPoint> RobotProblem::solve(const Eigen::VectorXd& values, con
   point.outline_misses.resize(count);
   point.outline_slopes.resize(slopes ? count : 0);
   point.computed.resize(count, poses_.columns.size());
-  StaticsOptions solver = options_.solver;
-  solver.threads = 1;
-  solver.keep_history = false;
+  StaticsOptions solver = one_of_many(options_.solver);
   // what rubs is elsewhere on another way
   const bool way_counts = rubs(*point.model), chained = way_counts && options_.ordered;
   if (chained) solver.threads = options_.threads;

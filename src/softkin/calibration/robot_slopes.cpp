@@ -3,6 +3,7 @@
 #include <softkin/calibration/robot_changes.hpp>
 #include <softkin/kinematics/estimate/readings.hpp>
 #include <softkin/kinematics/jacobian.hpp>
+#include <softkin/kinematics/sampling.hpp>
 #include <softkin/model/sensor.hpp>
 #include <softkin/statics/deformation.hpp>
 
@@ -98,10 +99,8 @@ void RobotProblem::add_changes_of_acting(ParameterSensitivity& found, const Robo
     of.push_back(k);
   }
   if (along.empty()) return;
-  StaticsOptions solver = options_.solver;
-  solver.threads = 1;
-  const ParameterSensitivity more =
-      point.statics->sensitivity_along(point.equilibria[p].state, along, solver, slopes_accuracy, reads_forces());
+  const ParameterSensitivity more = point.statics->sensitivity_along(
+      point.equilibria[p].state, along, one_of_many(options_.solver), slopes_accuracy, reads_forces());
   for (std::size_t i = 0; i < of.size(); ++i) {
     found.positions[of[i]] += more.positions[i];
     found.multipliers.col(of[i]) += more.multipliers.col(i);
@@ -149,9 +148,8 @@ void RobotProblem::add_outline_slopes(RobotPoint& point, const Changes& changes,
 
 void RobotProblem::add_slopes(RobotPoint& point, const Changes& changes, Index pose, const Points& reactions) const {
   const State& state = point.equilibria[pose].state;
-  StaticsOptions solver = options_.solver;
-  solver.threads = 1;
-  ParameterSensitivity found = changes.perturbations->at(state, solver, slopes_accuracy, reads_forces());
+  ParameterSensitivity found =
+      changes.perturbations->at(state, one_of_many(options_.solver), slopes_accuracy, reads_forces());
   if (found.regular) add_changes_of_acting(found, point, changes, pose);
   add_slopes_of_frame(point, changes, pose, reactions);
   add_outline_slopes(point, changes, pose, found);
