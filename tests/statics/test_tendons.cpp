@@ -207,6 +207,7 @@ TEST(Tendons, StayWhereTheyStick) {
   const Model model = compile(arm(0.2));
   const Statics statics(model);
   Equilibrium found = settled(statics, values({3}));
+  EXPECT_EQ(statics.measured(pulled(statics, found, 2.95).state).tendons.at(0)->sticks, 1);
   found = pulled(statics, found, 2.8);
   const Points first = found.state.positions;
   for (int i = 0; i < 20; ++i) {

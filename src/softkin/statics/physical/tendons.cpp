@@ -196,10 +196,11 @@ void Tendons::add_response(Index actuator, double tension, const Iterate& at, co
 
 TendonForces Tendons::forces(Index actuator, double tension, const Iterate& at) const {
   const Way found = way(actuator, at);
-  double sticks = 0;
-  for (Index j = 0; j < std::ssize(found.slips); ++j)
+  double sticks = 0, all = 0;  // by the same sums: what sticks as a whole is exactly 1
+  for (Index j = 0; j < std::ssize(found.slips); ++j) {
+    all += found.limits[j];
     if (std::abs(found.slips[j]) < whole) sticks += found.limits[j];
-  const double all = found.limits.sum();
+  }
   return {tension * found.share[found.share.size() - 1], all > 0 ? sticks / all : 0};
 }
 
