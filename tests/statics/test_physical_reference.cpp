@@ -83,7 +83,7 @@ INSTANTIATE_TEST_SUITE_P(Fem, FingerReference,
                                            Sweep{"finger_5k", "finger_5k_c3d10_lin", true, ReferenceLaw::lin, 11, 2},
                                            Sweep{"finger_15k", "finger_15k_c3d4_lin", false, ReferenceLaw::lin, 11},
                                            Sweep{"finger_15k", "finger_15k_c3d4_nh", false, ReferenceLaw::nh, 11},
-                                           Sweep{"finger_15k", "finger_15k_c3d10_lin", true, ReferenceLaw::lin, 24}),
+                                           Sweep{"finger_15k", "finger_15k_c3d10_lin", true, ReferenceLaw::lin, 100}),
                          case_name);
 
 /// Length control with the reference's lengths: tip and tension. Rows in which notches would touch are left out.
@@ -324,13 +324,15 @@ TEST_P(BarReference, InterfaceFollows) {
 
 namespace {
 
+/// Of quadratic elements each ratio with one of Poisson's; with both where the environment sets SOFTKIN_EVERY_ROW.
 std::vector<Bar> bars() {
   std::vector<Bar> all;
   for (const char* ratio : {"3p75", "5p68"})
     for (const char* nu : {"30", "45"}) {
-      for (const bool quadratic : {false, true})
-        for (const char* support : {"clamped", "sliding", "twist"}) all.push_back({quadratic, ratio, nu, support});
-      all.push_back({true, ratio, nu, "clamped_nh"});
+      for (const char* support : {"clamped", "sliding", "twist"}) all.push_back({false, ratio, nu, support});
+      if ((ratio[0] == '3') == (nu[0] == '3') && !std::getenv("SOFTKIN_EVERY_ROW")) continue;
+      for (const char* support : {"clamped", "sliding", "twist", "clamped_nh"})
+        all.push_back({true, ratio, nu, support});
     }
   return all;
 }
