@@ -12,7 +12,7 @@ command -v npm >/dev/null || packages+=(npm)
 case "${1:-}" in
   "") ;;
   --tests)
-    packages+=(libgtest-dev clang-format-14 libopencv-dev libclang-rt-dev)
+    packages+=(libgtest-dev clang-format-14 libopencv-dev libclang-rt-dev lld)
     command -v "${SOFTKIN_CHROMIUM:-chromium}" >/dev/null || packages+=(chromium)
     ;;
   --python)
@@ -38,7 +38,7 @@ if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
   fail "$system has no apt; softkin is made for Debian 12 and Ubuntu 24.04." \
        "Install a C++20 compiler (clang 14, gcc 12 or later), CMake 3.22, Ninja, Eigen 3.4, yaml-cpp, nlohmann-json," \
        "pugixml, zlib, libpng, CLI11, METIS, nanoflann, Qhull and Boost 1.74, with their headers, and Node.js 18 with npm for the page;" \
-       "for the tests also GoogleTest, clang-format 14, clang with libFuzzer, and Chromium;" \
+       "for the tests also GoogleTest, clang-format 14, clang with libFuzzer, lld, and Chromium;" \
        "for softkin measure OpenCV 4.5 or 4.6." \
        "Then run make again with SETUP=true, e.g.: make run SETUP=true"
 fi
