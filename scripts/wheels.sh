@@ -118,24 +118,34 @@ for python in "${pythons[@]}"; do
     -UPython_* -UPYTHON_* -DPython_EXECUTABLE="$("$python" -c 'import sys; print(sys.executable)')" \
     -DPython_INCLUDE_DIR="$("$python" -c 'import sysconfig; print(sysconfig.get_path("include"))')" \
     -Dnanobind_DIR="$("$work/tools/bin/python" -m nanobind --cmake_dir)"
-  rm -f "$build-arm"/python/softkin/_core*.so
-  PATH=$work/tools/bin:$PATH run cmake --build "$build-arm" --target softkin_cli _core
+  rm -f "$build-arm"/python/softkin/_*.so
+  PATH=$work/tools/bin:$PATH run cmake --build "$build-arm" --target softkin_cli _core _vision
   rm -rf "$work/open"
   run "$work/tools/bin/wheel" unpack --dest "$work/open" "$work"/raw/softkin-*-cp"$version"-*.whl
   open=$(echo "$work"/open/*)
-  module=$(basename "$open"/softkin/_core*.so)
-  rm "$open/softkin/$module"
-  aarch64-linux-gnu-strip -o "$open/softkin/${module/x86_64/aarch64}" "$build-arm"/python/softkin/_core*.so
+  for module in "$open"/softkin/_*.so; do
+    rm "$module"
+    name=$(basename "$module")
+    aarch64-linux-gnu-strip -o "$open/softkin/${name/x86_64/aarch64}" "$build-arm/python/softkin/${name%%.*}".*so
+  done
   aarch64-linux-gnu-strip -o "$open"/softkin-*.data/scripts/softkin "$build-arm/softkin"
   sed -i '/^Tag:/s/x86_64/aarch64/' "$open"/softkin-*.dist-info/WHEEL
   run "$work/tools/bin/wheel" pack --dest-dir "$work/raw_arm" "$open"
   rm -r "$work/open"
 done
 finish "$work/raw_arm" --ldpaths "$sysroot/usr/lib/aarch64-linux-gnu"
+bend='import softkin, softkin.measure
+print(softkin.build_info, softkin.load("three_chamber_actuator/three_chamber_actuator.yaml").solve({"air1": 1.2}).markers)'
 for wheel in "$out"/softkin-*aarch64.whl; do
   run "$work/tools/bin/wheel" unpack --dest "$work/open" "$wheel"
   (cd "$work"/open/* && mv softkin-*.data/data/share . && chmod +x softkin.scripts/softkin &&
      run qemu-aarch64 -L "$sysroot" softkin.scripts/softkin examples copy chambers &&
-     run qemu-aarch64 -L "$sysroot" softkin.scripts/softkin fk three_chamber_actuator/three_chamber_actuator.yaml --set air1=1.2)
+     run qemu-aarch64 -L "$sysroot" softkin.scripts/softkin fk three_chamber_actuator/three_chamber_actuator.yaml --set air1=1.2 &&
+     if [[ $wheel == *-cp311-* ]]; then  # that of the sysroot
+       run "$work/tools/bin/pip" download --quiet --no-deps --only-binary :all: --platform manylinux2014_aarch64 \
+         --python-version 3.11 --dest numpy numpy
+       run python3 -m zipfile -e numpy/numpy-*.whl .
+       run qemu-aarch64 -L "$sysroot" "$sysroot/usr/bin/python3.11" -c "$bend"
+     fi)
   rm -r "$work/open"
 done
