@@ -16,9 +16,12 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL GNU AND softkin_compiler_KiB GREATER 262144)
   add_compile_options(--param=ggc-min-heapsize=${softkin_compiler_KiB})
 endif()
 add_compile_definitions(SOFTKIN_VERSION="${PROJECT_VERSION}" EIGEN_DONT_PARALLELIZE)
-if(NOT SOFTKIN_SANITIZE)
-  add_compile_options(-Werror)  # another compiler, and what sanitizers insert, warn of more
-else()
+# by the compilers that it is made with; later ones, and what sanitizers insert, warn of more, which ends nobody's build
+if((CMAKE_CXX_COMPILER_ID STREQUAL Clang AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 15 OR
+    CMAKE_CXX_COMPILER_ID STREQUAL GNU AND CMAKE_CXX_COMPILER_VERSION VERSION_LESS 13) AND NOT SOFTKIN_SANITIZE)
+  add_compile_options(-Werror)
+endif()
+if(SOFTKIN_SANITIZE)
   # what libFuzzer watches is marked in the rooms whose readers it is given alone: an eighth of the compiler's time
   string(REGEX REPLACE ",?fuzzer-no-link" "" softkin_sanitizers ${SOFTKIN_SANITIZE})
   set(softkin_fuzzed softkin_core softkin_model softkin_io softkin_drive softkin_runs fuzz_main softkin_fuzz softkin_fuzz_journals)
