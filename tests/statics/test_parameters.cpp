@@ -210,7 +210,8 @@ TEST(Parameters, OfLayersUnderVoltage) {
       {{"permittivity", [](RobotSpec& s, double by) { *s.materials[0].permittivity += by; }, 4},
        {"prestretch", [](RobotSpec& s, double by) { s.actuators[0].as<DeaSpec>()->prestretch += by; }, 0.1},
        {"jm", [](RobotSpec& s, double by) { *s.materials[0].elastic->jm += by; }, 3},
-       {"shear_modulus", [](RobotSpec& s, double by) { *s.materials[0].elastic->shear_modulus += by; }, 0.07}});
+       {"shear_modulus", [](RobotSpec& s, double by) { *s.materials[0].elastic->shear_modulus += by; }, 0.07}},
+      3e-6);  // of the differences by jm
 }
 
 TEST(Parameters, OfMagnetsInFields) {
