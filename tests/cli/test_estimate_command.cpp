@@ -99,7 +99,7 @@ TEST(EstimateCommand, PlansWhatToReadFurther) {
   }
   const ProgramResult none = folder.estimate({"--unknown", "push", "--deviation", "0.001", "--plan", "0"});
   EXPECT_EQ(none.exit_code, 2);
-  expect_words(none.errors, {"--plan: Value 0 not in range"});
+  expect_words(none.errors, {"--plan: Value 0 not in range", "100"});
 }
 
 /// A map of the block tells the same as the block, to the map's accuracy.
