@@ -38,7 +38,7 @@ double front_rate(Team& team) {
     std::fill(front.begin(), front.end(), 0.01);
     for (Index i = 0; i < size; ++i) front[static_cast<std::size_t>(i) * stride + i] = size;
     const double begin = now();
-    (void)linear::factor_front(front.data(), size, size, 1e-9, diagonal.data(), work, team);
+    (void)linear::factor_front<double>({front.data(), nullptr, size, size}, 1e-9, diagonal.data(), work, team);
     best = std::max(best, 1.0 / 3 * size * size * size / (now() - begin));
   }
   return best;

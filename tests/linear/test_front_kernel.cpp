@@ -25,26 +25,27 @@ struct Factored {
   Index negative = 0;
 };
 
-/// The upper triangle, the other columns and the rows beyond `size` hold rubbish, as they do where fronts share memory.
+/// The upper triangle and what is left hold rubbish, as they do where fronts share memory.
 template <class Number = double>
 Factored factored(const Eigen::MatrixXd& matrix, Index pivots, double least, Team& team) {
   using Matrix = Eigen::Matrix<Number, Eigen::Dynamic, Eigen::Dynamic>;
-  const Index size = matrix.rows(), stride = front_stride<Number>(size);
-  std::vector<Number> front(static_cast<std::size_t>(stride) * size + front_slack, 1e3), diagonal(pivots);
-  Eigen::Map<Matrix> kept(front.data(), stride, size);
-  kept.topLeftCorner(size, pivots).template triangularView<Eigen::Lower>() =
-      matrix.leftCols(pivots).template cast<Number>();
+  const Index size = matrix.rows(), rest = size - pivots, head = left_head<Number>;
+  Matrix own = Matrix::Constant(front_stride<Number>(size), pivots, 1e3);
+  own.bottomRows(own.rows() - size).setZero();
+  own.topRows(size).template triangularView<Eigen::Lower>() = matrix.leftCols(pivots).template cast<Number>();
+  Matrix left = Matrix::Constant(left_stride<Number>(rest), rest, 1e3);
+  std::vector<Number> diagonal(pivots);
   Factored result;
   FrontWork<Number> work;
-  result.negative = factor_front(front.data(), size, pivots, static_cast<Number>(least), diagonal.data(), work, team);
-  const Eigen::MatrixXd view = kept.template cast<double>();
+  result.negative = factor_front<Number>({own.data(), left.data() + head, size, pivots}, static_cast<Number>(least),
+                                         diagonal.data(), work, team);
+  const Eigen::MatrixXd added = left.middleRows(head, rest).template cast<double>();
   result.diagonal = Eigen::Map<const Eigen::VectorX<Number>>(diagonal.data(), pivots).template cast<double>();
   result.lower = Eigen::MatrixXd::Zero(size, pivots);
-  result.lower.triangularView<Eigen::StrictlyLower>() = Eigen::MatrixXd(view.topLeftCorner(size, pivots));
+  result.lower.triangularView<Eigen::StrictlyLower>() = own.topRows(size).template cast<double>();
   result.lower.diagonal().setOnes();
-  const Index rest = size - pivots;
   result.schur = matrix.bottomRightCorner(rest, rest);
-  result.schur += Eigen::MatrixXd(view.block(pivots, pivots, rest, rest).selfadjointView<Eigen::Lower>());
+  result.schur += Eigen::MatrixXd(added.selfadjointView<Eigen::Lower>());
   return result;
 }
 

@@ -132,7 +132,7 @@ TEST(SparseLdlt, NothingToSolve) {
 TEST(SparseLdlt, AFactorThatDoesNotFitIsRefusedBeforeItIsBegun) {
   FrontTree tree = make_front_tree(BlockColumns{});
   EXPECT_NO_THROW(require_memory(tree, sizeof(double)));
-  tree.values = std::int64_t{1} << 50;
+  tree.arena_sizes.push_back(std::int64_t{1} << 50);
   try {
     require_memory(tree, sizeof(double));
     FAIL() << "not refused";

@@ -33,16 +33,26 @@ void share(Team& team, Index strips, double work, const Body& body) {
 }  // namespace
 
 template <class Number>
-Index factor_front(Number* front, Index size, Index pivots, Number least, Number* diagonal, FrontWork<Number>& work,
+Index factor_front(const FrontPlace<Number>& front, Number least, Number* diagonal, FrontWork<Number>& work,
                    Team& team) {
+  const Index size = front.size, pivots = front.pivots;
   const std::size_t most = static_cast<std::size_t>(front_panels(size)) * front_block;
   if (work.plain.size() < most) {
     work.plain.resize(most);
     work.scaled.resize(most);
   }
   work.corner.resize(corner_values);
-  FrontBlock<Number> block{
-      front, size, front_stride<Number>(size), pivots, 0, 0, work.corner.data(), work.plain.data(), work.scaled.data()};
+  FrontBlock<Number> block{front.own,
+                           front.left,
+                           size,
+                           pivots,
+                           front_stride<Number>(size),
+                           left_stride<Number>(size - pivots),
+                           0,
+                           0,
+                           work.corner.data(),
+                           work.plain.data(),
+                           work.scaled.data()};
   Index negative = 0;
   for (block.begin = 0; block.begin < pivots; block.begin += front_block) {
     block.width = std::min(front_block, pivots - block.begin);
@@ -56,7 +66,7 @@ Index factor_front(Number* front, Index size, Index pivots, Number least, Number
   return negative;
 }
 
-template Index factor_front(double*, Index, Index, double, double*, FrontWork<double>&, Team&);
-template Index factor_front(float*, Index, Index, float, float*, FrontWork<float>&, Team&);
+template Index factor_front(const FrontPlace<double>&, double, double*, FrontWork<double>&, Team&);
+template Index factor_front(const FrontPlace<float>&, float, float*, FrontWork<float>&, Team&);
 
 }  // namespace softkin::linear

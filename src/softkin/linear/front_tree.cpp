@@ -173,13 +173,13 @@ class Arena {
   std::int64_t size_ = 0;
 };
 
-/// In values of either precision.
+/// Of what a front leaves, in values of either precision.
 std::int64_t place_of(const Front& front) {
-  static_assert(front_stride<float>(1) >= front_stride<double>(1));
-  return static_cast<std::int64_t>(front_stride<float>(front.size())) * front.size();
+  static_assert(left_stride<float>(1) >= left_stride<double>(1));
+  return static_cast<std::int64_t>(left_stride<float>(front.below)) * front.below;
 }
 
-/// Offsets of the fronts. Those of a piece's roots, which outlive the piece, stand in the top's arena.
+/// Offsets of what fronts leave. Those of a piece's roots, which outlive the piece, stand in the top's arena.
 void plan_arenas(FrontTree& tree) {
   const Index pieces = std::ssize(tree.pieces) - 2;
   const Index top = tree.pieces[pieces];
@@ -193,7 +193,6 @@ void plan_arenas(FrontTree& tree) {
       front.offset = arena.take(place_of(front));
       for (Index c = tree.first_child[f]; c >= 0; c = tree.next_sibling[c])
         inside.give(tree.fronts[c].offset, place_of(tree.fronts[c]));
-      if (front.below == 0) arena.give(front.offset, place_of(front));
     }
     if (p < pieces) tree.arena_sizes.push_back(own.size());
   }
@@ -240,7 +239,6 @@ FrontTree make_front_tree(BlockColumns columns, Fill fill) {
       for (Index u = pattern.unknowns[node]; u < pattern.unknowns[node + 1]; ++u) tree.rows.push_back(u);
     front.below = static_cast<std::int64_t>(tree.rows.size()) - front.first_row;
     if (!group.below.empty()) front.parent = front_of[group.below.front()];
-    front.first_value = tree.values;
     tree.values += static_cast<std::int64_t>(front.size()) * front.pivots();
     for (Index c = 0; c < front.pivots(); ++c) {
       const double height = front.size() - c;
@@ -262,7 +260,9 @@ FrontTree make_front_tree(BlockColumns columns, Fill fill) {
 }
 
 void require_memory(const FrontTree& tree, std::size_t value_bytes) {
-  double values = static_cast<double>(tree.values);
+  double values = 0;
+  for (const Front& front : tree.fronts)
+    values += static_cast<double>(front_stride<double>(front.size())) * front.pivots();
   for (const std::int64_t arena : tree.arena_sizes) values += static_cast<double>(arena);
   const double needed = values * static_cast<double>(value_bytes), there = free_memory_bytes();
   if (needed > there)

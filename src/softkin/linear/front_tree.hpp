@@ -8,11 +8,10 @@ namespace softkin::linear {
 struct Front {
   Index begin = 0, end = 0;  // unknowns eliminated here
   Index begin_node = 0, end_node = 0;
-  std::int64_t first_row = 0;    // in FrontTree::rows: unknowns below, ascending
-  Index below = 0;               // how many
-  Index parent = -1;             // front
-  std::int64_t first_value = 0;  // of its columns of L: (end - begin + below) rows, column-major
-  std::int64_t offset = 0;       // of the front in its arena
+  std::int64_t first_row = 0;  // in FrontTree::rows: unknowns below, ascending
+  Index below = 0;             // how many
+  Index parent = -1;           // front
+  std::int64_t offset = 0;     // of what it leaves in its arena
 
   [[nodiscard]] Index pivots() const { return end - begin; }
   [[nodiscard]] Index size() const { return pivots() + below; }

@@ -63,17 +63,16 @@ SparseFactor::SparseFactor(const Matrix& matrix, const std::vector<Index>& order
   for (const double pivot : ldlt.diagonal()) inverse_diagonal_.push_back(1 / pivot);
   piece_nodes_.assign(tree->pieces.begin(), tree->pieces.end() - 1);
   rows_ = tree->rows;
-  for (const Front& front : tree->fronts) add_supernode(front, ldlt.lower().data() + front.first_value);
+  for (std::size_t f = 0; f < tree->fronts.size(); ++f) add_supernode(tree->fronts[f], ldlt.lower(f));
 }
 
-/// lower: the front's columns of L
-void SparseFactor::add_supernode(const Front& front, const double* lower) {
+void SparseFactor::add_supernode(const Front& front, const FrontColumns<double>& lower) {
   const Supernode node{front.begin, front.end,   front.first_row,
                        0,           front.below, static_cast<std::int64_t>(values_.size())};
   const Index width = node.width();
   for (Index r = 1; r < front.size(); ++r)
     for (Index c = 0; c < std::min(r, width); ++c)
-      values_.push_back(lower[static_cast<std::int64_t>(c) * front.size() + r]);
+      values_.push_back(lower.values[static_cast<std::int64_t>(c) * lower.stride + r]);
   nodes_.push_back(node);
   const Index* rows = rows_.data() + node.first_row;
   nodes_.back().inner_rows = std::lower_bound(rows, rows + node.row_count, top_) - rows;

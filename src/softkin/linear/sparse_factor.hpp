@@ -2,6 +2,7 @@
 
 #include <Eigen/SparseCore>
 #include <softkin/core/team.hpp>
+#include <softkin/linear/kernels/front.hpp>
 #include <softkin/linear/kernels/supernode.hpp>
 #include <vector>
 
@@ -41,7 +42,7 @@ class SparseFactor {
     }
   };
 
-  void add_supernode(const Front& front, const double* lower);
+  void add_supernode(const Front& front, const FrontColumns<double>& lower);
   [[nodiscard]] SupernodeColumns columns_of(const Supernode& node) const;
 
   std::vector<Index> order_;

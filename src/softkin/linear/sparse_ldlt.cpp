@@ -8,17 +8,14 @@ namespace softkin::linear {
 
 namespace {
 
-/// Columns worth a thread's start.
+/// body(begin, end) over columns, of which threads take pieces where that is worth their start.
 template <class Body>
-void each_column(Index columns, Index rows, Team& team, const Body& body) {
+void share_columns(Index columns, Index rows, Team& team, const Body& body) {
   constexpr double worthwhile = 1e5;
-  if (static_cast<double>(columns) * rows < worthwhile) {
-    for (Index c = 0; c < columns; ++c) body(c);
-  } else {
-    team.pieces(columns, [&](Index begin, Index end) {
-      for (Index c = begin; c < end; ++c) body(c);
-    });
-  }
+  if (static_cast<double>(columns) * rows < worthwhile)
+    body(Index{0}, columns);
+  else
+    team.pieces(columns, body);
 }
 
 template <class Number>
@@ -99,8 +96,13 @@ class SparseLdltOf<Number>::Seat {
 template <class Number>
 void SparseLdltOf<Number>::take_memory() {
   has_memory_ = true;
-  lower_.resize(static_cast<std::size_t>(tree_->values) + solve_slack);
-  std::fill(lower_.end() - solve_slack, lower_.end(), Number(0));
+  std::int64_t values = 0;
+  first_value_.clear();
+  for (const Front& front : tree_->fronts) {
+    first_value_.push_back(values);
+    values += static_cast<std::int64_t>(front_stride<Number>(front.size())) * front.pivots();
+  }
+  lower_.resize(static_cast<std::size_t>(values) + front_slack);
   packs_.clear();
   first_pack_.assign(1, 0);
   for (const Front& front : tree_->fronts) {
@@ -130,15 +132,28 @@ double SparseLdltOf<Number>::bytes() const {
                                    tree_->entry_places.size());
 }
 
-/// The columns of a front's pivots.
 template <class Number>
-void SparseLdltOf<Number>::assemble(Index index, const LargeVector<double>& values, Number* front, const Bench& bench,
-                                    Team& team) const {
+FrontColumns<Number> SparseLdltOf<Number>::lower(Index front) const {
+  const Front& own = tree_->fronts[front];
+  return {lower_.data() + first_value_[front], front_stride<Number>(own.size()), own.size(), own.pivots()};
+}
+
+/// bench  the front's piece's
+template <class Number>
+FrontPlace<Number> SparseLdltOf<Number>::place_of(Index front, const Bench& bench) {
+  const Front& own = tree_->fronts[front];
+  Number* arena = (own.parent >= top_front() ? top_ : bench).arena;
+  return {lower_.data() + first_value_[front], arena + own.offset + left_head<Number>, own.size(), own.pivots()};
+}
+
+/// What the pattern has in the columns of a front's pivots.
+template <class Number>
+void SparseLdltOf<Number>::assemble(Index index, const LargeVector<double>& values, Number* front, Team& team) const {
   const Front& own = tree_->fronts[index];
   const Index stride = front_stride<Number>(own.size());
-  each_column(own.pivots(), stride, team, [&](Index c) {
-    Number* column = front + static_cast<std::ptrdiff_t>(c) * stride;
-    std::fill(column + c / 16 * 16, column + stride, Number(0));  // a panel of the kernels has 16 rows at most
+  share_columns(own.pivots(), stride, team, [&](Index begin, Index end) {
+    const auto column = [&](Index c) { return front + static_cast<std::ptrdiff_t>(c) * stride; };
+    std::fill(column(begin), column(end), Number(0));  // above the diagonal, too: one long run is the fastest
   });
   for (Index node = own.begin_node; node < own.end_node; ++node) {
     const Index width = tree_->pattern.width(node);
@@ -152,24 +167,26 @@ void SparseLdltOf<Number>::assemble(Index index, const LargeVector<double>& valu
           target[static_cast<std::ptrdiff_t>(c) * stride + r] = static_cast<Number>(block[c * height + r]);
     }
   }
-  add_children(index, true, front, bench, team);
 }
 
 /// What the children leave in the columns of a front's pivots, or in those below them.
 template <class Number>
-void SparseLdltOf<Number>::add_children(Index index, bool of_pivots, Number* front, const Bench& bench,
-                                        Team& team) const {
+void SparseLdltOf<Number>::add_children(Index index, bool of_pivots, const FrontPlace<Number>& front,
+                                        const Bench& bench, Team& team) const {
   const Front& own = tree_->fronts[index];
-  const Index stride = front_stride<Number>(own.size());
+  Number* to = of_pivots ? front.own : front.left;
+  const Index stride = of_pivots ? front_stride<Number>(own.size()) : left_stride<Number>(own.below);
   for (Index i = tree_->first_child[index]; i >= 0; i = tree_->next_sibling[i]) {
     const Front& child = tree_->fronts[i];
-    const Index child_stride = front_stride<Number>(child.size()), pivots = child.pivots();
-    const Number* update = bench.arena + child.offset + static_cast<std::ptrdiff_t>(pivots) * child_stride + pivots;
+    const Number* update = bench.arena + child.offset + left_head<Number>;
     const RowPack *first = packs_.data() + first_pack_[i], *last = packs_.data() + first_pack_[i + 1];
     const RowPack* below = std::partition_point(first, last, [&](const RowPack& p) { return p.to < own.pivots(); });
     const RowPack *begin = of_pivots ? first : below, *end = of_pivots ? below : last;
-    const FrontSum<Number> sum{update, front, child_stride, stride, last};
-    each_column(end - begin, child.below, team, [&](Index k) { run_add_columns(sum, begin + k); });
+    const FrontSum<Number> sum{update, to, left_stride<Number>(child.below), stride, of_pivots ? 0 : own.pivots(),
+                               last};
+    share_columns(end - begin, child.below, team, [&](Index from, Index beyond) {
+      for (Index k = from; k < beyond; ++k) run_add_columns(sum, begin + k);
+    });
   }
 }
 
@@ -177,18 +194,12 @@ void SparseLdltOf<Number>::add_children(Index index, bool of_pivots, Number* fro
 template <class Number>
 Index SparseLdltOf<Number>::factor(Index index, const LargeVector<double>& values, Number least, Bench& bench,
                                    Team& team) {
-  const Front& own = tree_->fronts[index];
-  const Index size = own.size(), pivots = own.pivots(), stride = front_stride<Number>(size);
-  Number* front = (own.parent >= top_front() ? top_ : bench).arena + own.offset;
-  assemble(index, values, front, bench, team);
-  const Index negative = factor_front(front, size, pivots, least, diagonal_.data() + own.begin, bench.work, team);
+  const FrontPlace<Number> front = place_of(index, bench);
+  assemble(index, values, front.own, team);
+  add_children(index, true, front, bench, team);
+  Number* pivots = diagonal_.data() + tree_->fronts[index].begin;
+  const Index negative = factor_front(front, least, pivots, bench.work, team);
   add_children(index, false, front, bench, team);
-  const auto column = [&](Index c) { return front + static_cast<std::ptrdiff_t>(c) * stride; };
-  each_column(pivots, size, team, [&](Index c) {
-    Number* to = lower_.data() + own.first_value + static_cast<std::int64_t>(c) * size;
-    std::fill_n(to, c, Number(0));
-    std::copy(column(c) + c, column(c) + size, to + c);
-  });
   return negative;
 }
 
@@ -218,7 +229,8 @@ Pivots SparseLdltOf<Number>::factorise(const LargeVector<double>& values, double
 /// `columns` columns of the solution from `begin` on, through a front. What unknowns from `top` on lose stands in the
 /// piece's `above`.
 template <class Number>
-void SparseLdltOf<Number>::forward(const Front& front, Index begin, Index columns, Piece& piece, Index top) {
+void SparseLdltOf<Number>::forward(Index index, Index begin, Index columns, Piece& piece, Index top) {
+  const Front& front = tree_->fronts[index];
   const Index* rows = tree_->rows.data() + front.first_row;
   const Index stride = piece.rows.rows();
   for (Index c = 0; c < columns; ++c) {
@@ -226,7 +238,7 @@ void SparseLdltOf<Number>::forward(const Front& front, Index begin, Index column
     std::copy_n(solution_.col(begin + c).data() + front.begin, front.pivots(), y);
     std::fill_n(y + front.pivots(), front.below, 0.0);
   }
-  solve_forward(lower_.data() + front.first_value, front.size(), front.pivots(), piece.rows.data(), stride, columns);
+  solve_forward(lower(index), piece.rows.data(), stride, columns);
   for (Index c = 0; c < columns; ++c) {
     const double* y = piece.rows.col(c).data();
     std::copy_n(y, front.pivots(), solution_.col(begin + c).data() + front.begin);
@@ -240,7 +252,8 @@ void SparseLdltOf<Number>::forward(const Front& front, Index begin, Index column
 }
 
 template <class Number>
-void SparseLdltOf<Number>::backward(const Front& front, Index begin, Index columns, Piece& piece) {
+void SparseLdltOf<Number>::backward(Index index, Index begin, Index columns, Piece& piece) {
+  const Front& front = tree_->fronts[index];
   const Index* rows = tree_->rows.data() + front.first_row;
   const Index stride = piece.rows.rows();
   for (Index c = 0; c < columns; ++c) {
@@ -250,7 +263,7 @@ void SparseLdltOf<Number>::backward(const Front& front, Index begin, Index colum
     for (Index r = 0; r < front.below; ++r) y[front.pivots() + r] = x[rows[r]];
     std::fill_n(y + front.size(), solve_slack, 0.0);
   }
-  solve_backward(lower_.data() + front.first_value, front.size(), front.pivots(), piece.rows.data(), stride, columns);
+  solve_backward(lower(index), piece.rows.data(), stride, columns);
   for (Index c = 0; c < columns; ++c)
     std::copy_n(piece.rows.col(c).data(), front.pivots(), solution_.col(begin + c).data() + front.begin);
 }
@@ -268,17 +281,16 @@ void SparseLdltOf<Number>::solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& 
   team.each(count, [&](Index p) {
     pieces_[p].above.setZero(size() - top, solution_.cols());
     for (Index f = tree_->pieces[p]; f < tree_->pieces[p + 1]; ++f)
-      together([&](Index c, Index columns) { forward(tree_->fronts[f], c, columns, pieces_[p], top); });
+      together([&](Index c, Index columns) { forward(f, c, columns, pieces_[p], top); });
   });
   for (Index p = 0; p < count; ++p) solution_.bottomRows(size() - top) -= pieces_[p].above;
   Piece& last = pieces_.back();
   for (Index f = first_top; f < end; ++f)
-    together([&](Index c, Index columns) { forward(tree_->fronts[f], c, columns, last, size()); });
-  for (Index f = end - 1; f >= first_top; --f)
-    together([&](Index c, Index columns) { backward(tree_->fronts[f], c, columns, last); });
+    together([&](Index c, Index columns) { forward(f, c, columns, last, size()); });
+  for (Index f = end - 1; f >= first_top; --f) together([&](Index c, Index columns) { backward(f, c, columns, last); });
   team.each(count, [&](Index p) {
     for (Index f = tree_->pieces[p + 1] - 1; f >= tree_->pieces[p]; --f)
-      together([&](Index c, Index columns) { backward(tree_->fronts[f], c, columns, pieces_[p]); });
+      together([&](Index c, Index columns) { backward(f, c, columns, pieces_[p]); });
   });
   right_sides = solution_;
 }

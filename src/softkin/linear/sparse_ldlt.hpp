@@ -38,8 +38,8 @@ class SparseLdltOf {
   /// Every column of right_sides, in the pattern's order of unknowns, becomes its solution.
   void solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team);
 
-  /// Columns of L, front after front as the tree says; zero above the diagonal, which is 1 and not stored.
-  [[nodiscard]] const LargeVector<Number>& lower() const { return lower_; }
+  /// A front's columns of L.
+  [[nodiscard]] FrontColumns<Number> lower(Index front) const;
   [[nodiscard]] const std::vector<Number>& diagonal() const { return diagonal_; }
 
   [[nodiscard]] Index size() const { return tree_->pattern.size(); }
@@ -62,17 +62,19 @@ class SparseLdltOf {
 
   void take_memory();
   Index factor(Index front, const LargeVector<double>& values, Number least, Bench& bench, Team& team);
-  void assemble(Index index, const LargeVector<double>& values, Number* front, const Bench& bench, Team& team) const;
-  void add_children(Index index, bool of_pivots, Number* front, const Bench& bench, Team& team) const;
+  [[nodiscard]] FrontPlace<Number> place_of(Index front, const Bench& bench);
+  void assemble(Index index, const LargeVector<double>& values, Number* columns, Team& team) const;
+  void add_children(Index index, bool of_pivots, const FrontPlace<Number>& front, const Bench& bench, Team& team) const;
   [[nodiscard]] Index top_front() const { return tree_->pieces[tree_->pieces.size() - 2]; }
-  void forward(const Front& front, Index begin, Index columns, Piece& piece, Index top);
-  void backward(const Front& front, Index begin, Index columns, Piece& piece);
+  void forward(Index front, Index begin, Index columns, Piece& piece, Index top);
+  void backward(Index front, Index begin, Index columns, Piece& piece);
 
   std::shared_ptr<const FrontTree> tree_;
-  bool has_memory_ = false;               // for this tree
-  std::vector<RowPack> packs_;            // of the rows that each front leaves to its parent
-  std::vector<std::int64_t> first_pack_;  // of each front, then their number
-  LargeVector<Number> lower_;
+  bool has_memory_ = false;                // for this tree
+  std::vector<RowPack> packs_;             // of the rows that each front leaves to its parent
+  std::vector<std::int64_t> first_pack_;   // of each front, then their number
+  LargeVector<Number> lower_;              // columns of L, front after front
+  std::vector<std::int64_t> first_value_;  // of each front
   std::vector<Number> diagonal_;
   std::vector<Piece> pieces_;  // the top's is the last
   Bench top_;

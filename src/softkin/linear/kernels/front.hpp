@@ -15,14 +15,16 @@ inline constexpr Index corner_values = front_block * (front_block + 1);
 /// A block of columns of a front, and where its elimination stands.
 template <class Number>
 struct FrontBlock {
-  Number* front;               // as factor_front takes it
-  Index size, stride, pivots;  // of the front
-  Index begin, width;          // of the block
-  Number* corner;              // corner_values
-  Number *plain, *scaled;      // of the rows below the block: L D, and L; front_panels(size) rows of front_block values
+  Number *own, *left;                       // as factor_front takes them
+  Index size, pivots, stride, left_stride;  // of the front
+  Index begin, width;                       // of the block
+  Number* corner;                           // corner_values
+  Number *plain, *scaled;                   // of the rows below the block: L D, and L; front_panels(size) rows
 
+  /// Of a column that is left, rows from left_head before it on.
   [[nodiscard]] Number* at(Index row, Index column) const {
-    return front + static_cast<std::ptrdiff_t>(column) * stride + row;
+    return column < pivots ? own + static_cast<std::ptrdiff_t>(column) * stride + row
+                           : left + static_cast<std::ptrdiff_t>(column - pivots) * left_stride + (row - pivots);
   }
   [[nodiscard]] Index first() const { return begin + width; }  // row and column below the block
   [[nodiscard]] Index rest() const { return size - first(); }
@@ -44,9 +46,16 @@ struct RowPack {
 template <class Number>
 struct FrontSum {
   const Number* from;  // what the child leaves: its column and row 0
-  Number* to;          // the parent's column and row 0
-  Index from_stride, to_stride;
+  Number* to;          // the parent's column and row `first`
+  Index from_stride, to_stride, first;
   const RowPack* last;  // beyond the child's last pack
+};
+
+/// A front's columns of L, column-major, unit lower trapezoidal: on and above the diagonal stands anything.
+template <class Number>
+struct FrontColumns {
+  const Number* values;
+  Index stride, size, pivots;
 };
 
 SOFTKIN_KERNELS(
@@ -74,8 +83,8 @@ SOFTKIN_KERNELS(
 
     /// One front's part of a solution (linear/front_solve.hpp).
     template <class Number>
-    void solve_forward(const Number* panel, Index size, Index pivots, double* y, Index stride, Index columns);
+    void solve_forward(const FrontColumns<Number>& front, double* y, Index stride, Index columns);
     template <class Number>
-    void solve_backward(const Number* panel, Index size, Index pivots, double* y, Index stride, Index columns);)
+    void solve_backward(const FrontColumns<Number>& front, double* y, Index stride, Index columns);)
 
 }  // namespace softkin::linear

@@ -58,23 +58,30 @@ template <int Panels, class Number, class Visit>
   for (int v = 0; v < Panels * Tile<Number>::vectors; ++v) visit(v * Tile<Number>::lanes, v);
 }
 
+/// From one panel of a block's `plain` and `scaled` to the next.
+template <class Number>
+[[gnu::always_inline]] inline Index apart_of(const FrontBlock<Number>& block) {
+  return block.width * Tile<Number>::rows;
+}
+
 /// A group of columns of some panels of rows: what is left of A once the columns before the group are eliminated.
 ///
 /// rows    A: the group's first column
 /// corner  the group's L, `columns` values for each column of the block
 /// plain   L D of those panels in the columns before, a panel every `block_width` columns
 template <int Panels, class Number>
-[[gnu::always_inline]] inline void reduce_group(const Number* rows, Index stride, Index group, Index columns,
-                                                const Number* corner, const Number* plain, Sums<Panels, Number>& sums) {
+[[gnu::always_inline]] inline void reduce_group(const FrontBlock<Number>& block, Index row, Index group, Index columns,
+                                                const Number* plain, Sums<Panels, Number>& sums) {
   using T = Tile<Number>;
 #pragma GCC unroll 8
   for (int c = 0; c < T::columns; ++c)
     each_vector<Panels, Number>([&](Index, int v) { sums[v][c] = Vector<Number>{}; });
-  multiply<Panels>(plain, block_width * T::rows, corner, T::columns, group, sums);
+  const Number* rows = block.at(row, block.begin + group);
+  multiply<Panels>(plain, apart_of(block), block.corner + group * block_width, T::columns, group, sums);
 #pragma GCC unroll 8
   for (int c = 0; c < T::columns; ++c) {
     if (c < columns) {
-      const Number* column = rows + c * static_cast<std::ptrdiff_t>(stride);
+      const Number* column = rows + c * static_cast<std::ptrdiff_t>(block.stride);
       each_vector<Panels, Number>([&](Index at, int v) { sums[v][c] = load(column + at) - sums[v][c]; });
     }
   }
@@ -141,7 +148,7 @@ Index factor_group(const Number* rest, Index group, Index columns, Number least,
 template <class Number>
 Index factor_corner(const FrontBlock<Number>& block, Number least, Number* diagonal) {
   using T = Tile<Number>;
-  constexpr Index apart = block_width * T::rows;  // panels of `plain`, which is work space here
+  const Index apart = apart_of(block);  // panels of `plain`, which is work space here
   const Index width = block.width, panels = (width + T::rows - 1) / T::rows;
   Number* inverse = block.corner + block_width * block_width;
   Index negative = 0;
@@ -149,21 +156,21 @@ Index factor_corner(const FrontBlock<Number>& block, Number least, Number* diago
     const Index columns = width - group < T::columns ? width - group : T::columns;
     Number* corner = block.corner + group * block_width;
     const auto plain = [&](Index panel) { return block.plain + panel * static_cast<std::ptrdiff_t>(apart); };
-    const auto rows = [&](Index panel) { return block.at(block.begin + panel * T::rows, block.begin + group); };
+    const auto row_of = [&](Index panel) { return block.begin + panel * T::rows; };
     {
       const Index panel = group / T::rows;
       const Number* row = plain(panel) + group % T::rows;
       for (Index k = 0; k < group; ++k)
         for (Index c = 0; c < T::columns; ++c) corner[k * T::columns + c] = inverse[k] * row[k * T::rows + c];
       Sums<1, Number> sums;
-      reduce_group<1>(rows(panel), block.stride, group, columns, corner, plain(panel), sums);
+      reduce_group<1>(block, row_of(panel), group, columns, plain(panel), sums);
       Number rest[T::columns * T::rows];
       for (int c = 0; c < T::columns; ++c) store_group<1>(rest + c * T::rows, 0, sums, c);
       negative += factor_group(rest + group % T::rows, group, columns, least, diagonal, corner, inverse);
     }
     each_strip<Number>(group / T::rows, panels, [&]<int Panels>(Index panel) {
       Sums<Panels, Number> sums;
-      reduce_group<Panels>(rows(panel), block.stride, group, columns, corner, plain(panel), sums);
+      reduce_group<Panels>(block, row_of(panel), group, columns, plain(panel), sums);
       solve_group<Panels>(corner, group, sums);
 #pragma GCC unroll 8
       for (int c = 0; c < T::columns; ++c)
@@ -194,22 +201,22 @@ Index panels_of(const FrontBlock<Number>& block, Index strip) {
 
 /// Where a panel of the rows below the block begins in `plain` or `scaled`.
 template <class Number>
-Number* panel_at(Number* all, Index panel) {
-  return all + panel * static_cast<std::ptrdiff_t>(block_width * Tile<Number>::rows);
+Number* panel_at(const FrontBlock<Number>& block, Number* all, Index panel) {
+  return all + panel * static_cast<std::ptrdiff_t>(apart_of(block));
 }
 
 template <int Panels, class Number>
 void solve_strip(const FrontBlock<Number>& block, Index panel) {
   using T = Tile<Number>;
-  constexpr Index apart = block_width * T::rows;
+  const Index apart = apart_of(block);
   const Number* inverse = block.corner + block_width * block_width;
-  Number *plain = panel_at(block.plain, panel), *scaled = panel_at(block.scaled, panel);
+  Number *plain = panel_at(block, block.plain, panel), *scaled = panel_at(block, block.scaled, panel);
   for (Index group = 0; group < block.width; group += T::columns) {
     const Index columns = block.width - group < T::columns ? block.width - group : T::columns;
     const Number* corner = block.corner + group * block_width;
     Number* rows = block.at(block.first() + panel * T::rows, block.begin + group);
     Sums<Panels, Number> sums;
-    reduce_group<Panels>(rows, block.stride, group, columns, corner, plain, sums);
+    reduce_group<Panels>(block, block.first() + panel * T::rows, group, columns, plain, sums);
     solve_group<Panels>(corner, group, sums);
 #pragma GCC unroll 8
     for (int c = 0; c < T::columns; ++c)
@@ -223,16 +230,21 @@ void solve_strip(const FrontBlock<Number>& block, Index panel) {
   }
 }
 
-/// `columns` columns from `target` on; what stands from the column `fresh` on counts as zero.
+/// Rows from `row` on and columns from `first` on; what stands from the column `fresh` on counts as zero.
 template <int Panels, class Number>
-[[gnu::always_inline]] inline void subtract(Number* target, Index stride, Index columns, Index fresh,
+[[gnu::always_inline]] inline void subtract(const FrontBlock<Number>& block, Index row, Index first, Index fresh,
                                             Sums<Panels, Number>& sums) {
   using T = Tile<Number>;
+  Number* column = block.at(row, first);
+  std::ptrdiff_t stride = first < block.pivots ? block.stride : block.left_stride;
 #pragma GCC unroll 8
-  for (int c = 0; c < T::columns; ++c) {
-    Number* column = target + c * static_cast<std::ptrdiff_t>(stride);
-    if (c >= columns) break;
-    if (c < fresh)
+  for (int c = 0; c < T::columns; ++c, column += stride) {
+    if (first + c >= block.size) break;
+    if (first + c == block.pivots) {
+      column = block.at(row, block.pivots);
+      stride = block.left_stride;
+    }
+    if (first + c < fresh)
       each_vector<Panels, Number>([&](Index at, int v) { store(column + at, load(column + at) - sums[v][c]); });
     else
       each_vector<Panels, Number>([&](Index at, int v) { store(column + at, -sums[v][c]); });
@@ -243,13 +255,13 @@ template <int Panels, class Number>
 template <int Panels, class Number>
 void update_columns(const FrontBlock<Number>& block, Index panel, Index low, Index high) {
   using T = Tile<Number>;
-  constexpr Index apart = block_width * T::rows;
+  const Index apart = apart_of(block);
   for (Index c = low; c < high; c += T::columns) {
     Sums<Panels, Number> sums = {};
-    multiply<Panels>(panel_at(block.scaled, panel), apart, panel_at(block.plain, c / T::rows) + c % T::rows, T::rows,
-                     block.width, sums);
-    subtract<Panels>(block.at(block.first() + panel * T::rows, block.first() + c), block.stride, block.rest() - c,
-                     block.begin == 0 ? block.pivots - block.first() - c : T::columns, sums);
+    multiply<Panels>(panel_at(block, block.scaled, panel), apart,
+                     panel_at(block, block.plain, c / T::rows) + c % T::rows, T::rows, block.width, sums);
+    subtract<Panels>(block, block.first() + panel * T::rows, block.first() + c,
+                     block.begin == 0 ? block.pivots : block.size, sums);
   }
 }
 

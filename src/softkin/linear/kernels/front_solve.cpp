@@ -37,22 +37,23 @@ double sum(const Lanes& r) {
 
 /// Forward by `Width` columns of L that begin at column k: their triangle, then all rows below it.
 template <int Columns, int Width, class Number>
-void forward_block(const Number* panel, Index size, Index k, double* y, Index stride) {
-  const Number* l = panel + static_cast<std::ptrdiff_t>(k) * size;
+void forward_block(const FrontColumns<Number>& front, Index k, double* y, Index stride) {
+  const std::ptrdiff_t apart = front.stride;
+  const Number* l = front.values + k * apart;
   double own[Columns][Width];
   for (int c = 0; c < Columns; ++c) {
     double* at = y + c * static_cast<std::ptrdiff_t>(stride) + k;
     for (int i = 0; i < Width; ++i) own[c][i] = at[i];
     for (int j = 0; j < Width; ++j)
-      for (int i = j + 1; i < Width; ++i) own[c][i] -= l[static_cast<std::ptrdiff_t>(j) * size + k + i] * own[c][j];
+      for (int i = j + 1; i < Width; ++i) own[c][i] -= l[j * apart + k + i] * own[c][j];
     for (int i = 0; i < Width; ++i) at[i] = own[c][i];
   }
-  for (Index r = k + Width; r < size; r += height) {
+  for (Index r = k + Width; r < front.size; r += height) {
     Few rest[Columns];
     for (int c = 0; c < Columns; ++c) rest[c] = load(y + c * static_cast<std::ptrdiff_t>(stride) + r);
 #pragma GCC unroll 8
     for (int j = 0; j < Width; ++j) {
-      const Few column = values(l + static_cast<std::ptrdiff_t>(j) * size + r);
+      const Few column = values(l + j * apart + r);
       for (int c = 0; c < Columns; ++c) rest[c] -= own[c][j] * column;
     }
     for (int c = 0; c < Columns; ++c) store(y + c * static_cast<std::ptrdiff_t>(stride) + r, rest[c]);
@@ -61,15 +62,16 @@ void forward_block(const Number* panel, Index size, Index k, double* y, Index st
 
 /// Backward by `Width` columns of L that begin at column k: all rows below their triangle, then that.
 template <int Columns, int Width, class Number>
-void backward_block(const Number* panel, Index size, Index k, double* y, Index stride) {
-  const Number* l = panel + static_cast<std::ptrdiff_t>(k) * size;
+void backward_block(const FrontColumns<Number>& front, Index k, double* y, Index stride) {
+  const std::ptrdiff_t apart = front.stride;
+  const Number* l = front.values + k * apart;
   Few sums[Columns][Width] = {};
-  for (Index r = k + Width; r < size; r += height) {
+  for (Index r = k + Width; r < front.size; r += height) {
     Few known[Columns];
     for (int c = 0; c < Columns; ++c) known[c] = load(y + c * static_cast<std::ptrdiff_t>(stride) + r);
 #pragma GCC unroll 8
     for (int j = 0; j < Width; ++j) {
-      const Few column = values(l + static_cast<std::ptrdiff_t>(j) * size + r);
+      const Few column = values(l + j * apart + r);
       for (int c = 0; c < Columns; ++c) sums[c][j] += column * known[c];
     }
   }
@@ -77,7 +79,7 @@ void backward_block(const Number* panel, Index size, Index k, double* y, Index s
     double* at = y + c * static_cast<std::ptrdiff_t>(stride) + k;
     for (int j = Width - 1; j >= 0; --j) {
       double value = at[j] - sum(sums[c][j]);
-      for (int i = j + 1; i < Width; ++i) value -= l[static_cast<std::ptrdiff_t>(j) * size + k + i] * at[i];
+      for (int i = j + 1; i < Width; ++i) value -= l[j * apart + k + i] * at[i];
       at[j] = value;
     }
   }
@@ -85,38 +87,38 @@ void backward_block(const Number* panel, Index size, Index k, double* y, Index s
 
 /// Columns of L by eights, the few that are left by fours, twos and ones.
 template <int Columns, int Width, class Number>
-void forward_rest(const Number* panel, Index size, Index k, Index pivots, double* y, Index stride) {
-  if (k + Width <= pivots) {
-    forward_block<Columns, Width>(panel, size, k, y, stride);
+void forward_rest(const FrontColumns<Number>& front, Index k, double* y, Index stride) {
+  if (k + Width <= front.pivots) {
+    forward_block<Columns, Width>(front, k, y, stride);
     k += Width;
   }
-  if constexpr (Width > 1) forward_rest<Columns, Width / 2>(panel, size, k, pivots, y, stride);
+  if constexpr (Width > 1) forward_rest<Columns, Width / 2>(front, k, y, stride);
 }
 
 template <int Columns, class Number>
-void forward(const Number* panel, Index size, Index pivots, double* y, Index stride) {
+void forward(const FrontColumns<Number>& front, double* y, Index stride) {
   constexpr int width = 8;
   Index k = 0;
-  for (; k + width <= pivots; k += width) forward_block<Columns, width>(panel, size, k, y, stride);
-  forward_rest<Columns, width / 2>(panel, size, k, pivots, y, stride);
+  for (; k + width <= front.pivots; k += width) forward_block<Columns, width>(front, k, y, stride);
+  forward_rest<Columns, width / 2>(front, k, y, stride);
 }
 
 /// The last columns of L that fill no block: `Width` of them where k says so, then twice as many.
 template <int Columns, int Width, int Most, class Number>
-Index backward_rest(const Number* panel, Index size, Index k, double* y, Index stride) {
+Index backward_rest(const FrontColumns<Number>& front, Index k, double* y, Index stride) {
   if constexpr (Width < Most) {
-    if (k % (2 * Width) != 0) backward_block<Columns, Width>(panel, size, k -= Width, y, stride);
-    k = backward_rest<Columns, 2 * Width, Most>(panel, size, k, y, stride);
+    if (k % (2 * Width) != 0) backward_block<Columns, Width>(front, k -= Width, y, stride);
+    k = backward_rest<Columns, 2 * Width, Most>(front, k, y, stride);
   }
   return k;
 }
 
 template <int Columns, class Number>
-void backward(const Number* panel, Index size, Index pivots, double* y, Index stride) {
+void backward(const FrontColumns<Number>& front, double* y, Index stride) {
   // sums that the vector registers hold
   constexpr int most = registers / 2 / Columns, width = most >= 8 ? 8 : most >= 4 ? 4 : 2;
-  Index k = backward_rest<Columns, 1, width>(panel, size, pivots, y, stride);
-  for (; k > 0; k -= width) backward_block<Columns, width>(panel, size, k - width, y, stride);
+  Index k = backward_rest<Columns, 1, width>(front, front.pivots, y, stride);
+  for (; k > 0; k -= width) backward_block<Columns, width>(front, k - width, y, stride);
 }
 
 /// visit.operator()<columns>()
@@ -137,18 +139,18 @@ void with_columns(Index columns, const Visit& visit) {
 }  // namespace
 
 template <class Number>
-void solve_forward(const Number* panel, Index size, Index pivots, double* y, Index stride, Index columns) {
-  with_columns(columns, [&]<int Columns>() { forward<Columns>(panel, size, pivots, y, stride); });
+void solve_forward(const FrontColumns<Number>& front, double* y, Index stride, Index columns) {
+  with_columns(columns, [&]<int Columns>() { forward<Columns>(front, y, stride); });
 }
 
 template <class Number>
-void solve_backward(const Number* panel, Index size, Index pivots, double* y, Index stride, Index columns) {
-  with_columns(columns, [&]<int Columns>() { backward<Columns>(panel, size, pivots, y, stride); });
+void solve_backward(const FrontColumns<Number>& front, double* y, Index stride, Index columns) {
+  with_columns(columns, [&]<int Columns>() { backward<Columns>(front, y, stride); });
 }
 
-template void solve_forward(const double*, Index, Index, double*, Index, Index);
-template void solve_forward(const float*, Index, Index, double*, Index, Index);
-template void solve_backward(const double*, Index, Index, double*, Index, Index);
-template void solve_backward(const float*, Index, Index, double*, Index, Index);
+template void solve_forward(const FrontColumns<double>&, double*, Index, Index);
+template void solve_forward(const FrontColumns<float>&, double*, Index, Index);
+template void solve_backward(const FrontColumns<double>&, double*, Index, Index);
+template void solve_backward(const FrontColumns<float>&, double*, Index, Index);
 
 }  // namespace softkin::linear::SOFTKIN_TARGET

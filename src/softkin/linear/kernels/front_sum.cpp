@@ -106,7 +106,7 @@ template <int Columns, class Number>
     const SpreadOf<Number> spread(pack->bits);
 #pragma GCC unroll 4
     for (int c = 0; c < Columns; ++c) {
-      Number* rows = to[c] + pack->to;
+      Number* rows = to[c] + (pack->to - sum.first);
       // no processor foresees where the next columns' packs stand
       __builtin_prefetch(rows + Columns * static_cast<std::ptrdiff_t>(sum.to_stride), 1);
       __builtin_prefetch(from + (c + Columns) * static_cast<std::ptrdiff_t>(sum.from_stride) + pack->from);
@@ -129,7 +129,7 @@ void add_pack_columns(const FrontSum<Number>& sum, const RowPack* pack) {
   const auto next = [&] {
     const int bit = __builtin_ctz(bits);
     bits &= bits - 1;
-    return sum.to + (pack->to + bit) * static_cast<std::ptrdiff_t>(sum.to_stride);
+    return sum.to + (pack->to - sum.first + bit) * static_cast<std::ptrdiff_t>(sum.to_stride);
   };
   int left = __builtin_popcount(bits);
   for (; left >= 3; left -= 3, from += 3 * static_cast<std::ptrdiff_t>(sum.from_stride)) {
