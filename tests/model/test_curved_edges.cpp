@@ -8,6 +8,7 @@
 #include <softkin/model/mesh/quadratic_elements.hpp>
 
 #include "model/random_round.hpp"
+#include "support/patience.hpp"
 
 namespace softkin {
 
@@ -247,11 +248,7 @@ TEST(CurvedEdges, NoElementOfRandomBodiesFolds) {
 }
 
 TEST(CurvedEdges, NoElementOfAThousandRandomBodiesFolds) {
-#if defined(__has_feature)
-#if __has_feature(address_sanitizer)
-  GTEST_SKIP() << "the short one is enough for the sanitizers";
-#endif
-#endif
+  if (testing::instrumented) GTEST_SKIP() << "the short one is enough for the sanitizers";
   check_random_bodies(1000, 1000);
 }
 

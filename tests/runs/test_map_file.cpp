@@ -8,6 +8,7 @@
 #include <softkin/runs/map_journal.hpp>
 
 #include "statics/physical_samples.hpp"
+#include "support/patience.hpp"
 
 namespace softkin::runs {
 namespace {
@@ -78,8 +79,10 @@ TEST(MapFile, SurvivesAnyByteOfTheHeader) {
   const std::string bytes = map_bytes(a_map());
   const std::size_t end = bytes.find('\n');
   int refused = 0;
+  constexpr std::size_t kinds = softkin::testing::instrumented ? 1 : 4;
   for (std::size_t at = 0; at < end; ++at)
-    for (const char other : {'0', '9', '-', '}'}) {
+    for (std::size_t kind = at; kind < at + kinds; ++kind) {
+      const char other = "09-}"[kind % 4];
       std::string changed = bytes;
       changed[at] = other;
       try {

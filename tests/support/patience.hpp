@@ -5,6 +5,13 @@
 
 namespace softkin::testing {
 
+/// Is the program one of the address sanitizer, ten times as slow?
+#if defined(__has_feature)
+inline constexpr bool instrumented = __has_feature(address_sanitizer);
+#else
+inline constexpr bool instrumented = false;
+#endif
+
 /// How many times as long as usual a job takes on this machine, beside what else it does; at least 1.
 template <class Job>
 double times_slower(double usual_s, const Job& job) {
