@@ -50,7 +50,7 @@ struct Strain {
 };
 
 template <int K>
-Strain strain_at(const Pack3 (&slope)[K], const Shape<K>& current) {
+[[gnu::always_inline]] inline Strain strain_at(const Pack3 (&slope)[K], const Shape<K>& current) {
   Strain s;
   s.gradient = deformation_gradient<K>(slope, current);
   const Pack3* f = s.gradient.row;
@@ -87,7 +87,7 @@ Symmetric remembered(const ViscousBlock& viscous, int q, int branch) {
   return before;
 }
 
-Branch branch_at(const ViscousBlock& viscous, int q, int branch, const Strain& s) {
+[[gnu::always_inline]] inline Branch branch_at(const ViscousBlock& viscous, int q, int branch, const Strain& s) {
   Branch b;
   const double* begun = viscous.begun + begun_entries * lanes * (viscous.branches * q + branch);
   std::memcpy(b.flowed.at, begun, sizeof(b.flowed.at));
