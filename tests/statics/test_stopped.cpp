@@ -133,6 +133,20 @@ TEST(Stopped, ByItsDeadlineItIsNotConvergedAndSaysSo) {
   EXPECT_FALSE(Deadline(HUGE_VAL).any());
 }
 
+/// Who is asked may look at the same deadline, which passes while they are.
+TEST(Stopped, ByADeadlineThatPassesWhileItAsks) {
+  const Model model = compile(bending_finger());
+  const Statics statics(model);
+  StaticsOptions options;
+  options.deadline = Deadline(0.2);
+  const Equilibrium found = statics.solve(values({2}), statics.rest(), options, [&](const Progress&) {
+    while (!options.deadline.passed()) continue;
+    return false;
+  });
+  EXPECT_EQ(found.report.status, Status::not_converged);
+  EXPECT_EQ(found.report.remark, "the budget of 0.2 s was spent");
+}
+
 TEST(Stopped, ATargetShapeToo) {
   RobotSpec spec = bending_finger();
   spec.formulation = Formulation::target_shape;

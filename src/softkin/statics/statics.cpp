@@ -95,8 +95,10 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   const auto begin = std::chrono::steady_clock::now();
   bool late = false;
   const ProgressCallback until_deadline = [&](const Progress& p) {
+    // afterwards, as what is asked may look at the same deadline
+    const bool goes_on = !asked_progress || asked_progress(p);
     late = options.deadline.passed();
-    return !late && (!asked_progress || asked_progress(p));
+    return goes_on && !late;
   };
   const ProgressCallback& progress = options.deadline.any() ? until_deadline : asked_progress;
   const Model& model = parts_->model;
