@@ -7,7 +7,12 @@ namespace softkin::testing {
 
 /// Is the program one of the address sanitizer, ten times as slow?
 #if defined(__has_feature)
-inline constexpr bool instrumented = __has_feature(address_sanitizer);
+#if __has_feature(address_sanitizer)
+#define SOFTKIN_INSTRUMENTED
+#endif
+#endif
+#if defined(SOFTKIN_INSTRUMENTED)
+inline constexpr bool instrumented = true;
 #else
 inline constexpr bool instrumented = false;
 #endif

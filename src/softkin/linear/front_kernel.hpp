@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <softkin/core/large_vector.hpp>
 #include <softkin/core/team.hpp>
 #include <softkin/core/types.hpp>
@@ -16,6 +17,12 @@ struct FrontWork {
 template <class Number>
 [[nodiscard]] constexpr Index front_stride(Index size) {
   return (size + 64 / static_cast<Index>(sizeof(Number)) + 6) / 8 * 8;
+}
+
+/// Values of its pivots' columns.
+template <class Number>
+[[nodiscard]] constexpr std::int64_t own_values(Index size, Index pivots) {
+  return static_cast<std::int64_t>(front_stride<Number>(size)) * pivots;
 }
 
 /// Rows before each column that a front leaves: kernels write there what belongs above the diagonal.

@@ -174,7 +174,7 @@ class Arena {
 };
 
 /// Of what a front leaves, in values of either precision.
-std::int64_t place_of(const Front& front) {
+std::int64_t values_left_by(const Front& front) {
   static_assert(left_stride<float>(1) >= left_stride<double>(1));
   return static_cast<std::int64_t>(left_stride<float>(front.below)) * front.below;
 }
@@ -190,9 +190,9 @@ void plan_arenas(FrontTree& tree) {
     for (Index f = tree.pieces[p]; f < tree.pieces[p + 1]; ++f) {
       Front& front = tree.fronts[f];
       Arena& arena = front.parent >= top ? above : inside;
-      front.offset = arena.take(place_of(front));
+      front.offset = arena.take(values_left_by(front));
       for (Index c = tree.first_child[f]; c >= 0; c = tree.next_sibling[c])
-        inside.give(tree.fronts[c].offset, place_of(tree.fronts[c]));
+        inside.give(tree.fronts[c].offset, values_left_by(tree.fronts[c]));
     }
     if (p < pieces) tree.arena_sizes.push_back(own.size());
   }
@@ -262,7 +262,7 @@ FrontTree make_front_tree(BlockColumns columns, Fill fill) {
 void require_memory(const FrontTree& tree, std::size_t value_bytes) {
   double values = 0;
   for (const Front& front : tree.fronts)
-    values += static_cast<double>(front_stride<double>(front.size())) * front.pivots();
+    values += static_cast<double>(own_values<double>(front.size(), front.pivots()));
   for (const std::int64_t arena : tree.arena_sizes) values += static_cast<double>(arena);
   const double needed = values * static_cast<double>(value_bytes), there = free_memory_bytes();
   if (needed > there)

@@ -100,7 +100,7 @@ void SparseLdltOf<Number>::take_memory() {
   first_value_.clear();
   for (const Front& front : tree_->fronts) {
     first_value_.push_back(values);
-    values += static_cast<std::int64_t>(front_stride<Number>(front.size())) * front.pivots();
+    values += own_values<Number>(front.size(), front.pivots());
   }
   lower_.resize(static_cast<std::size_t>(values) + front_slack);
   packs_.clear();

@@ -63,7 +63,7 @@ class SparseLdltOf {
   void take_memory();
   Index factor(Index front, const LargeVector<double>& values, Number least, Bench& bench, Team& team);
   [[nodiscard]] FrontPlace<Number> place_of(Index front, const Bench& bench);
-  void assemble(Index index, const LargeVector<double>& values, Number* columns, Team& team) const;
+  void assemble(Index index, const LargeVector<double>& values, Number* front, Team& team) const;
   void add_children(Index index, bool of_pivots, const FrontPlace<Number>& front, const Bench& bench, Team& team) const;
   [[nodiscard]] Index top_front() const { return tree_->pieces[tree_->pieces.size() - 2]; }
   void forward(Index front, Index begin, Index columns, Piece& piece, Index top);
