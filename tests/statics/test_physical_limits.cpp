@@ -107,9 +107,10 @@ TEST(PhysicalLimits, SeveralLoadsEndAtTheMaximum) {
   const Statics statics(model);
   const Equilibrium beyond = statics.solve(values({100, 1e-4}), statics.rest());
   EXPECT_EQ(beyond.report.status, Status::limit);
-  EXPECT_EQ(beyond.report.remark,
-            "beyond this point no equilibrium follows; where a pressure has its maximum, command volumes (control: "
-            "volume) and lengths (control: length) to go on beyond it");
+  EXPECT_EQ(
+      beyond.report.remark,
+      "beyond this point no equilibrium follows: the curve of equilibria turns back there; where a pressure has its "
+      "maximum, command volumes (control: volume) and lengths (control: length) to go on beyond it");
   // 230 and 556 where the limit was bisected by steps beyond it
   EXPECT_LT(beyond.report.iterations, 120);
   EXPECT_LT(beyond.report.factorisations, 200);
@@ -118,6 +119,25 @@ TEST(PhysicalLimits, SeveralLoadsEndAtTheMaximum) {
   const Statics one(alone);
   const double most = one.solve(values({100}), one.rest()).state.actuation[0];
   EXPECT_NEAR(beyond.state.actuation[0], most, 0.01 * most);
+}
+
+/// A little less than what several loads reach together is borne, a little more is not, asked for each anew.
+TEST(PhysicalLimits, TheCurveTurnsBackWhereNoMoreIsBorne) {
+  RobotSpec spec = balloon(0.03, false);
+  spec.actuators = {by_load(spec.actuators[0]), by_load(cable("tendon", {{0, 0, 12.5}, {12.5, 0, 0}}))};
+  spec.loads.gravity = Vec3(0, 0, -9.81);
+  spec.materials[0].density = 1070;
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Equilibrium most = statics.solve(values({60, 0.3}), statics.rest());
+  ASSERT_EQ(most.report.status, Status::limit) << most.report.remark;
+  EXPECT_NE(most.report.remark.find("turns back there"), std::string::npos) << most.report.remark;
+  EXPECT_LT(most.report.iterations, 80);
+  const auto borne = [&](double share) {
+    return statics.solve(share * most.state.actuation, statics.rest()).report.status == Status::converged;
+  };
+  EXPECT_TRUE(borne(0.999));
+  EXPECT_FALSE(borne(1.001));
 }
 
 /// A shallow arch under a weight at its top snaps through: just short of it the weight is carried, just beyond the last

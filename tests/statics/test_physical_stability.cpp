@@ -216,8 +216,9 @@ TEST(Stability, ASnapUnderDisplacementIsTold) {
   const auto [beyond, below] = solved(30);
   EXPECT_LT(below, 38);
   EXPECT_GT(beyond.physical.snapped_mm, 3);
-  EXPECT_GT(beyond.physical.snapped_from, 0.2);
-  EXPECT_LT(beyond.physical.snapped_from, 0.9);
+  const double from = 30 * beyond.physical.snapped_from;
+  EXPECT_EQ(solved(0.999 * from).first.physical.snapped_mm, 0);
+  EXPECT_GT(solved(1.02 * from).first.physical.snapped_mm, 3);
 }
 
 /// What is stable already is the same with and without.

@@ -23,13 +23,8 @@ constexpr double least_advance = 1e-4;
 constexpr double least_move = 1000;
 /// The same where things touch, over the contact distance: what sticks moves by a hundredth of that.
 constexpr double least_contact_move = 1e-4;
-/// A way on which so many iterations bring less than this share of it leads nowhere either.
-constexpr int patience = 500;
-constexpr double least_progress = 0.01;
 /// What is held turns by no more in one step [degrees].
 constexpr double most_turn = 30;
-/// A step towards a fold, over what is left to it.
-constexpr double before_fold = 0.8;
 /// Share of a step that is not worth another one at the end of a way.
 constexpr double least_left = 0.1;
 /// In steps shorter than this an equilibrium is followed where it is unstable; and few factors tell where it ends.
@@ -97,8 +92,6 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
     return clear.move_mm.has_value();
   };
   if (!prediction()) return whole ? fall_onto(here, there, at, trial) : Newton::Outcome::blocked;
-  step_.tangent_mm = led ? 0 : step_.move_mm / length;
-  if (leads_over_fold(length)) return Newton::Outcome::over_fold;
   if (whole && !led && leads_too_far(here, there, at)) return Newton::Outcome::too_far;
   const bool follows = settler_.last.modes > 0 && !options_.stable && length <= 1.001 * follow_below;
   const auto policy = follows ? Newton::Policy::follow : led ? Newton::Policy::near : Newton::Policy::descend;
@@ -123,13 +116,6 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
     if (prediction()) outcome = settler_.settle(there, Newton::Policy::follow, trial);
   }
   return outcome;
-}
-
-/// Would a step lead over a fold beyond which one led nowhere?
-bool Continuation::leads_over_fold(double length) const {
-  const double left = left_to_fold();
-  return may_turn_back() && way_.failed - way_.done >= before_fold * left && length > left &&
-         before_fold * left > least_advance;
 }
 
 /// Where weights would lead far through something: what is held comes to its place, and the body onto what is near.
@@ -163,6 +149,12 @@ bool Continuation::jumped(const Demand& here, const Demand& there, const Iterate
   if (correction <= least_snap * system_.model().diagonal_mm) return false;
   // the factor at hand is of a shape nearby, and mostly good enough
   return jumps() && (settler_.prepare(there, trial) < 0 || jumps());
+}
+
+/// Does a step lead on from where the way turns back? Then it jumps, whatever a tangent tells there.
+bool Continuation::turned_back(const Iterate& at, const Iterate& trial) {
+  if (way_.turned) step_.jump_mm = system_.largest_move(at.positions, trial.positions);
+  return way_.turned;
 }
 
 Status Continuation::follow(const Demand& from, const Demand& to, Iterate& at) {
@@ -263,14 +255,12 @@ std::optional<Status> Continuation::start_step(const Demand& there, Iterate& at)
 /// What a step of this length that ended so is worth.
 Continuation::StepEnd Continuation::judge(Newton::Outcome outcome, const Demand& there, double length,
                                           const Iterate& at, const Iterate& trial) {
-  StepEnd end{.why = outcome == Newton::Outcome::stuck       ? settler_.newton().why_stuck()
-                     : outcome == Newton::Outcome::blocked   ? "something is in the way"
-                     : outcome == Newton::Outcome::too_far   ? "it is far more than the load can be foretold for"
-                     : outcome == Newton::Outcome::over_fold ? "the way is foretold to turn back before its end"
-                     : outcome == Newton::Outcome::unmet     ? "what actuators command contradicts each other"
-                                                             : ""};
-  end.blocked = outcome == Newton::Outcome::blocked || outcome == Newton::Outcome::too_far ||
-                outcome == Newton::Outcome::over_fold;
+  StepEnd end{.why = outcome == Newton::Outcome::stuck     ? settler_.newton().why_stuck()
+                     : outcome == Newton::Outcome::blocked ? "something is in the way"
+                     : outcome == Newton::Outcome::too_far ? "it is far more than the load can be foretold for"
+                     : outcome == Newton::Outcome::unmet   ? "what actuators command contradicts each other"
+                                                           : ""};
+  end.blocked = outcome == Newton::Outcome::blocked || outcome == Newton::Outcome::too_far;
   end.found = outcome != Newton::Outcome::stuck && !end.blocked;
   end.hurried = outcome == Newton::Outcome::stuck && settler_.newton().hurried();
   const auto reject = [&](const char* because) {
@@ -280,7 +270,7 @@ Continuation::StepEnd Continuation::judge(Newton::Outcome outcome, const Demand&
   if (end.found && way_.loads_change && snapped(step_.move_mm, system_.largest_move(step_.begun, trial.positions)) &&
       jumped(way_.here, there, at, trial))
     reject("the equilibrium lies beyond a jump");
-  end.snap = end.found && !way_.loads_change && jumped(way_.here, there, at, trial);
+  end.snap = end.found && !way_.loads_change && (turned_back(at, trial) || jumped(way_.here, there, at, trial));
   end.unstable = end.found && outcome == Newton::Outcome::unstable;
   if (settler_.newton().inverted() && !settler_.last.inverted && length > most_inverting)
     reject("an element is inverted");
@@ -300,7 +290,6 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   const std::vector<bool> active = settler_.active;
   work_.left_field = false;
   tracer_.begin(whole(way_.done), whole(next), length);
-  step_.tangent_mm = 0;
   step_.unforetold = false;
   const auto outcome = [&] {
     const Newton::Brief scope(settler_.newton(), ends_early(length < follow_below));
@@ -333,8 +322,6 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
     trace(true, came.snap ? "it jumps" : came.unstable ? "unstable" : came.why);
     if (came.snap) tell_snap(step_.jump_mm, whole(way_.done), report_);
     settler_.take(at, std::move(trial));
-    way_.tangent_mm = step_.tangent_mm;
-    way_.tangent_at = way_.done;
     if (!come_to(there, next, came.unstable, at)) return Status::interrupted;
     lengthen(report_.iterations - before, came.unstable, at);
   }
@@ -372,9 +359,15 @@ std::optional<Status> Continuation::shorten(double length, bool hurried, Iterate
     report_.reached = whole(way_.done);
   }
   if (loads_at_last(at)) return std::nullopt;
-  const bool folds = leads_over_fold(length);  // a shorter step comes before a limit is told
-  way_.advance = folds ? std::max(0.1 * length, before_fold * left_to_fold()) : 0.4 * length;
-  if (folds) return std::nullopt;
+  const ArcLength::End curve = follow_curve(at);
+  if (curve == ArcLength::End::interrupted) return Status::interrupted;
+  if (curve == ArcLength::End::turned) {
+    if (way_.loads_change) return limit(way_.done, beyond_here(), at);
+    way_.advance = finest;  // may jump to what is stable beyond
+    way_.thorough = true;
+  }
+  if (curve != ArcLength::End::lost) return std::nullopt;
+  way_.advance = 0.4 * length;
   if (way_.beyond && way_.advance < finest) {
     tell_snap(way_.beyond->jump_mm, whole(way_.done), report_);
     take_beyond(at);
@@ -384,19 +377,14 @@ std::optional<Status> Continuation::shorten(double length, bool hurried, Iterate
   double least = least_move * options_.tolerance_mm;
   if (system_.contact()) least = std::min(least, least_contact_move * system_.model().contact.distance_mm);
   const bool leads_nowhere = !way_.releases && step_.move_mm < least;
-  const bool ends = way_.advance < least_advance || leads_nowhere;
+  const bool ends = way_.advance < least_advance || leads_nowhere || way_.turned;
   if (ends && hurried) {
     way_.advance = length;
     way_.thorough = true;
     return std::nullopt;
   }
   way_.thorough = false;
-  if (ends)
-    return limit(way_.done,
-                 work_.left_field ? "beyond this point what is magnetic comes to where the field is not known: outside "
-                                    "its grid, on a wire or on the dipole"
-                                  : "beyond this point no equilibrium follows" + instead_of_loads(),
-                 at);
+  if (ends) return limit(way_.done, beyond_here(), at);
   return std::nullopt;
 }
 
@@ -417,24 +405,9 @@ bool Continuation::come_to(const Demand& there, double next, bool unstable, Iter
 void Continuation::pass(const Demand& demand, double done) {
   way_.here = demand;
   way_.done = done;
+  way_.turned = false;
   report_.reached = whole(done);
   ++report_.continuation_steps;
-}
-
-std::optional<Status> Continuation::out_of_patience(const Iterate& at) {
-  if (way_.done - way_.marked >= least_progress) {
-    way_.marked = way_.done;
-    way_.marked_iterations = report_.iterations;
-  } else if (way_.done < 1 && report_.iterations - way_.marked_iterations >= patience) {
-    return limit(way_.done,
-                 "the way there goes on in ever smaller steps: " + std::to_string(patience) +
-                     " iterations brought less than 1 % of it",
-                 at);
-  }
-  if (way_.done == 1 || report_.iterations < options_.max_iterations) return std::nullopt;
-  tell_balance();
-  report_.remark = "the limit of iterations was reached";
-  return Status::not_converged;
 }
 
 bool Continuation::snapped(double predicted_mm, double correction_mm) const {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <softkin/statics/physical/arc_length.hpp>
 #include <softkin/statics/physical/settling.hpp>
 #include <softkin/statics/physical/step_tracer.hpp>
 #include <softkin/statics/physical/summit.hpp>
@@ -28,7 +29,6 @@ class Continuation {
   /// The step at hand.
   struct Step {
     Points predicted{}, begun{};      // where it was to lead, and what of that is in nobody's way
-    double tangent_mm = 0;            // at its begin, over the whole way; 0: not known
     double move_mm = 0, jump_mm = 0;  // to what it predicted, and beside the way
     bool unforetold = false;          // does no tangent say where it should have led
   };
@@ -58,13 +58,14 @@ class Continuation {
     bool releases = false;    // a body, which hardly moves until it is nearly free
     bool factorised = false;  // the stiffness here
     std::optional<Beyond> beyond{};
-    std::optional<Demand> then{};           // where the next way leads
-    double failed = 0;                      // the nearest share ahead at which a step led nowhere; 0: none
-    bool thorough = true;                   // is the next step given every iteration
-    double tangent_mm = 0, tangent_at = 0;  // the last but one, over the whole way, and where
-    double before = 0;                      // share of all that was asked, gone on ways before
-    double marked = 0;                      // the last share at which it was getting on
+    std::optional<Demand> then{};  // where the next way leads
+    double failed = 0;             // the nearest share ahead at which a step led nowhere; 0: none
+    bool thorough = true;          // is the next step given every iteration
+    double before = 0;             // share of all that was asked, gone on ways before
+    double marked = 0;             // the last share at which it was getting on
     int marked_iterations = 0;
+    int misses = 0, next_look = 2;  // steps that led nowhere, and after how many the curve is followed
+    bool turned = false;            // does it turn back here
 
     [[nodiscard]] WholeWay whole() const { return {before, then.has_value()}; }
   };
@@ -84,11 +85,14 @@ class Continuation {
   [[nodiscard]] double whole(double done) const { return way_.whole()(done); }
   [[nodiscard]] Index only_load(const Demand& from, const Demand& to) const;
   [[nodiscard]] bool change_loads(const Demand& from, const Demand& to) const;
+  [[nodiscard]] bool anything_comes_with_share() const;
+  [[nodiscard]] bool holds_elsewhere() const;
   std::optional<Status> go_on(Iterate& at);
   void pass(const Demand& demand, double done);
   bool come_to(const Demand& there, double next, bool unstable, Iterate& at);
   bool loads_at_last(const Iterate& at);
   void go_together(Iterate& at);
+  ArcLength::End follow_curve(Iterate& at);
   Climb::End climb(Climb::End (Climb::*along)(Iterate&), Index load, Iterate& at);
 
   // a step
@@ -100,6 +104,7 @@ class Continuation {
   bool leads_too_far(const Demand& here, const Demand& there, const Iterate& at);
   [[nodiscard]] StepEnd judge(Newton::Outcome outcome, const Demand& there, double length, const Iterate& at,
                               const Iterate& trial);
+  bool turned_back(const Iterate& at, const Iterate& trial);
   bool jumped(const Demand& here, const Demand& there, const Iterate& at, const Iterate& trial);
   [[nodiscard]] bool snapped(double predicted_mm, double correction_mm) const;
   bool leads_beyond(const Iterate& at);
@@ -111,10 +116,7 @@ class Continuation {
   void lengthen(int iterations, bool unstable, Iterate& at);
   [[nodiscard]] double lengthened(int iterations) const;
   std::optional<Status> shorten(double length, bool hurried, Iterate& at);
-  [[nodiscard]] bool may_turn_back() const;
   [[nodiscard]] bool ends_early(bool short_step) const;
-  [[nodiscard]] double left_to_fold() const;
-  [[nodiscard]] bool leads_over_fold(double length) const;
 
   // the end
   Status arrive(const Demand& demand, Iterate& at);
@@ -122,6 +124,7 @@ class Continuation {
   std::optional<Status> out_of_patience(const Iterate& at);
   void tell_stability(const Demand& demand, const Iterate& at);
   void tell_balance();
+  [[nodiscard]] std::string beyond_here() const;
   [[nodiscard]] std::string instead_of_loads() const;
 
   const System& system_;

@@ -20,8 +20,8 @@ class Newton {
     bool keep_history = true;
   };
   /// unmet: arrived where the active constraints contradict each other or cannot be moved; they are missed.
-  /// blocked, too_far, over_fold: not tried, as the way there is.
-  enum class Outcome { converged, unstable, stuck, unmet, interrupted, blocked, too_far, over_fold };
+  /// blocked, too_far: not tried, as the way there is.
+  enum class Outcome { converged, unstable, stuck, unmet, interrupted, blocked, too_far };
 
   Newton(const System& system, Workspace& work, Team& team, const Settings& settings, const ProgressCallback& progress,
          SolveReport& report);

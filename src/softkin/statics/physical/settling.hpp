@@ -53,6 +53,8 @@ class Settler {
   /// Slackens cables that may be longer than they are and carry nothing: held to their length they would push the body
   /// there before they are found to be slack. contradicting: those too that carry something, against another one.
   bool release(const Demand& there, Iterate& at, bool contradicting);
+  /// Releases cables that push and takes up those that are too long, at an equilibrium. Were there any?
+  bool change_active(const Demand& demand, Iterate& at);
 
   /// Another equilibrium instead of the one at hand: what slips goes on from there.
   void take(Iterate& at, Iterate&& found);
@@ -92,7 +94,6 @@ class Settler {
   Newton::Outcome settle_softly(const Demand& demand, bool falls, OtherContact& contact, Iterate& at);
   Newton::Outcome sharpen_swollen(const Demand& there, Swelling how, double by, Iterate& trial);
   [[nodiscard]] Demand pressed(Demand demand, double times) const;
-  bool change_active(const Demand& demand, Iterate& at);
 
   const System& system_;
   Workspace& work_;

@@ -15,6 +15,9 @@ namespace {
 
 /// Share of normal forces whose friction gives way, from which on it is told where the way ends.
 constexpr double worth_telling = 0.5;
+/// A way on which so many iterations bring less than this share of it leads nowhere.
+constexpr int patience = 500;
+constexpr double least_progress = 0.01;
 
 }  // namespace
 
@@ -25,12 +28,20 @@ bool Continuation::change_loads(const Demand& from, const Demand& to) const {
   return false;
 }
 
+/// Does a demand's share change anything?
+bool Continuation::anything_comes_with_share() const {
+  return system_.any_dead_load() || system_.prestretched() || holds_elsewhere();
+}
+
+/// Is what is held to come to another place than where it rests?
+bool Continuation::holds_elsewhere() const {
+  return system_.model().held.at != system_.model().rest || !system_.model().held.turns.empty();
+}
+
 /// The one load that changes, where nothing else does but weights and forces; -1: none.
 Index Continuation::only_load(const Demand& from, const Demand& to) const {
-  const Model& model = system_.model();
   if (from.fading != to.fading) return -1;
-  if (from.share != to.share && (system_.prestretched() || model.held.at != model.rest || !model.held.turns.empty()))
-    return -1;
+  if (from.share != to.share && (system_.prestretched() || holds_elsewhere())) return -1;
   Index found = -1;
   for (Index a = 0; a < system_.actuators(); ++a) {
     if (from.actuation[a] == to.actuation[a]) continue;
@@ -50,6 +61,33 @@ bool Continuation::leads_too_far(const Demand& here, const Demand& there, const 
   const double before = system_.measures().value(a, at.positions);
   const double change = (system_.measures().value(a, near.positions) - before) / share;
   return !(change < most * before && change > -0.5 * most * before);
+}
+
+/// Where steps led nowhere, more and more often: along the curve of equilibria itself, which goes on where the way
+/// turns back. lost: not tried, or it told nothing.
+ArcLength::End Continuation::follow_curve(Iterate& at) {
+  if (++way_.misses < way_.next_look || way_.turned || settler_.last.modes > 0 || way_.releases || system_.kinked())
+    return ArcLength::End::lost;
+  ArcLength curve(settler_, tracer_, options_,
+                  {way_.from, way_.to, way_.done, way_.failed > way_.done ? way_.failed : 1});
+  const ArcLength::End end = curve.follow(at);
+  way_.factorised = false;
+  const double gone = curve.done() - way_.done;
+  way_.next_look = gone > 0 ? way_.misses + 1 : 2 * way_.misses;
+  if (gone > 0) pass(between(way_.from, way_.to, curve.done()), curve.done());
+  way_.turned = end == ArcLength::End::turned;
+  if (end == ArcLength::End::passed) way_.advance = std::max(way_.advance, gone);
+  return end;
+}
+
+/// Why a way ends where it does.
+std::string Continuation::beyond_here() const {
+  if (work_.left_field)
+    return "beyond this point what is magnetic comes to where the field is not known: outside its grid, on a wire or "
+           "on "
+           "the dipole";
+  return std::string("beyond this point no equilibrium follows") +
+         (way_.turned ? ": the curve of equilibria turns back there" : "") + instead_of_loads();
 }
 
 /// What to command instead of loads that change, which may have come to a maximum; "" where none does.
@@ -88,23 +126,9 @@ Status Continuation::limit(double done, const std::string& why, const Iterate& a
   return Status::limit;
 }
 
-/// Is a limit, where it comes, one at which the way turns back? Where things touch it has corners, and a step of many
-/// iterations may be what leads on; where ratios alone change, shorter steps jump.
-bool Continuation::may_turn_back() const {
-  return way_.loads_change && !system_.contact() && !system_.limp();
-}
-
 /// Does a step that comes no nearer end after a few factors? Where ratios alone change, many may bring a long one on.
 bool Continuation::ends_early(bool short_step) const {
   return !way_.thorough && (way_.loads_change || short_step) && !system_.contact() && !system_.limp();
-}
-
-/// Share of the way that is left to where it turns back: towards a fold the inverse square of the tangent falls
-/// linearly.
-double Continuation::left_to_fold() const {
-  if (!(way_.tangent_mm > 0 && step_.tangent_mm > way_.tangent_mm)) return std::numeric_limits<double>::infinity();
-  const double ratio = (way_.tangent_mm / step_.tangent_mm) * (way_.tangent_mm / step_.tangent_mm);
-  return (way_.done - way_.tangent_at) * ratio / (1 - ratio);
 }
 
 /// Does the way lead from here to where a longer step came out, without a jump? Where something begins to touch in
@@ -128,6 +152,22 @@ void Continuation::take_beyond(Iterate& at) {
   settler_.last = beyond.last;
   pass(beyond.demand, beyond.done);
   way_.factorised = settler_.prepare(way_.here, at) >= 0;
+}
+
+std::optional<Status> Continuation::out_of_patience(const Iterate& at) {
+  if (way_.done - way_.marked >= least_progress) {
+    way_.marked = way_.done;
+    way_.marked_iterations = report_.iterations;
+  } else if (way_.done < 1 && report_.iterations - way_.marked_iterations >= patience) {
+    return limit(way_.done,
+                 "the way there goes on in ever smaller steps: " + std::to_string(patience) +
+                     " iterations brought less than 1 % of it",
+                 at);
+  }
+  if (way_.done == 1 || report_.iterations < options_.max_iterations) return std::nullopt;
+  tell_balance();
+  report_.remark = "the limit of iterations was reached";
+  return Status::not_converged;
 }
 
 /// What the last shape is.
@@ -163,7 +203,7 @@ void Continuation::tell_stability(const Demand& demand, const Iterate& at) {
 /// Where loads change beside weights, prestretch and supports: these first, so that the loads alone are left, of which
 /// one can be climbed.
 bool Continuation::loads_at_last(const Iterate& at) {
-  if (way_.load >= 0 || together_ || way_.here.share == way_.to.share) return false;
+  if (way_.load >= 0 || together_ || way_.here.share == way_.to.share || !anything_comes_with_share()) return false;
   Demand rest = way_.to;
   rest.actuation = way_.here.actuation;
   if (!change_loads(rest, way_.to)) return false;

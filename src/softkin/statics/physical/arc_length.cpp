@@ -1,0 +1,218 @@
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <softkin/statics/physical/arc_length.hpp>
+#include <utility>
+
+namespace softkin::physical {
+
+namespace {
+
+/// The first step over the tangent to where a step of the share failed.
+constexpr double first_share = 0.5;
+/// What a step is to miss the curve by, over its length, and what it may; bounds of the next step over the last one.
+constexpr double wanted_miss = 0.1, most_miss = 1, most_grown = 2, most_shrinking = 0.1, least_shrinking = 0.4;
+/// Each correction but the second is so much shorter than the one before.
+constexpr double least_gain = 0.5;
+/// Of a step, in a row, and of all.
+constexpr int most_corrections = 8, most_missed = 3, most_iterations = 60;
+/// Over the first step: where the curve has a corner steps become ever shorter.
+constexpr double shortest_step = 0.02;
+/// Of the way, on which it is looked what a change of the share upsets.
+constexpr double difference = 1e-3;
+/// The shape that is kept stands so far before the turn, over the way to the point beyond it: at it the stiffness is
+/// singular.
+constexpr double before_turn = 0.02;
+
+}  // namespace
+
+/// How far it is from a point to where the share is largest before another one, by a cubic.
+double ArcLength::largest_between(const Point& low, const Beyond& high) {
+  const double length = high.away, rise = (high.share - low.share) / length;
+  const double a = (low.slope + high.slope - 2 * rise) / (length * length),
+               b = (3 * rise - 2 * low.slope - high.slope) / length, c = low.slope;
+  return std::min(length, c / (std::sqrt(std::max(0.0, b * b - 3 * a * c)) - b));  // the root at which it falls
+}
+
+ArcLength::ArcLength(Settler& settler, StepTracer& tracer, const Equilibria::Options& options, const Route& route)
+    : settler_(settler),
+      tracer_(tracer),
+      options_(options),
+      system_(settler.system()),
+      work_(settler.work()),
+      team_(settler.team()),
+      report_(settler.report()),
+      route_(route) {}
+
+/// Where the curve goes on from a point whose stiffness is factorised, on the side on which it came.
+///
+/// balance  of the point
+/// before   the tangent of the last point; null: the share grows
+bool ArcLength::set_rates(const Balance& balance, const Eigen::VectorXd* before, Point& point) {
+  const Demand here = demand(point.share), there = demand(point.share + difference);
+  if (system_.placement().changes(here, there))
+    system_.assemble(point.at, here, balance, System::Stiffness::exact, work_, team_);
+  Balance upset;
+  system_.upset(point.at, here, there, settler_.active, work_, upset, team_);
+  work_.saddle.step(upset, point.ahead, point.multipliers, team_);
+  const double length = point.ahead.norm() / difference;
+  if (!(length > 0) || !std::isfinite(length) || !point.multipliers.allFinite()) return false;
+  const double way = before != nullptr && point.ahead.dot(*before) < 0 ? -1 : 1;
+  point.slope = way / length;
+  point.ahead *= point.slope / difference;
+  point.multipliers *= point.slope / difference;
+  return true;
+}
+
+/// The point where the curve is entered; false where it is not stable.
+bool ArcLength::begin(const Iterate& at, Point& point) {
+  point = {.at = at, .share = route_.done};
+  const Demand here = demand(point.share);
+  Balance balance;
+  system_.evaluate(point.at, here, settler_.active, work_, balance, team_);
+  ++report_.factorisations;
+  ++report_.factorisations_in_double;
+  point.negative = system_.factorise(point.at, here, settler_.active, balance, {}, work_, team_);
+  return point.negative == 0 && balance.force.allFinite() && set_rates(balance, nullptr, point);
+}
+
+/// Newton's method across the tangent, from a step along it.
+bool ArcLength::correct(const Point& from, double length, Point& point) {
+  const double whole = system_.freedoms().size_of(length * from.ahead, from.at.positions).largest;
+  double before = 0;
+  missed_ = std::numeric_limits<double>::infinity();
+  why_ = "its iterations were not enough";
+  for (int i = 0; i < most_corrections; ++i) {
+    if (!settler_.newton().goes_on()) {
+      interrupted_ = true;
+      return false;
+    }
+    const Demand here = demand(point.share);
+    Balance balance;
+    system_.evaluate(point.at, here, settler_.active, work_, balance, team_);
+    if (balance.forbidden || !balance.force.allFinite() || (balance.inverted && !settler_.last.inverted)) {
+      why_ = "an element is inverted";
+      return false;
+    }
+    ++report_.factorisations;
+    ++report_.factorisations_in_double;
+    point.negative =
+        system_.factorise(point.at, here, settler_.active, balance, {System::Stiffness::exact, 0, true}, work_, team_);
+    Eigen::VectorXd step, change;
+    work_.saddle.first_step(balance, step, change);
+    if (!set_rates(balance, &from.ahead, point)) return false;
+    // along the curve by what keeps it in the plane
+    const double along = -from.ahead.dot(step) / from.ahead.dot(point.ahead);
+    step += along * point.ahead;
+    change += along * point.multipliers;
+    const double move = system_.freedoms().size_of(step, point.at.positions).largest;
+    if (i == 0) missed_ = move / whole;
+    // what is stiff comes first, and moves little
+    if (!(move < (i < 2 ? most_miss * whole : least_gain * before)) || !change.allFinite()) return false;
+    before = move;
+    point.share += along * point.slope;
+    const Demand there = demand(point.share);
+    system_.advance(step, 1, work_, point.at.positions, team_, &there);
+    point.at.multipliers += change;
+    settler_.give_loads(there, point.at);
+    ++report_.iterations;
+    report_.step_mm = move;
+    report_.gradient_norm = balance.force.norm();
+    report_.energy = balance.energy;
+    if (options_.keep_history) report_.history.push_back({balance.energy, report_.gradient_norm, move});
+    if (move < options_.tolerance_mm) return true;
+  }
+  return false;
+}
+
+/// Do cables that are held pull, and are those that are slack no longer than they are?
+bool ArcLength::holds(const Point& point) const {
+  Iterate trial = point.at;
+  const std::vector<bool> before = settler_.active;
+  const bool changed = settler_.change_active(demand(point.share), trial);
+  settler_.active = before;
+  return !changed;
+}
+
+std::optional<ArcLength::Point> ArcLength::go(const Point& from, double length) {
+  constexpr double most_bend = 0.5;  // over the step
+  Point next{.at = from.at, .share = from.share + length * from.slope};
+  Eigen::VectorXd step = length * from.ahead;
+  if (from.bend.size() > 0 && 0.5 * length * from.bend.norm() < most_bend) {
+    step += 0.5 * length * length * from.bend;
+    next.share += 0.5 * length * length * from.slope_change;
+  }
+  const Demand there = demand(next.share);
+  tracer_.begin(from.share, next.share, std::abs(next.share - from.share), "arc length");
+  system_.advance(step, 1, work_, next.at.positions, team_, &there);
+  next.at.multipliers += length * from.multipliers;
+  settler_.give_loads(there, next.at);
+  const Points predicted = next.at.positions;
+  const bool found = correct(from, length, next);
+  tracer_.end(found, found ? "" : why_, system_.largest_move(from.at.positions, predicted),
+              system_.largest_move(predicted, next.at.positions));
+  if (!found) return std::nullopt;
+  next.bend = (next.ahead - from.ahead) / length;
+  next.slope_change = (next.slope - from.slope) / length;
+  if (system_.tendons().any()) system_.tendons().slide(next.at.positions, next.at.eyelets);
+  return next;
+}
+
+ArcLength::End ArcLength::follow(Iterate& at) {
+  const InPrecision twice(work_.saddle, linear::MixedLdlt::Precision::twice);
+  Point low;
+  if (!begin(at, low)) return End::lost;
+  const double first = low.share, longest = first_share * (route_.failed - low.share) / low.slope;
+  const int most = std::min(options_.max_iterations, report_.iterations + most_iterations);
+  End end = End::lost;
+  std::optional<Beyond> high;
+  bool last = false;  // does the step lead to just before the turn
+  double length = longest;
+  for (int missed = 0; report_.iterations < most && length > shortest_step * longest;) {
+    std::optional<Point> next = go(low, length);
+    if (interrupted_) return End::interrupted;
+    if (!next) {
+      if (++missed > most_missed) break;
+      length *= std::clamp(std::sqrt(wanted_miss / missed_), most_shrinking, least_shrinking);
+      last = false;
+      continue;
+    }
+    missed = 0;
+    const bool turned = next->slope < 0;
+    // one that is unstable although the share grows has not turned, but passed where the curve forks
+    if (!holds(*next) || turned != (next->negative > 0)) break;
+    if (turned) {
+      high = Beyond{length, next->share, next->slope};
+    } else {
+      const bool passed = next->share > route_.failed || next->share >= 1;
+      if (next->share < 1) low = std::move(*next);
+      if (passed || last) {
+        end = passed ? End::passed : End::turned;
+        break;
+      }
+      if (high) high->away -= length;
+      length *= std::clamp(std::sqrt(wanted_miss / missed_), most_shrinking, most_grown);
+    }
+    if (high) {
+      const double top = largest_between(low, *high);
+      length = std::max(top - before_turn * high->away, 0.5 * top);
+      last = true;
+    }
+  }
+  if (low.share > first && !keep(low, at) && !interrupted_) end = End::lost;
+  return interrupted_ ? End::interrupted : end;
+}
+
+/// The equilibrium of a share is Newton's, from that of the curve.
+bool ArcLength::keep(const Point& found, Iterate& at) {
+  Iterate trial = found.at;
+  const auto outcome = settler_.settle(demand(found.share), Newton::Policy::follow, trial);
+  interrupted_ = outcome == Newton::Outcome::interrupted;
+  if (outcome != Newton::Outcome::converged || (settler_.newton().inverted() && !settler_.last.inverted)) return false;
+  settler_.take(at, std::move(trial));
+  settler_.last = settler_.judged();
+  route_.done = found.share;
+  return true;
+}
+
+}  // namespace softkin::physical

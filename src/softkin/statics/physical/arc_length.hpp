@@ -1,0 +1,72 @@
+#pragma once
+
+#include <softkin/statics/physical/settling.hpp>
+#include <softkin/statics/physical/step_tracer.hpp>
+
+namespace softkin::physical {
+
+/// Equilibria on a way of any commands, weights and supports, by the length of their own curve instead of the share of
+/// the way: where the way turns back, at the largest share that the robot bears, the curve goes on.
+///
+/// source  Riks 1979, An incremental approach to the solution of snapping and buckling problems, with the plane across
+///         the tangent as the constraint; Allgower, Georg 1990, Numerical continuation methods, chapter 4
+class ArcLength {
+ public:
+  /// lost: the curve could not be followed to one of the others. passed: beyond where steps of the share failed.
+  enum class End { lost, passed, turned, interrupted };
+  struct Route {
+    Demand from{}, to{};  // the way asked for
+    double done = 0;      // share of it, at a stable equilibrium
+    double failed = 1;    // share ahead at which a step led nowhere
+  };
+
+  /// All must outlive the object.
+  ArcLength(Settler& settler, StepTracer& tracer, const Equilibria::Options& options, const Route& route);
+
+  /// From the equilibrium `at` along the curve; at is then the last stable one that was found.
+  End follow(Iterate& at);
+
+  /// Share at the last one.
+  [[nodiscard]] double done() const { return route_.done; }
+
+ private:
+  /// An equilibrium on the curve. Per unit of its length, in unknowns:
+  struct Point {
+    Iterate at{};
+    double share = 0;
+    Eigen::VectorXd ahead{}, multipliers{};  // along which it goes on, of length 1, and what multipliers change by
+    double slope = 0;                        // of the share
+    Eigen::VectorXd bend{};                  // of what is ahead, by the last point; empty: not known
+    double slope_change = 0;                 // the same of the slope
+    int negative = 0;                        // eigenvalues of the stiffness that the constraints leave
+  };
+
+  /// A point beyond the turn.
+  struct Beyond {
+    double away = 0;  // along the curve
+    double share = 0, slope = 0;
+  };
+
+  [[nodiscard]] Demand demand(double share) const { return between(route_.from, route_.to, share); }
+  bool set_rates(const Balance& balance, const Eigen::VectorXd* before, Point& point);
+  bool begin(const Iterate& at, Point& point);
+  std::optional<Point> go(const Point& from, double length);
+  bool correct(const Point& from, double length, Point& point);
+  [[nodiscard]] static double largest_between(const Point& low, const Beyond& high);
+  [[nodiscard]] bool holds(const Point& point) const;
+  bool keep(const Point& found, Iterate& at);
+
+  Settler& settler_;
+  StepTracer& tracer_;
+  const Equilibria::Options& options_;
+  const System& system_;
+  Workspace& work_;
+  Team& team_;
+  SolveReport& report_;
+  Route route_;
+  double missed_ = 0;     // by the last step, over its length
+  const char* why_ = "";  // it was not found
+  bool interrupted_ = false;
+};
+
+}  // namespace softkin::physical
