@@ -168,6 +168,21 @@ TEST(PhysicalLimits, AnArchSnaps) {
   EXPECT_GT(0.01 * found.report.reached, 0.0095);
   EXPECT_GT(marker_at(model, found)[2], 4);
   EXPECT_LT(marker_at(model, found)[2], last_top);
+  // and, if asked, to where it carries the weight again, as it does when it is pressed through first
+  StaticsOptions stable;
+  stable.stable = true;
+  const Equilibrium through = statics.solve({}, statics.rest(), stable);
+  ASSERT_EQ(through.report.status, Status::converged) << through.report.remark;
+  EXPECT_EQ(through.report.physical.unstable_modes, 0);
+  EXPECT_LT(marker_at(model, through)[2], 0);
+  EXPECT_GT(through.report.physical.snapped_mm, 5);
+  EXPECT_NEAR(through.report.physical.snapped_from, found.report.reached, 1e-3);
+  spec.loads.forces[0].force *= 2;
+  const Model pressed = compile(spec);
+  const Statics under_more(pressed);
+  const Equilibrium below = statics.solve({}, under_more.solve({}, under_more.rest(), stable).state);
+  EXPECT_EQ(below.report.status, Status::converged);
+  EXPECT_LT(largest_move(below.state.positions, through.state.positions), 1e-4);
 }
 
 /// Where the law knows no inversion, no accepted shape is inverted, not even at a limit.

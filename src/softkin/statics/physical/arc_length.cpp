@@ -23,6 +23,9 @@ constexpr double difference = 1e-3;
 /// The shape that is kept stands so far before the turn, over the way to the point beyond it: at it the stiffness is
 /// singular.
 constexpr double before_turn = 0.02;
+/// Of steps beyond the turn; and how far the share may fall there.
+constexpr int most_iterations_beyond = 300;
+constexpr double farthest_back = -1;
 
 }  // namespace
 
@@ -166,7 +169,9 @@ ArcLength::End ArcLength::follow(Iterate& at) {
   const int most = std::min(options_.max_iterations, report_.iterations + most_iterations);
   End end = End::lost;
   std::optional<Beyond> high;
-  bool last = false;  // does the step lead to just before the turn
+  std::optional<Point> far;  // beyond the turn
+  double reach = 0;          // of the step there
+  bool last = false;         // does the step lead to just before the turn
   double length = longest;
   for (int missed = 0; report_.iterations < most && length > shortest_step * longest;) {
     std::optional<Point> next = go(low, length);
@@ -183,6 +188,8 @@ ArcLength::End ArcLength::follow(Iterate& at) {
     if (!holds(*next) || turned != (next->negative > 0)) break;
     if (turned) {
       high = Beyond{length, next->share, next->slope};
+      far = std::move(next);
+      reach = length;
     } else {
       const bool passed = next->share > route_.failed || next->share >= 1;
       if (next->share < 1) low = std::move(*next);
@@ -200,7 +207,34 @@ ArcLength::End ArcLength::follow(Iterate& at) {
     }
   }
   if (low.share > first && !keep(low, at) && !interrupted_) end = End::lost;
-  return interrupted_ ? End::interrupted : end;
+  if (interrupted_) return End::interrupted;
+  return end == End::turned && route_.beyond ? go_beyond(std::move(*far), reach, at) : end;
+}
+
+/// On from beyond the turn to a stable equilibrium that bears more than is borne at the turn, or all that is asked.
+ArcLength::End ArcLength::go_beyond(Point last, double length, Iterate& at) {
+  const double most_borne = route_.done, longest = length;
+  const int most = std::min(options_.max_iterations, report_.iterations + most_iterations_beyond);
+  for (int missed = 0; report_.iterations < most && missed <= most_missed && length > shortest_step * longest;) {
+    std::optional<Point> next = go(last, length);
+    if (interrupted_) return End::interrupted;
+    if (!next) {
+      ++missed;
+      length *= std::clamp(std::sqrt(wanted_miss / missed_), most_shrinking, least_shrinking);
+      continue;
+    }
+    missed = 0;
+    if (!holds(*next) || next->share < farthest_back) break;
+    if (next->slope > 0 && next->negative == 0 && next->share > most_borne) {
+      next->share = std::min(next->share, 1.0);
+      if (!keep(*next, at)) break;
+      turned_at_ = most_borne;
+      return End::passed;
+    }
+    last = std::move(*next);
+    length *= std::clamp(std::sqrt(wanted_miss / missed_), most_shrinking, most_grown);
+  }
+  return interrupted_ ? End::interrupted : End::turned;
 }
 
 /// The equilibrium of a share is Newton's, from that of the curve.

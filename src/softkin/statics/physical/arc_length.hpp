@@ -18,6 +18,7 @@ class ArcLength {
     Demand from{}, to{};  // the way asked for
     double done = 0;      // share of it, at a stable equilibrium
     double failed = 1;    // share ahead at which a step led nowhere
+    bool beyond = false;  // on beyond a turn, to where more is borne again
   };
 
   /// All must outlive the object.
@@ -26,8 +27,9 @@ class ArcLength {
   /// From the equilibrium `at` along the curve; at is then the last stable one that was found.
   End follow(Iterate& at);
 
-  /// Share at the last one.
+  /// Share at the last one, and at the turn beyond which that lies; 0: it does not.
   [[nodiscard]] double done() const { return route_.done; }
+  [[nodiscard]] double turned_at() const { return turned_at_; }
 
  private:
   /// An equilibrium on the curve. Per unit of its length, in unknowns:
@@ -55,6 +57,7 @@ class ArcLength {
   [[nodiscard]] static double largest_between(const Point& low, const Beyond& high);
   [[nodiscard]] bool holds(const Point& point) const;
   bool keep(const Point& found, Iterate& at);
+  End go_beyond(Point last, double length, Iterate& at);
 
   Settler& settler_;
   StepTracer& tracer_;
@@ -64,6 +67,7 @@ class ArcLength {
   Team& team_;
   SolveReport& report_;
   Route route_;
+  double turned_at_ = 0;
   double missed_ = 0;     // by the last step, over its length
   const char* why_ = "";  // it was not found
   bool interrupted_ = false;
