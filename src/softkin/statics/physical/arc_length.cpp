@@ -38,14 +38,7 @@ double ArcLength::largest_between(const Point& low, const Beyond& high) {
 }
 
 ArcLength::ArcLength(Settler& settler, StepTracer& tracer, const Equilibria::Options& options, const Route& route)
-    : settler_(settler),
-      tracer_(tracer),
-      options_(options),
-      system_(settler.system()),
-      work_(settler.work()),
-      team_(settler.team()),
-      report_(settler.report()),
-      route_(route) {}
+    : Follower(settler, tracer, options), route_(route) {}
 
 /// Where the curve goes on from a point whose stiffness is factorised, on the side on which it came.
 ///
@@ -157,82 +150,79 @@ std::optional<ArcLength::Point> ArcLength::go(const Point& from, double length) 
   if (!found) return std::nullopt;
   next.bend = (next.ahead - from.ahead) / length;
   next.slope_change = (next.slope - from.slope) / length;
+  next.went = length;
   if (system_.tendons().any()) system_.tendons().slide(next.at.positions, next.at.eyelets);
   return next;
+}
+
+ArcLength::Pace ArcLength::pace(double length, int iterations) const {
+  return {length, shortest_step * length, std::min(options_.max_iterations, report_.iterations + iterations)};
+}
+
+/// The point at the end of a step, which is made shorter where it leads nowhere; none: nor do those.
+std::optional<ArcLength::Point> ArcLength::next(const Point& from, Pace& pace) {
+  while (report_.iterations < pace.most_iterations && pace.length > pace.shortest) {
+    std::optional<Point> found = go(from, pace.length);
+    pace.missed = found ? 0 : pace.missed + 1;
+    if (interrupted_ || pace.missed > most_missed) break;
+    pace.length *= std::clamp(std::sqrt(wanted_miss / missed_), most_shrinking, found ? most_grown : least_shrinking);
+    if (found) return found;
+  }
+  return std::nullopt;
 }
 
 ArcLength::End ArcLength::follow(Iterate& at) {
   const InPrecision twice(work_.saddle, linear::MixedLdlt::Precision::twice);
   Point low;
   if (!begin(at, low)) return End::lost;
-  const double first = low.share, longest = first_share * (route_.failed - low.share) / low.slope;
-  const int most = std::min(options_.max_iterations, report_.iterations + most_iterations);
+  const double first = low.share;
+  Pace steps = pace(first_share * (route_.failed - low.share) / low.slope, most_iterations);
   End end = End::lost;
   std::optional<Beyond> high;
   std::optional<Point> far;  // beyond the turn
-  double reach = 0;          // of the step there
   bool last = false;         // does the step lead to just before the turn
-  double length = longest;
-  for (int missed = 0; report_.iterations < most && length > shortest_step * longest;) {
-    std::optional<Point> next = go(low, length);
-    if (interrupted_) return End::interrupted;
-    if (!next) {
-      if (++missed > most_missed) break;
-      length *= std::clamp(std::sqrt(wanted_miss / missed_), most_shrinking, least_shrinking);
-      last = false;
-      continue;
-    }
-    missed = 0;
-    const bool turned = next->slope < 0;
+  while (end == End::lost) {
+    const double asked = steps.length;
+    std::optional<Point> found = next(low, steps);
+    if (!found) break;
     // one that is unstable although the share grows has not turned, but passed where the curve forks
-    if (!holds(*next) || turned != (next->negative > 0)) break;
+    const bool turned = found->slope < 0;
+    if (!holds(*found) || turned != (found->negative > 0)) break;
     if (turned) {
-      high = Beyond{length, next->share, next->slope};
-      far = std::move(next);
-      reach = length;
+      high = Beyond{found->went, found->share, found->slope};
+      far = std::move(found);
     } else {
-      const bool passed = next->share > route_.failed || next->share >= 1;
-      if (next->share < 1) low = std::move(*next);
-      if (passed || last) {
-        end = passed ? End::passed : End::turned;
-        break;
-      }
-      if (high) high->away -= length;
-      length *= std::clamp(std::sqrt(wanted_miss / missed_), most_shrinking, most_grown);
+      if (found->share > route_.failed || found->share >= 1)
+        end = End::passed;
+      else if (last && found->went == asked)
+        end = End::turned;
+      if (high) high->away -= found->went;
+      if (found->share < 1) low = std::move(*found);
     }
     if (high) {
       const double top = largest_between(low, *high);
-      length = std::max(top - before_turn * high->away, 0.5 * top);
+      steps.length = std::max(top - before_turn * high->away, 0.5 * top);
       last = true;
     }
   }
-  if (low.share > first && !keep(low, at) && !interrupted_) end = End::lost;
+  if (low.share > first && !keep(low, at)) end = End::lost;
   if (interrupted_) return End::interrupted;
-  return end == End::turned && route_.beyond ? go_beyond(std::move(*far), reach, at) : end;
+  return end == End::turned && route_.beyond ? go_beyond(std::move(*far), at) : end;
 }
 
 /// On from beyond the turn to a stable equilibrium that bears more than is borne at the turn, or all that is asked.
-ArcLength::End ArcLength::go_beyond(Point last, double length, Iterate& at) {
-  const double most_borne = route_.done, longest = length;
-  const int most = std::min(options_.max_iterations, report_.iterations + most_iterations_beyond);
-  for (int missed = 0; report_.iterations < most && missed <= most_missed && length > shortest_step * longest;) {
-    std::optional<Point> next = go(last, length);
-    if (interrupted_) return End::interrupted;
-    if (!next) {
-      ++missed;
-      length *= std::clamp(std::sqrt(wanted_miss / missed_), most_shrinking, least_shrinking);
-      continue;
-    }
-    missed = 0;
-    if (!holds(*next) || next->share < farthest_back) break;
-    if (next->slope > 0 && next->negative == 0 && next->share > most_borne) {
-      next->share = std::min(next->share, 1.0);
-      if (!keep(*next, at)) break;
-      turned_at_ = most_borne;
+ArcLength::End ArcLength::go_beyond(Point last, Iterate& at) {
+  Pace steps = pace(last.went, most_iterations_beyond);
+  while (std::optional<Point> found = next(last, steps)) {
+    if (!holds(*found) || found->share < farthest_back) break;
+    if (found->slope > 0 && found->negative == 0 && found->share > route_.done) {
+      found->share = std::min(found->share, 1.0);
+      const Jump jump{route_.done, system_.largest_move(at.positions, found->at.positions)};
+      if (!keep(*found, at)) break;
+      jump_ = jump;
       return End::passed;
     }
-    last = std::move(*next);
-    length *= std::clamp(std::sqrt(wanted_miss / missed_), most_shrinking, most_grown);
+    last = std::move(*found);
   }
   return interrupted_ ? End::interrupted : End::turned;
 }

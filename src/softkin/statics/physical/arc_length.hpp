@@ -1,6 +1,5 @@
 #pragma once
 
-#include <softkin/statics/physical/settling.hpp>
 #include <softkin/statics/physical/step_tracer.hpp>
 
 namespace softkin::physical {
@@ -10,7 +9,7 @@ namespace softkin::physical {
 ///
 /// source  Riks 1979, An incremental approach to the solution of snapping and buckling problems, with the plane across
 ///         the tangent as the constraint; Allgower, Georg 1990, Numerical continuation methods, chapter 4
-class ArcLength {
+class ArcLength : Follower {
  public:
   /// lost: the curve could not be followed to one of the others. passed: beyond where steps of the share failed.
   enum class End { lost, passed, turned, interrupted };
@@ -20,6 +19,9 @@ class ArcLength {
     double failed = 1;    // share ahead at which a step led nowhere
     bool beyond = false;  // on beyond a turn, to where more is borne again
   };
+  struct Jump {
+    double share = 0, move_mm = 0;  // of the way, where the curve turned; from there
+  };
 
   /// All must outlive the object.
   ArcLength(Settler& settler, StepTracer& tracer, const Equilibria::Options& options, const Route& route);
@@ -27,9 +29,10 @@ class ArcLength {
   /// From the equilibrium `at` along the curve; at is then the last stable one that was found.
   End follow(Iterate& at);
 
-  /// Share at the last one, and at the turn beyond which that lies; 0: it does not.
+  /// Share at the last one.
   [[nodiscard]] double done() const { return route_.done; }
-  [[nodiscard]] double turned_at() const { return turned_at_; }
+  /// Over which it came to that, where it lies beyond a turn.
+  [[nodiscard]] const std::optional<Jump>& jump() const { return jump_; }
 
  private:
   /// An equilibrium on the curve. Per unit of its length, in unknowns:
@@ -41,6 +44,7 @@ class ArcLength {
     Eigen::VectorXd bend{};                  // of what is ahead, by the last point; empty: not known
     double slope_change = 0;                 // the same of the slope
     int negative = 0;                        // eigenvalues of the stiffness that the constraints leave
+    double went = 0;                         // along the curve, from the last point
   };
 
   /// A point beyond the turn.
@@ -49,25 +53,26 @@ class ArcLength {
     double share = 0, slope = 0;
   };
 
+  /// Steps along the curve: the length of the next one, the shortest, how many failed in a row.
+  struct Pace {
+    double length = 0, shortest = 0;
+    int most_iterations = 0, missed = 0;
+  };
+
+  [[nodiscard]] Pace pace(double length, int iterations) const;
   [[nodiscard]] Demand demand(double share) const { return between(route_.from, route_.to, share); }
   bool set_rates(const Balance& balance, const Eigen::VectorXd* before, Point& point);
   bool begin(const Iterate& at, Point& point);
+  std::optional<Point> next(const Point& from, Pace& pace);
   std::optional<Point> go(const Point& from, double length);
   bool correct(const Point& from, double length, Point& point);
   [[nodiscard]] static double largest_between(const Point& low, const Beyond& high);
   [[nodiscard]] bool holds(const Point& point) const;
   bool keep(const Point& found, Iterate& at);
-  End go_beyond(Point last, double length, Iterate& at);
+  End go_beyond(Point last, Iterate& at);
 
-  Settler& settler_;
-  StepTracer& tracer_;
-  const Equilibria::Options& options_;
-  const System& system_;
-  Workspace& work_;
-  Team& team_;
-  SolveReport& report_;
   Route route_;
-  double turned_at_ = 0;
+  std::optional<Jump> jump_{};
   double missed_ = 0;     // by the last step, over its length
   const char* why_ = "";  // it was not found
   bool interrupted_ = false;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include <softkin/model/equilibrium.hpp>
+#include <softkin/statics/physical/settling.hpp>
 #include <string>
 #include <utility>
 
@@ -45,6 +45,28 @@ class StepTracer {
   SolveReport& report_;
   TracedStep step_;
   Counts before_;
+};
+
+/// What goes from equilibrium to equilibrium works with.
+class Follower {
+ protected:
+  /// All must outlive the object.
+  Follower(Settler& settler, StepTracer& tracer, const Equilibria::Options& options)
+      : settler_(settler),
+        tracer_(tracer),
+        options_(options),
+        system_(settler.system()),
+        work_(settler.work()),
+        team_(settler.team()),
+        report_(settler.report()) {}
+
+  Settler& settler_;
+  StepTracer& tracer_;
+  const Equilibria::Options& options_;
+  const System& system_;
+  Workspace& work_;
+  Team& team_;
+  SolveReport& report_;
 };
 
 }  // namespace softkin::physical

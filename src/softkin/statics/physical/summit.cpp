@@ -26,15 +26,7 @@ constexpr double before_summit = 0.01;
 }  // namespace
 
 Climb::Climb(Settler& settler, StepTracer& tracer, const Equilibria::Options& options, const Route& route)
-    : settler_(settler),
-      tracer_(tracer),
-      options_(options),
-      system_(settler.system()),
-      work_(settler.work()),
-      team_(settler.team()),
-      report_(settler.report()),
-      route_(route),
-      load_(route.load) {}
+    : Follower(settler, tracer, options), route_(route), load_(route.load) {}
 
 /// The equilibrium at which the load's actuator has so large a measure, over that at rest; none where there is none, or
 /// an unstable one.

@@ -1,7 +1,6 @@
 #pragma once
 
 #include <optional>
-#include <softkin/statics/physical/settling.hpp>
 #include <softkin/statics/physical/step_tracer.hpp>
 
 namespace softkin::physical {
@@ -17,7 +16,7 @@ struct WholeWay {
 /// there a maximum of the load is no end. Where the load's slope by that measure is zero it is at its maximum.
 ///
 /// source  Riks' idea, with the load's own measure as the parameter
-class Climb {
+class Climb : Follower {
  public:
   enum class End { lost, arrived, summit, interrupted };
   struct Route {
@@ -87,13 +86,6 @@ class Climb {
   void tell_beyond(const Measured& last, bool asked);
   void tell_summit(const Measured& summit);
 
-  Settler& settler_;
-  StepTracer& tracer_;
-  const Equilibria::Options& options_;
-  const System& system_;
-  Workspace& work_;
-  Team& team_;
-  SolveReport& report_;
   Route route_;
   Index load_;
   bool at_summit_ = false;

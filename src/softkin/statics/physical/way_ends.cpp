@@ -70,14 +70,13 @@ ArcLength::End Continuation::follow_curve(Iterate& at) {
     return ArcLength::End::lost;
   ArcLength curve(settler_, tracer_, options_,
                   {way_.from, way_.to, way_.done, way_.failed > way_.done ? way_.failed : 1, options_.stable});
-  const Points before = at.positions;
   const ArcLength::End end = curve.follow(at);
   way_.factorised = false;
   const double gone = curve.done() - way_.done;
   way_.next_look = gone > 0 ? way_.misses + 1 : 2 * way_.misses;
   if (gone > 0) pass(between(way_.from, way_.to, curve.done()), curve.done());
   way_.turned = end == ArcLength::End::turned;
-  if (curve.turned_at() > 0) tell_snap(system_.largest_move(before, at.positions), whole(curve.turned_at()), report_);
+  if (const auto& jump = curve.jump()) tell_snap(jump->move_mm, whole(jump->share), report_);
   if (end == ArcLength::End::passed) way_.advance = std::max(way_.advance, gone);
   return end;
 }
@@ -85,9 +84,8 @@ ArcLength::End Continuation::follow_curve(Iterate& at) {
 /// Why a way ends where it does.
 std::string Continuation::beyond_here() const {
   if (work_.left_field)
-    return "beyond this point what is magnetic comes to where the field is not known: outside its grid, on a wire or "
-           "on "
-           "the dipole";
+    return "beyond this point what is magnetic comes to where the field is not known: "
+           "outside its grid, on a wire or on the dipole";
   return std::string("beyond this point no equilibrium follows") +
          (way_.turned ? ": the curve of equilibria turns back there" : "") +
          (way_.turned && options_.stable ? ", and no stable shape was found that bears more" : "") + instead_of_loads();
