@@ -20,6 +20,8 @@ constexpr double worthwhile_balance = 0.7;
 constexpr double near_factor = 2e-4;
 /// Factors of a solve that is brief.
 constexpr int most_briefly = 10;
+/// A solve that got stuck may have done so by rounding where its last step was so many tolerances at most.
+constexpr double near_tolerance = 100;
 
 }  // namespace
 
@@ -68,6 +70,7 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
   if (end == Advance::interrupted) return end;
   factor_.negative = negative;
   factor_.doubtful = !work_.saddle.factor().trusted();
+  ending_.rounded = ending_.rounded || factor_.doubtful;
   const Precision closer = factor_.doubtful ? Precision::good : usual;
   if (end == Advance::made || policy != Policy::descend) return Advance::made;
   for (double shift = std::max(slight_shift, factor_.shift); pace_.slow && end == Advance::none && shift < clear_shift;
@@ -213,15 +216,15 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
                               Iterate& at) {
   asked_.demand = &demand;
   asked_.active = &active;
-  const auto in_single = [&] { return report_.factorisations - report_.factorisations_in_double; };
-  const int before = in_single();
+  const int before = report_.factorisations - report_.factorisations_in_double;
   start_ = at;
   const Outcome outcome = descend(policy, factorised, at);
   if (outcome != Outcome::stuck) return outcome;
-  const bool rounded = in_single() != before && !system_.contact();
-  ending_.hurried = ending_.hurried || (ending_.brief && rounded);
-  if (!rounded || ending_.brief) return outcome;
-  at = start_;  // rounding may be why
+  const bool in_single = report_.factorisations - report_.factorisations_in_double != before && !system_.contact();
+  ending_.hurried = ending_.hurried || (ending_.brief && in_single);
+  const bool rounded = ending_.rounded || report_.step_mm < near_tolerance * settings_.tolerance_mm;
+  if (!in_single || ending_.brief || !rounded) return outcome;
+  at = start_;
   const InPrecision twice(work_.saddle, linear::MixedLdlt::Precision::twice);
   return descend(policy, false, at);
 }
@@ -238,6 +241,7 @@ bool Newton::rests() {
 /// Nothing is known of steps yet.
 void Newton::begin_steps() {
   ending_.why = "its iterations were not enough";
+  ending_.rounded = false;
   secants_.clear();
   pace_ = {.slow = system_.limp()};
   factor_.refines = factor_.looked_at = false;

@@ -83,6 +83,7 @@ bool Newton::refine_first(const Iterate& at) {
   factor_.looked_at = true;
   factor_.refines = refine(balance_, at, step_) > much;
   if (factor_.refines) work_.saddle.factor().distrust();
+  ending_.rounded = ending_.rounded || factor_.refines;
   return factor_.refines;
 }
 

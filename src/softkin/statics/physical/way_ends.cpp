@@ -15,8 +15,9 @@ namespace {
 
 /// Share of normal forces whose friction gives way, from which on it is told where the way ends.
 constexpr double worth_telling = 0.5;
-/// A way on which so many iterations bring less than this share of it leads nowhere.
-constexpr int patience = 500;
+/// A way on which so many iterations bring less than this share of it leads nowhere. Where things come to touch the
+/// next share may take hundreds, and those after it few.
+constexpr int patience = 200, patience_at_contact = 500;
 constexpr double least_progress = 0.01;
 
 }  // namespace
@@ -159,9 +160,10 @@ std::optional<Status> Continuation::out_of_patience(const Iterate& at) {
   if (way_.done - way_.marked >= least_progress) {
     way_.marked = way_.done;
     way_.marked_iterations = report_.iterations;
-  } else if (way_.done < 1 && report_.iterations - way_.marked_iterations >= patience) {
+  } else if (const int most = system_.contact() ? patience_at_contact : patience;
+             way_.done < 1 && report_.iterations - way_.marked_iterations >= most) {
     return limit(way_.done,
-                 "the way there goes on in ever smaller steps: " + std::to_string(patience) +
+                 "the way there goes on in ever smaller steps: " + std::to_string(most) +
                      " iterations brought less than 1 % of it",
                  at);
   }

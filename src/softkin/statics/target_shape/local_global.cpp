@@ -43,13 +43,13 @@ constexpr double unlimited = std::numeric_limits<double>::infinity();
 /// least energy no smaller. Where that is the pace, no number of iterations that anybody waits for is enough.
 class Stall {
  public:
-  static constexpr int window = 2000;
+  explicit Stall(int window) : window_(window) {}
 
   [[nodiscard]] bool add(const IterationRecord& record) {
     constexpr double hardly = 0.9, no_smaller = 1 - 1e-6;
     step_mm_ = std::min(step_mm_, record.step_mm);
     energy_ = std::min(energy_, record.energy);
-    if (++count_ % window != 0) return false;
+    if (++count_ % window_ != 0) return false;
     const bool stalled = step_mm_ > hardly * best_step_mm_ && energy_ > no_smaller * best_energy_;
     best_step_mm_ = std::min(best_step_mm_, std::exchange(step_mm_, unlimited));
     best_energy_ = std::min(best_energy_, std::exchange(energy_, unlimited));
@@ -59,7 +59,7 @@ class Stall {
  private:
   double step_mm_ = unlimited, energy_ = unlimited;  // least in this window
   double best_step_mm_ = unlimited, best_energy_ = unlimited;
-  int count_ = 0;
+  int window_, count_ = 0;
 };
 
 double largest_marker_move(const Model& model, const Points& before, const Points& after) {
@@ -126,7 +126,7 @@ void LocalGlobal::extrapolate() {
 }
 
 void solve_local_global(const Model& model, const System& system, const supports::GlobalStep& global,
-                        const StaticsOptions& options, const ProgressCallback& progress, Team& team,
+                        const StaticsOptions& options, int stall_window, const ProgressCallback& progress, Team& team,
                         Equilibrium& result) {
   SolveReport& report = result.report;
   report.solver = "local-global";
@@ -135,7 +135,7 @@ void solve_local_global(const Model& model, const System& system, const supports
   LocalGlobal iteration(system, global, anderson, result.actuation, result.state.positions);
   System::Scratch scratch = system.make_scratch();
   ErrorEstimate estimate;
-  Stall stall;
+  Stall stall(stall_window);
   while (report.iterations < options.max_iterations) {
     IterationRecord record;
     if (!iteration.iterate(scratch, team, record)) break;
@@ -150,7 +150,7 @@ void solve_local_global(const Model& model, const System& system, const supports
       break;
     }
     if (stall.add(record)) {
-      report.remark = "the last " + std::to_string(Stall::window) + " iterations led nowhere";
+      report.remark = "the last " + std::to_string(stall_window) + " iterations led nowhere";
       break;
     }
     if (report.iterations < options.max_iterations) iteration.extrapolate();

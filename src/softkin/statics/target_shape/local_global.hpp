@@ -46,9 +46,10 @@ void accept(const IterationRecord& record, bool keep_history, SolveReport& repor
 /// Algorithm 1 from result.state.positions until no vertex moves farther than report.tolerance_mm in an iteration, or
 /// to PublishedStop. Fills state.positions and the report, its seconds aside.
 ///
+/// stall_window  iterations that go round in circles for so long end it
 /// source  Fang et al. 2020, Alg. 1, Eqs. (9)-(10)
 void solve_local_global(const Model& model, const System& system, const supports::GlobalStep& global,
-                        const StaticsOptions& options, const ProgressCallback& progress, Team& team,
+                        const StaticsOptions& options, int stall_window, const ProgressCallback& progress, Team& team,
                         Equilibrium& result);
 
 }  // namespace softkin::target_shape
