@@ -82,17 +82,16 @@ TEST(Run, OfAPathGoesOnBitByBitAtEveryRecord) {
   }
 }
 
-TEST(Run, OfAFollowedPathGoesOnBitByBitAtEveryRecord) {
+TEST(Run, OfAFollowedPathGoesOnBitByBit) {
   const Model model = testing::bending_model();
   const MarkerPath path = testing::path_through(model, testing::steps_of(model, beyond_a_fresh_start));
   const Statics statics(model);
   TrajectoryOptions options;
   options.inverse.statics = testing::one_thread();
-  for (const std::size_t pause : {std::size_t{3}, std::size_t{34}})
-    expect_resumable<WaypointRecord>(model, follow_head(model, "block.yaml", options), pause, [&] {
-      statics.forget();
-      return std::make_unique<FollowJob>(statics, path, "path.csv", options);
-    });
+  expect_resumable<WaypointRecord>(model, follow_head(model, "block.yaml", options), 13, [&] {
+    statics.forget();
+    return std::make_unique<FollowJob>(statics, path, "path.csv", options);
+  });
 }
 
 struct WalkerAndJob : Job<WalkRecord> {
