@@ -51,7 +51,7 @@ class Newton {
   [[nodiscard]] bool goes_on() const;
 
   /// Moves `at` to equilibrium. Multipliers that are not active are given. The workspace is left with the last
-  /// factorisation. What gets stuck with factors in single precision is tried again with others.
+  /// factorisation. What gets stuck where rounding of factors in single precision shows is tried again with others.
   ///
   /// factorised  the workspace holds a stable, exact stiffness of a shape close to `at`: steps are tried with it first
   Outcome solve(const Demand& demand, const std::vector<bool>& active, Policy policy, bool factorised, Iterate& at);
