@@ -3,6 +3,7 @@
 #include <Eigen/LU>
 #include <Eigen/SVD>
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -25,6 +26,7 @@ constexpr double least_cell = 0.3, largest_cell = 10;
 
 /// A stretch of cells along one axis, and what part of the robot it belongs to.
 enum class Part { solid, fold, plate, gap, rim, annulus, neck, core };
+constexpr int part_count = 8;
 struct Line {
   std::vector<double> at{0.0};  // of the vertices [mm]
   std::vector<Part> parts;      // of the cells between them
@@ -36,6 +38,11 @@ struct Line {
     parts.insert(parts.end(), cells, part);
   }
   [[nodiscard]] int cells() const { return static_cast<int>(parts.size()); }
+  [[nodiscard]] std::array<std::int64_t, part_count> cells_by_part() const {
+    std::array<std::int64_t, part_count> cells{};
+    for (const Part part : parts) ++cells[static_cast<int>(part)];
+    return cells;
+  }
 };
 
 struct Grid {
@@ -298,8 +305,13 @@ Mesh bellows_finger(double cell_mm) {
 }
 
 std::int64_t body_tetrahedra(double cell_mm) {
+  const Grid grid = grid_of(cell_mm);
+  const auto along_x = grid.x.cells_by_part(), along_y = grid.y.cells_by_part(), along_z = grid.z.cells_by_part();
   std::int64_t cells = 0;
-  each_cell(grid_of(cell_mm), Fill::body, [&](int, int, int) { ++cells; });
+  for (int x = 0; x < part_count; ++x)
+    for (int y = 0; y < part_count; ++y)
+      for (int z = 0; z < part_count; ++z)
+        if (fill_of(Part(x), Part(y), Part(z)) == Fill::body) cells += along_x[x] * along_y[y] * along_z[z];
   return 5 * cells;
 }
 

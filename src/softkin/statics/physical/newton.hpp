@@ -122,7 +122,7 @@ class Newton {
   struct Ending {
     bool brief = false;    // after a few factors
     bool hurried = false;  // did one end by that
-    bool rounded = false;  // did rounding show in a factor of the last one
+    bool rounded = false;  // did the last one get stuck by rounding, perhaps
     const char* why = "";  // did the last one get stuck
   };
 

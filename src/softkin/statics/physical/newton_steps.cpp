@@ -171,6 +171,7 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
     damping *= factor;
     if (!(damping >= least_damping)) {
       ending_.why = "no length of a step comes nearer";
+      ending_.rounded = true;  // near a singular stiffness it may be by rounding, and nothing else shows it
       return Advance::none;
     }
   }
