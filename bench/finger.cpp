@@ -26,7 +26,7 @@ constexpr double least_cell = 0.3, largest_cell = 10;
 
 /// A stretch of cells along one axis, and what part of the robot it belongs to.
 enum class Part { solid, fold, plate, gap, rim, annulus, neck, core };
-constexpr int part_count = 8;
+constexpr int part_count = static_cast<int>(Part::core) + 1;
 struct Line {
   std::vector<double> at{0.0};  // of the vertices [mm]
   std::vector<Part> parts;      // of the cells between them

@@ -140,8 +140,6 @@ class Example : public ::testing::TestWithParam<std::tuple<fs::path, std::string
 
 TEST_P(Example, SolvesAlongItsPath) {
   const fs::path path = scene().parent_path() / "path.csv";
-  if (scene().stem() == "pneumatic_finger" && std::get<1>(GetParam()) == "physical")
-    GTEST_SKIP() << "README.md goes along it";
   if (fs::exists(path))
     expect_solved({"--path", path.string()}, read_csv(path).rows.size());
   else

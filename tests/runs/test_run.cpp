@@ -88,7 +88,9 @@ TEST(Run, OfAFollowedPathGoesOnBitByBit) {
   const Statics statics(model);
   TrajectoryOptions options;
   options.inverse.statics = testing::one_thread();
-  expect_resumable<WaypointRecord>(model, follow_head(model, "block.yaml", options), 13, [&] {
+  // goes on from before the fresh start and from after it, once killed and once interrupted
+  constexpr std::size_t pause = beyond_a_fresh_start / 2 - 1;
+  expect_resumable<WaypointRecord>(model, follow_head(model, "block.yaml", options), pause, [&] {
     statics.forget();
     return std::make_unique<FollowJob>(statics, path, "path.csv", options);
   });
