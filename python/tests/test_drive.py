@@ -165,7 +165,9 @@ def test_orders_from_another_thread(finger: softkin.Robot) -> None:
 
         threading.Thread(target=wait, daemon=True).start()
 
-    plan = drive.plan(finger, [[1 - 0.0005 * i, 1, 1] for i in range(100)], times=[0.2 * i for i in range(100)])
+    # to and fro, as lines that go on in one direction are one; so many that orders on a busy machine do not come too late
+    plan = drive.plan(finger, [[1 - 0.002 * (i % 2), 1, 1] for i in range(200)], times=[0.2 * i for i in range(200)])
+    assert plan.lines >= 150
     with drive.Marlin(board.port, boot_wait_s=0) as link:
 
         def pause_a_while() -> None:

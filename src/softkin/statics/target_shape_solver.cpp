@@ -8,7 +8,7 @@ namespace softkin {
 namespace {
 
 /// Iterations of Algorithm 1 that lead nowhere and end it: where it converges slowly its steps hardly shrink for long.
-constexpr int stalled_after = 2000;
+constexpr int most_circling = 2000;
 
 void check_target_shape(const StaticsOptions& options) {
   if (options.beyond > 0)
@@ -62,7 +62,7 @@ void TargetShapeSolver::follow_turns(const Actuation& start, const StaticsOption
     if (options.solver == Solver::newton)
       newton_.solve(last, options, progress, team, result);
     else
-      target_shape::solve_local_global(model_, system_, global_, options, stalled_after, progress, team, result);
+      target_shape::solve_local_global({model_, system_, global_}, options, most_circling, progress, team, result);
     on_the_way += result.report.continuation_steps;
     if (result.report.status != Status::converged) break;
     last = result.actuation;

@@ -125,23 +125,22 @@ void LocalGlobal::extrapolate() {
   poses_ = global_.project(actuation_, positions_);
 }
 
-void solve_local_global(const Model& model, const System& system, const supports::GlobalStep& global,
-                        const StaticsOptions& options, int stall_window, const ProgressCallback& progress, Team& team,
-                        Equilibrium& result) {
+void solve_local_global(const Steps& steps, const StaticsOptions& options, int stalled_after,
+                        const ProgressCallback& progress, Team& team, Equilibrium& result) {
   SolveReport& report = result.report;
   report.solver = "local-global";
   if (options.as_published) report.tolerance_mm = PublishedStop::move_mm;
   const int anderson = options.as_published ? 0 : options.anderson;
-  LocalGlobal iteration(system, global, anderson, result.actuation, result.state.positions);
-  System::Scratch scratch = system.make_scratch();
+  LocalGlobal iteration(steps.system, steps.global, anderson, result.actuation, result.state.positions);
+  System::Scratch scratch = steps.system.make_scratch();
   ErrorEstimate estimate;
-  Stall stall(stall_window);
+  Stall stall(stalled_after);
   while (report.iterations < options.max_iterations) {
     IterationRecord record;
     if (!iteration.iterate(scratch, team, record)) break;
     accept(record, options.keep_history, report);
     estimate.add(iteration.before(), iteration.positions() - iteration.before());
-    if (has_arrived(model, iteration, options.as_published, report)) {
+    if (has_arrived(steps.model, iteration, options.as_published, report)) {
       report.status = Status::converged;
       break;
     }
@@ -150,7 +149,7 @@ void solve_local_global(const Model& model, const System& system, const supports
       break;
     }
     if (stall.add(record)) {
-      report.remark = "the last " + std::to_string(stall_window) + " iterations led nowhere";
+      report.remark = "the last " + std::to_string(stalled_after) + " iterations led nowhere";
       break;
     }
     if (report.iterations < options.max_iterations) iteration.extrapolate();

@@ -43,13 +43,19 @@ class LocalGlobal {
 /// Enters an iteration into a report.
 void accept(const IterationRecord& record, bool keep_history, SolveReport& report);
 
+/// What Algorithm 1 goes by; what it refers to must outlive it.
+struct Steps {
+  const Model& model;
+  const System& system;                // the local step
+  const supports::GlobalStep& global;  // the global step
+};
+
 /// Algorithm 1 from result.state.positions until no vertex moves farther than report.tolerance_mm in an iteration, or
 /// to PublishedStop. Fills state.positions and the report, its seconds aside.
 ///
-/// stall_window  iterations that go round in circles for so long end it
+/// stalled_after  iterations that go round in circles for so long end it
 /// source  Fang et al. 2020, Alg. 1, Eqs. (9)-(10)
-void solve_local_global(const Model& model, const System& system, const supports::GlobalStep& global,
-                        const StaticsOptions& options, int stall_window, const ProgressCallback& progress, Team& team,
-                        Equilibrium& result);
+void solve_local_global(const Steps& steps, const StaticsOptions& options, int stalled_after,
+                        const ProgressCallback& progress, Team& team, Equilibrium& result);
 
 }  // namespace softkin::target_shape

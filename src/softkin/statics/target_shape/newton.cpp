@@ -46,7 +46,7 @@ using End = NewtonSearch::End;
 constexpr int first_patience = rescue, patience = 300;
 /// Where nothing else is left Algorithm 1 is given up after so many iterations that lead nowhere: most such robots have
 /// no fixed point within reach, and its limit of iterations is for those who ask for it.
-constexpr int stalled_after = 250;
+constexpr int most_circling = 250;
 
 /// Equilibria on the way from one actuation to another; the step is halved where one is not found and doubled where
 /// one is.
@@ -348,7 +348,7 @@ void Newton::solve(const Actuation& start, const StaticsOptions& options, const 
   if (end == End::stuck) {
     positions = begin;
     report.continuation_steps = 1;
-    solve_local_global(unknowns_.model, unknowns_.system, global_, options, stalled_after, progress, team, result);
+    solve_local_global({unknowns_.model, unknowns_.system, global_}, options, most_circling, progress, team, result);
     report.solver = "newton";
     if (report.status != Status::converged)
       report.remark = "neither Newton's method nor Algorithm 1 converged" +
