@@ -124,13 +124,13 @@ void check_usage(const FkOptions& options) {
 class FkRun {
  public:
   FkRun(const Model& model, const runs::Answers& answers, const FkOptions& options,
-        const std::vector<ActuationStep>& steps, State start)
+        const std::vector<ActuationStep>& steps, State start, const runs::UsedStart* used)
       : model_(model),
         answers_(answers),
         options_(options),
         job_(answers.statics(), steps, options.path, solving(options), std::move(start)),
         run_(model, job_, {options.report, options.series() ? options.output : ""},
-             runs::report_head(model, options.scene, solving(options), answers.map()), {}),
+             runs::report_head(model, options.scene, solving(options), answers.map(), used), {}),
         page_(options.page, model, runs::kept_command()),
         line_(runs::read_marker_line(model, options.turn)),
         turn_(model, line_),
@@ -334,14 +334,18 @@ int run_fk(const FkOptions& options) {
     throw InvalidInput(
         "--start: a path with times, t_s, begins where the robot has rested for long: leave one of the two out");
   State start{model.rest};
-  if (!options.start.empty()) start = runs::read_state(options.start, model);
+  std::optional<runs::UsedStart> used;
+  if (!options.start.empty()) {
+    start = runs::read_state(options.start, model);
+    used = {options.start, fingerprint_of(start.positions)};
+  }
   line.show(-1, "assembling");
   catch_interrupt();
   const runs::Answers answers(model, options.map, options.polish);
   line.clear();
   const OutputFolders folders(outputs);
   if (!options.json) print(head_text(model, options, answers) + curve_remarks(model, options.settings));
-  return FkRun(model, answers, options, steps, std::move(start)).run();
+  return FkRun(model, answers, options, steps, std::move(start), used ? &*used : nullptr).run();
 }
 
 }  // namespace

@@ -280,6 +280,20 @@ TEST(FkResume, RefusesAnotherTask) {
   expect_refused(folder, {"another robot, or the scene or its mesh has changed"});
 }
 
+TEST(FkResume, RefusesAnotherStart) {
+  const PathFolder folder;
+  folder.write("path.csv", "air\n1\n1.01\n1.02\n");  // without times, which begin at rest
+  EXPECT_EQ(folder.run().exit_code, 0);
+  const std::string text = shapes_of(folder).at("shape_0002.vtu");
+  const std::string start = folder.write("start.vtu", text), moved = folder.write("moved.vtu", text);
+  const std::string why = "it began at another shape (--start)";
+  expect_refused(folder, {why}, {"--resume", "--start", start});
+  EXPECT_EQ(folder.run({"--start", start}).exit_code, 0);
+  EXPECT_EQ(folder.last_run()["start"]["file"], start);
+  expect_refused(folder, {why});
+  EXPECT_EQ(folder.run({"--resume", "--start", moved}).exit_code, 0) << "the same shape";
+}
+
 TEST(FkResume, RefusesAReportThatItDidNotWrite) {
   const PathFolder folder;
   folder.write("path.csv", path_text(3));
@@ -490,6 +504,11 @@ TEST(FkPhysical, ResumeRefusesAnotherRobot) {
   std::vector<std::string> again = options;
   again.emplace_back("--resume");
   EXPECT_EQ(run_fk(folder.scene, again).exit_code, 0);
+
+  const std::string pulled = replaced(scene, "length, range: [0.5, 1.2]", "tension, range: [0, 1]");
+  folder.write("block.yaml", pulled);
+  EXPECT_EQ(run_fk(folder.scene, options).exit_code, 0);
+  refused(pulled, {"--beyond", "0.9"}, "other solver options");
 }
 
 }  // namespace

@@ -102,6 +102,7 @@ Json solver_json(const StaticsOptions& options, const UsedMap* map) {
   if (options.solver == Solver::local_global) json["anderson"] = options.anderson;
   if (options.as_published) json["as_published"] = true;
   if (options.stable) json["stable"] = true;
+  if (options.beyond > 0) json["beyond"] = options.beyond;
   if (map != nullptr) json["begun_from_map"] = map_json(*map);
   return json;
 }
@@ -292,9 +293,11 @@ Json stream_json(const drive::GcodeProgram& program, const drive::StreamReport& 
 
 }  // namespace
 
-std::string report_head(const Model& model, const std::string& scene, const StaticsOptions& options,
-                        const UsedMap* map) {
-  return line_of(head_json(model, scene, options, map));
+std::string report_head(const Model& model, const std::string& scene, const StaticsOptions& options, const UsedMap* map,
+                        const UsedStart* start) {
+  Json head = head_json(model, scene, options, map);
+  if (start != nullptr) head["start"] = {{"file", start->file}, {"shape_fingerprint", start->fingerprint}};
+  return line_of(head);
 }
 
 std::string follow_head(const Model& model, const std::string& scene, const TrajectoryOptions& options,

@@ -20,12 +20,18 @@ struct UsedMap {
   bool polished = false;  // does the solver begin at its answers
 };
 
+/// A shape of a file, at which a run begins.
+struct UsedStart {
+  std::string file;         // as the user named it
+  std::string fingerprint;  // of its positions
+};
+
 // What a report says before its steps, a JSON object on one line: version, scene, robot, formulation, materials,
 // actuators, solver, units, mesh, notes. scene: its file, as the user named it; map: null: none
 
-/// Of steps; map: null: none
+/// Of steps; map: null: none; start: null: the robot at rest
 [[nodiscard]] std::string report_head(const Model& model, const std::string& scene, const StaticsOptions& options,
-                                      const UsedMap* map = nullptr);
+                                      const UsedMap* map = nullptr, const UsedStart* start = nullptr);
 /// With what changes the waypoints' results beside robot and solver, "follow".
 [[nodiscard]] std::string follow_head(const Model& model, const std::string& scene, const TrajectoryOptions& options,
                                       const UsedMap* map = nullptr);

@@ -241,7 +241,8 @@ std::optional<Status> Continuation::start_step(const Demand& there, Iterate& at)
   if (settler_.release(there, at, false)) way_.factorised = false;
   if (!way_.factorised && !settler_.newton().goes_on()) return Status::interrupted;
   const int modes = way_.factorised ? settler_.last.modes : settler_.prepare(way_.here, at);
-  if (modes < 0) return limit(way_.done, "the stiffness at the start is not stable", at);
+  if (modes < 0)
+    return limit(way_.done, "no step leads on from here: the stiffness is singular, or an element is inverted", at);
   way_.factorised = true;
   if (options_.beyond > 0 && modes > 0 && way_.load >= 0 && way_.done == 0) {
     const Climb::End back = climb(&Climb::back, way_.load, at);
@@ -258,7 +259,6 @@ Continuation::StepEnd Continuation::judge(Newton::Outcome outcome, const Demand&
   StepEnd end{.why = outcome == Newton::Outcome::stuck     ? settler_.newton().why_stuck()
                      : outcome == Newton::Outcome::blocked ? "something is in the way"
                      : outcome == Newton::Outcome::too_far ? "it is far more than the load can be foretold for"
-                     : outcome == Newton::Outcome::unmet   ? "what actuators command contradicts each other"
                                                            : ""};
   end.blocked = outcome == Newton::Outcome::blocked || outcome == Newton::Outcome::too_far;
   end.found = outcome != Newton::Outcome::stuck && !end.blocked;

@@ -289,7 +289,10 @@ Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
   }
   report_.gradient_norm = balance_.force.norm();
   report_.energy = balance_.energy;
-  if (!meets_constraints()) return Outcome::unmet;
+  if (!meets_constraints()) {
+    ending_.why = "what actuators command contradicts each other";
+    return Outcome::unmet;
+  }
   work_.saddle.correct_multipliers(balance_, at.multipliers, team_);
   settle_gases(at);
   if (doubts_stability(at)) make_sure(at);
