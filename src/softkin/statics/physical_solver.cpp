@@ -15,16 +15,16 @@ void PhysicalSolver::check_history(const ViscousHistory* history, double elapsed
 physical::Equilibria::Options PhysicalSolver::options_of(const StaticsOptions& options) const {
   const double longest = step_tolerance_mm(model_, options);
   const double blur = 1e-6 * std::max(1.0, longest / step_tolerance_mm(model_, {}));
-  return {longest,
-          options.max_iterations,
-          options.keep_history,
-          options.trace,
-          options.reuse_factor,
-          options.stable,
-          options.beyond,
-          blur,
-          options.history,
-          options.elapsed_s};
+  return {.tolerance_mm = longest,
+          .max_iterations = options.max_iterations,
+          .keep_history = options.keep_history,
+          .trace = options.trace,
+          .reuse_factor = options.reuse_factor,
+          .stable = options.stable,
+          .beyond = options.beyond,
+          .force_share = blur,
+          .history = options.history,
+          .elapsed_s = options.elapsed_s};
 }
 
 /// Where a viscous robot has stood for long, relaxed, before times begin: found once. Else not converged.
