@@ -286,7 +286,7 @@ TEST(FkResume, RefusesAnotherStart) {
   EXPECT_EQ(folder.run().exit_code, 0);
   const std::string text = shapes_of(folder).at("shape_0002.vtu");
   const std::string start = folder.write("start.vtu", text), moved = folder.write("moved.vtu", text);
-  const std::string why = "it began at another shape (--start)";
+  const std::string why = "it began at another shape";
   expect_refused(folder, {why}, {"--resume", "--start", start});
   EXPECT_EQ(folder.run({"--start", start}).exit_code, 0);
   EXPECT_EQ(folder.last_run()["start"]["file"], start);

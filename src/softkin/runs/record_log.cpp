@@ -58,7 +58,7 @@ std::string difference(const Json& before, const Json& head, const std::vector<s
   };
   if (differs("solver")) return other("solver", "solver options");
   const auto start = [](const Json& of) { return of.contains("start") ? of["start"].at("shape_fingerprint") : Json(); };
-  if (start(before) != start(head)) return "it began at another shape (--start)";
+  if (start(before) != start(head)) return "it began at another shape";
   for (const std::string& key : same)
     if (differs(key)) return other(key, "options");
   return "";
