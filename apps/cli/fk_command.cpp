@@ -2,6 +2,7 @@
 #include <cmath>
 #include <cstdio>
 #include <map>
+#include <optional>
 #include <softkin/core/error.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/jobs.hpp>

@@ -36,7 +36,7 @@ struct Codec {
 class RecordLog {
  public:
   /// head  what the report says before its steps: a JSON object on one line
-  /// same  keys of the head that a run to be resumed must have had alike, beside version, robot and solver
+  /// same  keys of the head that a run to be resumed must have had alike, beside version, robot, solver and start
   RecordLog(const Model& model, RunFiles files, const std::string& head, std::vector<std::string> same);
   ~RecordLog();
   RecordLog(RecordLog&&) noexcept;
@@ -45,7 +45,7 @@ class RecordLog {
   ///
   /// take     called with every line; throws where it is not what is asked for now (refuse)
   /// remark   for the user, of what was not there as it was written; empty: all was
-  /// throws   InvalidInput where it is no report, or one of another robot, solver or `same`
+  /// throws   InvalidInput where it is no report, or one of another robot, solver, start or `same`
   void resume(const std::function<const StepRecord&(std::size_t number, std::string_view line)>& take,
               std::string& remark);
   [[noreturn]] void refuse(const std::string& why) const;

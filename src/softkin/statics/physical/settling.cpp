@@ -114,7 +114,7 @@ Newton::Outcome Settler::settle(const Demand& demand, Newton::Policy policy, Ite
   give_loads(demand, at);
   if (!system_.friction()) return settle_constraints(demand, policy, at, factorised);
   auto outcome = settle_following(demand, policy, at, factorised);
-  if (outcome != Newton::Outcome::stuck && outcome != Newton::Outcome::unmet) return outcome;
+  if (outcome != Newton::Outcome::stuck) return outcome;
   hold_friction(system_, at, work_, team_);
   for (int round = 1; round <= most_rounds; ++round) {
     const bool near = round > 1 && factorised_nearby(at.positions) && factor_holds_active();
@@ -125,7 +125,7 @@ Newton::Outcome Settler::settle(const Demand& demand, Newton::Policy policy, Ite
     if (report_.physical.friction_change <= frictions_agree) break;
     if (round > 8 || (round & (round - 1)) != 0) continue;  // 1, 2, 4, 8
     const auto followed = settle_following(demand, policy, at, false);
-    if (followed != Newton::Outcome::stuck && followed != Newton::Outcome::unmet) return followed;
+    if (followed != Newton::Outcome::stuck) return followed;
     hold_friction(system_, at, work_, team_);
   }
   return outcome;
