@@ -30,7 +30,8 @@ class Board:
         self.position: dict[str, float] = {}
         self.executed: list[str] = []
         self.delay_s = delay_s
-        threading.Thread(target=self.serve, daemon=True).start()
+        self.server = threading.Thread(target=self.serve, daemon=True)
+        self.server.start()
 
     def serve(self) -> None:
         pending = b""
@@ -40,7 +41,7 @@ class Board:
             except OSError:
                 return
             *lines, pending = pending.split(b"\n")
-            for line in lines:
+            for line in filter(None, lines):  # Marlin passes over empty ones
                 os.write(self.controller, (self.answer(line.decode()) + "\n").encode())
 
     def answer(self, line: str) -> str:
@@ -54,7 +55,9 @@ class Board:
         return "ok"
 
     def close(self) -> None:
-        os.close(self.device)
+        os.close(self.device)  # the last one that was open: it ends what the server reads
+        self.server.join(timeout=10)
+        assert not self.server.is_alive(), "it would read from the next board, which gets its descriptor's number"
         os.close(self.controller)
 
 
