@@ -37,6 +37,17 @@ void add_packs(const Index* places, Index count, Index parent_pivots, Index rows
   }
 }
 
+/// A block's columns, one after the other, to columns that are `stride` apart.
+template <class Number>
+void copy_block(const double* block, Index width, Index height, Number* to, std::ptrdiff_t stride) {
+  const auto copy = [&](Index columns, Index rows) {
+    for (Index c = 0; c < columns; ++c)
+      for (Index r = 0; r < rows; ++r) to[c * stride + r] = static_cast<Number>(block[c * rows + r]);
+  };
+  if (width == 3 && height == 3) return copy(3, 3);  // most are, and loops of known lengths become straight code
+  copy(width, height);
+}
+
 /// Room for a front's arena; what stood in the memory is lost.
 template <class Number>
 Number* arena_in(LargeVector<double>& memory, std::int64_t arena_size) {
@@ -150,22 +161,16 @@ FrontPlace<Number> SparseLdltOf<Number>::place_of(Index front, const Bench& benc
 template <class Number>
 void SparseLdltOf<Number>::assemble(Index index, const LargeVector<double>& values, Number* front, Team& team) const {
   const Front& own = tree_->fronts[index];
-  const Index stride = front_stride<Number>(own.size());
-  share_columns(own.pivots(), stride, team, [&](Index begin, Index end) {
-    const auto column = [&](Index c) { return front + static_cast<std::ptrdiff_t>(c) * stride; };
-    std::fill(column(begin), column(end), Number(0));  // above the diagonal, too: one long run is the fastest
+  const BlockColumns& pattern = tree_->pattern;
+  const std::ptrdiff_t stride = front_stride<Number>(own.size());
+  share_columns(own.pivots(), own.size(), team, [&](Index begin, Index end) {
+    std::fill(front + begin * stride, front + end * stride, Number(0));  // above the diagonal, too: long runs are fast
   });
   for (Index node = own.begin_node; node < own.end_node; ++node) {
-    const Index width = tree_->pattern.width(node);
-    Number* columns = front + static_cast<std::ptrdiff_t>(tree_->pattern.unknowns[node] - own.begin) * stride;
-    for (Index e = tree_->pattern.starts[node]; e < tree_->pattern.starts[node + 1]; ++e) {
-      const Index height = tree_->pattern.width(tree_->pattern.rows[e]);
-      const double* block = values.data() + tree_->pattern.offsets[e];
-      Number* target = columns + tree_->entry_places[e];
-      for (Index c = 0; c < width; ++c)
-        for (Index r = 0; r < height; ++r)
-          target[static_cast<std::ptrdiff_t>(c) * stride + r] = static_cast<Number>(block[c * height + r]);
-    }
+    Number* columns = front + (pattern.unknowns[node] - own.begin) * stride;
+    for (Index e = pattern.starts[node]; e < pattern.starts[node + 1]; ++e)
+      copy_block(values.data() + pattern.offsets[e], pattern.width(node), pattern.width(pattern.rows[e]),
+                 columns + tree_->entry_places[e], stride);
   }
 }
 

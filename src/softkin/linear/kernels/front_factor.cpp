@@ -143,6 +143,23 @@ Index factor_group(const Number* rest, Index group, Index columns, Number least,
   return negative;
 }
 
+/// The pivots' L in place, from L D in `plain`; above the diagonal, where anything may stand, too.
+template <class Number>
+void scale_corner(const FrontBlock<Number>& block, const Number* inverse) {
+  using T = Tile<Number>;
+  const std::ptrdiff_t stride = block.stride;
+  Number* rows = block.at(block.begin, block.begin);
+  const Number* plain = block.plain;
+  Index row = 0;
+  for (; row + T::rows <= block.width; row += T::rows, rows += T::rows, plain += apart_of(block))
+    for (Index c = 0; c < row + T::rows; ++c)
+#pragma GCC unroll 8
+      for (Index r = 0; r < T::rows; r += T::lanes)
+        store(rows + c * stride + r, inverse[c] * load(plain + c * T::rows + r));
+  for (; row < block.width; ++row, ++rows, ++plain)  // beside the rows below the block, which stay as they are
+    for (Index c = 0; c < row; ++c) rows[c * stride] = inverse[c] * plain[c * T::rows];
+}
+
 }  // namespace
 
 template <class Number>
@@ -177,11 +194,7 @@ Index factor_corner(const FrontBlock<Number>& block, Number least, Number* diago
         if (c < columns) store_group<Panels>(plain(panel) + (group + c) * T::rows, apart, sums, c);
     });
   }
-  for (Index c = 0; c < width; ++c) {
-    Number* column = block.at(block.begin, block.begin + c);
-    for (Index r = c + 1; r < width; ++r)
-      column[r] = inverse[c] * block.plain[(r / T::rows) * apart + c * T::rows + r % T::rows];
-  }
+  scale_corner(block, inverse);
   return negative;
 }
 

@@ -16,13 +16,20 @@ class Spread {
   explicit Spread(std::uint32_t bits) : bits_(bits) {}
 
   Vector<double> operator()(const double* from) const {
-    return _mm512_maskz_expand_pd(static_cast<__mmask8>(bits_), _mm512_loadu_pd(from));
+    return _mm512_maskz_expand_pd(static_cast<__mmask8>(bits_), in_register(load(from)));
   }
   Vector<float> operator()(const float* from) const {
-    return _mm512_maskz_expand_ps(static_cast<__mmask16>(bits_), _mm512_loadu_ps(from));
+    return _mm512_maskz_expand_ps(static_cast<__mmask16>(bits_), in_register(load(from)));
   }
 
  private:
+  /// AMD's processors take 2.6 times as long to spread what the instruction itself reads from memory.
+  template <class Values>
+  static Values in_register(Values values) {
+    asm("" : "+v"(values));
+    return values;
+  }
+
   std::uint32_t bits_;
 };
 template <class Number>
@@ -98,22 +105,29 @@ class SpreadOf {
 
 #endif
 
-/// `Columns` columns of a child from `from` on, each to the parent's column beside it in `to`.
-template <int Columns, class Number>
-[[gnu::always_inline]] inline void add_columns(const FrontSum<Number>& sum, const RowPack* pack, const Number* from,
-                                               Number* const (&to)[Columns]) {
-  for (; pack < sum.last; ++pack) {
-    const SpreadOf<Number> spread(pack->bits);
+/// A child's columns, and where their rows go.
+template <class Number>
+struct Columns {
+  const RowPack *first, *last;
+  const Number* from;  // the next column
+  std::ptrdiff_t from_stride;
+
+  /// The next ones, as many as `to` has, each to the parent's column there.
+  template <int Count>
+  [[gnu::always_inline]] void add_to(Number* const (&to)[Count]) {
+    for (const RowPack* pack = first; pack < last; ++pack) {
+      const SpreadOf<Number> spread(pack->bits);
+      const std::ptrdiff_t at = pack->to;
+      const Number* child = from + pack->from;
 #pragma GCC unroll 4
-    for (int c = 0; c < Columns; ++c) {
-      Number* rows = to[c] + (pack->to - sum.first);
-      // no processor foresees where the next columns' packs stand
-      __builtin_prefetch(rows + Columns * static_cast<std::ptrdiff_t>(sum.to_stride), 1);
-      __builtin_prefetch(from + (c + Columns) * static_cast<std::ptrdiff_t>(sum.from_stride) + pack->from);
-      store(rows, load(rows) + spread(from + c * static_cast<std::ptrdiff_t>(sum.from_stride) + pack->from));
+      for (int c = 0; c < Count; ++c, child += from_stride) {
+        __builtin_prefetch(child + Count * from_stride);  // no processor foresees where the next columns' packs stand
+        store(to[c] + at, load(to[c] + at) + spread(child));
+      }
     }
+    from += Count * from_stride;
   }
-}
+};
 
 }  // namespace
 
@@ -124,22 +138,20 @@ Index pack_rows() {
 
 template <class Number>
 void add_pack_columns(const FrontSum<Number>& sum, const RowPack* pack) {
+  const std::ptrdiff_t to_stride = sum.to_stride;
+  Columns<Number> columns{pack, sum.last, sum.from + pack->from * static_cast<std::ptrdiff_t>(sum.from_stride),
+                          sum.from_stride};
+  Number* const to = sum.to + (pack->to - sum.first) * to_stride - sum.first;
   std::uint32_t bits = pack->bits;
-  const Number* from = sum.from + pack->from * static_cast<std::ptrdiff_t>(sum.from_stride);
   const auto next = [&] {
     const int bit = __builtin_ctz(bits);
     bits &= bits - 1;
-    return sum.to + (pack->to - sum.first + bit) * static_cast<std::ptrdiff_t>(sum.to_stride);
+    return to + bit * to_stride;
   };
   int left = __builtin_popcount(bits);
-  for (; left >= 3; left -= 3, from += 3 * static_cast<std::ptrdiff_t>(sum.from_stride)) {
-    Number* const to[3] = {next(), next(), next()};
-    add_columns<3>(sum, pack, from, to);
-  }
-  for (; left > 0; --left, from += sum.from_stride) {
-    Number* const to[1] = {next()};
-    add_columns<1>(sum, pack, from, to);
-  }
+  for (; left >= 4; left -= 4) columns.template add_to<4>({next(), next(), next(), next()});
+  if (left >= 2) columns.template add_to<2>({next(), next()});
+  if (left % 2 == 1) columns.template add_to<1>({next()});
 }
 
 template Index pack_rows<double>();
