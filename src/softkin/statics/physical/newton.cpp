@@ -14,6 +14,9 @@ namespace {
 constexpr double slight_shift = 1e-7, clear_shift = 1;
 /// From one that is not enough to the next, and from the last of a shape to the first of the next one: a factor each.
 constexpr double stiffer = 30, softer = 10;
+/// The first and the last of one that was made positive element by element, and yet is not; limp sheets are held by
+/// more.
+constexpr double least_shift = 1e-5, least_limp_shift = 1e-4, most_shift = 100;
 /// Where steps are small but forces are not in balance, each iteration must bring them so much nearer to it.
 constexpr double worthwhile_balance = 0.7;
 /// Of the diagonal, that the last steps may lead away from the factor whose negative pivots are told.
@@ -83,7 +86,8 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
   if (end != Advance::none) return end;
   ++report_.projections;
   end = attempted(Stiffness::projected, 0, closer);
-  for (double shift = 1e-4; end == Advance::none && shift < 100; shift *= 10) {
+  for (double shift = system_.limp() ? least_limp_shift : least_shift; end == Advance::none && shift < most_shift;
+       shift *= 10) {
     ++report_.shifts;
     end = attempted(Stiffness::projected, shift, closer);
   }

@@ -24,9 +24,8 @@ constexpr double worthwhile_contraction = 0.6;
 constexpr int most_updates = 8;
 /// Of a step, that may be left to do along it.
 constexpr double most_along = 0.5;
-/// The same where rounding has made a factor too stiff along few directions, which these steps find: a new factor would
-/// be so again. Not where things touch: steps lead to other equilibria when they are followed for too long.
-constexpr double much_rounded = 5e-3, rounded_contraction = 0.8, rounded_along = 0.8;
+/// Of x . M x, that rounding has changed where it may be why they shrink too little.
+constexpr double much_rounded = 5e-3;
 /// In steps with one that is there.
 constexpr double cost_of_factor = 6;
 
@@ -210,10 +209,7 @@ void Newton::lengthen(double& damping) {
 bool Newton::update_next() {
   const double square = step_.move.squaredNorm(), part = step_.move.dot(next_.move) / square;
   const double size = next_.size.mean / step_.size.mean;
-  const bool rounded = work_.saddle.factor().rounded() > much_rounded;
-  if (rounded && !system_.contact() ? !(part < rounded_along && size < rounded_contraction)
-                                    : !(part < most_along && size < worthwhile_contraction * (1 - part)))
-    return false;
+  if (!(part < most_along && size < worthwhile_contraction * (1 - part))) return false;
   const double scale = 1 / (square * (1 - part));
   secants_.push_back({step_.move, scale * next_.move, scale * next_.change});
   next_.move /= 1 - part;
@@ -222,17 +218,29 @@ bool Newton::update_next() {
   return true;
 }
 
-/// Broyden's steps after the whole step step_, with next_ the simplified one that follows it.
+/// Broyden's steps after the whole step step_, with next_ the simplified one that follows it. Where they end because
+/// they shrink too little, and rounding may be why, the next factors are in double precision.
 ///
 /// source  Deuflhard 2011, QNERR: the "good" rank-1 updates, which serve as long as the factor does
 Newton::Advance Newton::quasi_newton_steps(Iterate& at) {
-  for (int made = 1; made <= most_updates && update_next(); ++made) {
+  linear::MixedLdlt& factor = work_.saddle.factor();
+  const auto slow = [&] {
+    if (factor.rounded() > much_rounded && !system_.contact()) factor.distrust();
+  };
+  for (int made = 1; made <= most_updates; ++made) {
+    if (!update_next()) {
+      slow();
+      break;
+    }
     std::swap(step_, next_);
     if (!attempt_whole(step_, at)) return reject(at);
     const bool arrives = last(step_, next_.size.largest);
     if (!arrives) {
       find(trial_balance_, trial_, next_);
-      if (!(next_.size.mean < step_.size.mean)) return reject(at);
+      if (!(next_.size.mean < step_.size.mean)) {
+        slow();
+        return reject(at);
+      }
     }
     if (!accept(step_.size.largest, at)) return Advance::interrupted;
     if (arrives) return Advance::arrived;
