@@ -37,6 +37,8 @@ constexpr double most_correction = 0.5, least_snap = 0.01;
 constexpr double least_jump = 0.9, finest = 0.02;
 /// A longer step that inverts an element is made shorter: laws that have an energy for it have a mirrored equilibrium.
 constexpr double most_inverting = 0.01;
+/// Of what elements pull with, that may be out of balance where a step has come to rest: more is no equilibrium.
+constexpr double much_imbalance = 0.01;
 
 }  // namespace
 
@@ -277,6 +279,9 @@ Continuation::StepEnd Continuation::judge(Newton::Outcome outcome, const Demand&
   // a body that nothing holds has no stiffness, and so no step
   if (end.found && system_.surroundings().any_body() && !settler_.newton().balanced())
     reject("a body is out of balance");
+  const Imbalance& forces = settler_.newton().imbalance();
+  if (end.found && forces.residual > much_imbalance * forces.pull + forces.rounding)
+    reject("forces are out of balance");
   return end;
 }
 
