@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <softkin/core/error.hpp>
 #include <softkin/statics/target_shape_solver.hpp>
 
@@ -7,8 +8,8 @@ namespace softkin {
 
 namespace {
 
-/// Iterations of Algorithm 1 that lead nowhere and end it: where it converges slowly its steps hardly shrink for long.
-constexpr int most_circling = 2000;
+/// Of Algorithm 1 for its own sake: where it converges slowly its steps hardly shrink for long.
+constexpr target_shape::Patience patience = {2000, std::numeric_limits<double>::infinity(), true};
 
 void check_target_shape(const StaticsOptions& options) {
   if (options.beyond > 0)
@@ -62,7 +63,7 @@ void TargetShapeSolver::follow_turns(const Actuation& start, const StaticsOption
     if (options.solver == Solver::newton)
       newton_.solve(last, options, progress, team, result);
     else
-      target_shape::solve_local_global({model_, system_, global_}, options, most_circling, progress, team, result);
+      target_shape::solve_local_global({model_, system_, global_}, options, patience, progress, team, result);
     on_the_way += result.report.continuation_steps;
     if (result.report.status != Status::converged) break;
     last = result.actuation;

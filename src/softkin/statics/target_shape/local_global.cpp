@@ -39,18 +39,20 @@ class ErrorEstimate {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-/// Notices iterations that go round in circles: so many of which the least step is hardly shorter than before, and the
-/// least energy no smaller. Where that is the pace, no number of iterations that anybody waits for is enough.
+/// Notices iterations that go round in circles: so many of which the least step is hardly shorter than before, or is
+/// still far from the tolerance at that pace.
 class Stall {
  public:
-  explicit Stall(int window) : window_(window) {}
+  Stall(const Patience& patience, double tolerance_mm) : patience_(patience), tolerance_mm_(tolerance_mm) {}
 
   [[nodiscard]] bool add(const IterationRecord& record) {
     constexpr double hardly = 0.9, no_smaller = 1 - 1e-6;
     step_mm_ = std::min(step_mm_, record.step_mm);
     energy_ = std::min(energy_, record.energy);
-    if (++count_ % window_ != 0) return false;
-    const bool stalled = step_mm_ > hardly * best_step_mm_ && energy_ > no_smaller * best_energy_;
+    if (++count_ % patience_.iterations != 0) return false;
+    const double left = patience_.iterations * std::log(step_mm_ / tolerance_mm_) / std::log(best_step_mm_ / step_mm_);
+    const bool slow = step_mm_ > hardly * best_step_mm_ || left > patience_.most_left;
+    const bool stalled = slow && !(patience_.descends && energy_ <= no_smaller * best_energy_);
     best_step_mm_ = std::min(best_step_mm_, std::exchange(step_mm_, unlimited));
     best_energy_ = std::min(best_energy_, std::exchange(energy_, unlimited));
     return stalled;
@@ -59,7 +61,9 @@ class Stall {
  private:
   double step_mm_ = unlimited, energy_ = unlimited;  // least in this window
   double best_step_mm_ = unlimited, best_energy_ = unlimited;
-  int window_, count_ = 0;
+  Patience patience_;
+  double tolerance_mm_;
+  int count_ = 0;
 };
 
 double largest_marker_move(const Model& model, const Points& before, const Points& after) {
@@ -125,7 +129,7 @@ void LocalGlobal::extrapolate() {
   poses_ = global_.project(actuation_, positions_);
 }
 
-void solve_local_global(const Steps& steps, const StaticsOptions& options, int stalled_after,
+void solve_local_global(const Steps& steps, const StaticsOptions& options, const Patience& patience,
                         const ProgressCallback& progress, Team& team, Equilibrium& result) {
   SolveReport& report = result.report;
   report.solver = "local-global";
@@ -134,7 +138,7 @@ void solve_local_global(const Steps& steps, const StaticsOptions& options, int s
   LocalGlobal iteration(steps.system, steps.global, anderson, result.actuation, result.state.positions);
   System::Scratch scratch = steps.system.make_scratch();
   ErrorEstimate estimate;
-  Stall stall(stalled_after);
+  Stall stall(patience, report.tolerance_mm);
   while (report.iterations < options.max_iterations) {
     IterationRecord record;
     if (!iteration.iterate(scratch, team, record)) break;
@@ -149,7 +153,7 @@ void solve_local_global(const Steps& steps, const StaticsOptions& options, int s
       break;
     }
     if (stall.add(record)) {
-      report.remark = "the last " + std::to_string(stalled_after) + " iterations led nowhere";
+      report.remark = "the last " + std::to_string(patience.iterations) + " iterations led nowhere";
       break;
     }
     if (report.iterations < options.max_iterations) iteration.extrapolate();

@@ -50,12 +50,18 @@ struct Steps {
   const supports::GlobalStep& global;  // the global step
 };
 
+/// When iterations that lead nowhere end.
+struct Patience {
+  int iterations = 0;     // that go round in circles
+  double most_left = 0;   // at their pace; more is too long to wait for
+  bool descends = false;  // is it worth waiting for where the energy still falls
+};
+
 /// Algorithm 1 from result.state.positions until no vertex moves farther than report.tolerance_mm in an iteration, or
 /// to PublishedStop. Fills state.positions and the report, its seconds aside.
 ///
-/// stalled_after  iterations that go round in circles for so long end it
 /// source  Fang et al. 2020, Alg. 1, Eqs. (9)-(10)
-void solve_local_global(const Steps& steps, const StaticsOptions& options, int stalled_after,
+void solve_local_global(const Steps& steps, const StaticsOptions& options, const Patience& patience,
                         const ProgressCallback& progress, Team& team, Equilibrium& result);
 
 }  // namespace softkin::target_shape

@@ -16,8 +16,9 @@ constexpr int most_halvings = 12, few_halvings = 2;
 /// slender robots.
 constexpr double loosest = 1e-2, tightest = 1e-10;
 
-/// Steps of one run, and those of them that move nothing and yet do not end it.
-constexpr int most_steps = 200, most_idle_steps = 4;
+/// Steps of the run to what is asked for, of those to equilibria on the way, which are near, and those that move
+/// nothing and yet do not end a run.
+constexpr int most_steps = 80, most_steps_on_the_way = 40, most_idle_steps = 4;
 
 /// Accelerated local-global iterations at a time, and how many earlier ones each combines.
 constexpr int rescue = 50, rescue_window = 6;
@@ -44,9 +45,9 @@ using End = NewtonSearch::End;
 /// Local-global iterations that help Newton's method out in a run after which equilibria on the way are tried, and in
 /// one where these led nowhere either.
 constexpr int first_patience = rescue, patience = 300;
-/// Where nothing else is left Algorithm 1 is given up after so many iterations that lead nowhere: most such robots have
-/// no fixed point within reach, and its limit of iterations is for those who ask for it.
-constexpr int most_circling = 250;
+/// Of Algorithm 1 where nothing else is left: most such robots have no fixed point within reach, and its limit of
+/// iterations is for those who ask for it.
+constexpr Patience at_last = {100, 1000, false};
 
 /// Equilibria on the way from one actuation to another; the step is halved where one is not found and doubled where
 /// one is.
@@ -58,7 +59,7 @@ End follow(const Actuation& from, const Actuation& to, NewtonSearch& search, Poi
   while (share < 1) {
     const double next = std::min(1.0, share + step);
     positions = reached;
-    const End end = search.run(from + next * (to - from), 0, positions);
+    const End end = search.run(from + next * (to - from), most_steps_on_the_way, 0, positions);
     if (end == End::interrupted || end == End::exhausted || end == End::astray) return end;
     if (end == End::converged) {
       share = next;
@@ -259,7 +260,7 @@ IterationRecord NewtonSearch::here() const {
   return record;
 }
 
-NewtonSearch::End NewtonSearch::run(const Actuation& actuation, int left, Points& positions) {
+NewtonSearch::End NewtonSearch::run(const Actuation& actuation, int most, int left, Points& positions) {
   evaluate(actuation, positions);
   natural_start_ = 0;
   direction_.keep_factor = false;
@@ -270,7 +271,7 @@ NewtonSearch::End NewtonSearch::run(const Actuation& actuation, int left, Points
     return End::converged;
   }
   int idle = 0;
-  for (int i = 0; i < most_steps && idle < most_idle_steps && report_.iterations < options_.max_iterations; ++i) {
+  for (int i = 0; i < most && idle < most_idle_steps && report_.iterations < options_.max_iterations; ++i) {
     IterationRecord record = here();
     const Step step = newton_step(actuation, positions);
     if (step == Step::none) {
@@ -332,7 +333,7 @@ void Newton::solve(const Actuation& start, const StaticsOptions& options, const 
   std::unique_ptr<Workspace> workspace = take_workspace();
   workspace->home.resize(0, 3);
   NewtonSearch search(unknowns_, global_, *workspace, options, progress, team, report);
-  End end = search.run(result.actuation, first_patience, positions);
+  End end = search.run(result.actuation, most_steps, first_patience, positions);
   if (end == End::stuck) {
     positions = begin;
     const Actuation from = start.size() == result.actuation.size() ? start : unknowns_.model.rest_actuation();
@@ -341,14 +342,14 @@ void Newton::solve(const Actuation& start, const StaticsOptions& options, const 
   if (end == End::stuck) {
     positions = begin;
     report.continuation_steps = 1;
-    end = search.run(result.actuation, patience, positions);
+    end = search.run(result.actuation, most_steps, patience, positions);
   }
   if (end == End::converged && report.factorisations > 0) workspace->home = positions;
   put_back(std::move(workspace));
   if (end == End::stuck) {
     positions = begin;
     report.continuation_steps = 1;
-    solve_local_global({unknowns_.model, unknowns_.system, global_}, options, most_circling, progress, team, result);
+    solve_local_global({unknowns_.model, unknowns_.system, global_}, options, at_last, progress, team, result);
     report.solver = "newton";
     if (report.status != Status::converged)
       report.remark = "neither Newton's method nor Algorithm 1 converged" +

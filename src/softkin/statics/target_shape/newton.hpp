@@ -30,8 +30,9 @@ class NewtonSearch {
 
   /// From positions to the equilibrium at an actuation; positions are the last shape.
   ///
-  /// patience  local-global iterations that may be put in where Newton's method does not get on
-  End run(const Actuation& actuation, int patience, Points& positions);
+  /// most_steps  of Newton's method
+  /// patience    local-global iterations that may be put in where Newton's method does not get on
+  End run(const Actuation& actuation, int most_steps, int patience, Points& positions);
 
  private:
   enum class Step { full, shortened, none };
