@@ -126,9 +126,10 @@ Effort effort_of(const SolveReport& report, bool physical) {
 
 void tell(const SolveReport& report) {
   for (const TracedStep& step : report.trace)
-    std::printf("  %s%s%.5g to %.5g: %d iterations, %d factorisations, %d projections%s%s\n", step.along.c_str(),
-                step.along.empty() ? "" : " ", step.from, step.to, step.iterations, step.factorisations,
-                step.projections, step.taken ? ", taken" : "", step.why.empty() ? "" : (": " + step.why).c_str());
+    std::printf("  %s%s%.5g to %.5g, a step of %.3g: %d iterations, %d factorisations, %d projections%s%s\n",
+                step.along.c_str(), step.along.empty() ? "" : " ", step.from, step.to, step.length, step.iterations,
+                step.factorisations, step.projections, step.taken ? ", taken" : "",
+                step.why.empty() ? "" : (": " + step.why).c_str());
 }
 
 void solve_all(const RandomCase& robot, bool verbose, bool trace, RunResult& run, std::vector<std::string>& faults) {

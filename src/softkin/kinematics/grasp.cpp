@@ -26,6 +26,17 @@ ProgressCallback told(const GraspProgress& progress, const std::string& doing) {
   return [&progress, doing](const Progress& p) { return progress(doing, p); };
 }
 
+/// How far a body's centre moved [mm].
+double moved(const FreeBody& body, const Points& from, const Points& to) {
+  return (body.center.at(to) - body.center.at(from)).norm();
+}
+
+/// The longest edge of the box around a body [mm].
+double size_mm(const Model& model, const FreeBody& body) {
+  const Points surface = model.rest(body.vertices, Eigen::all);
+  return (surface.colwise().maxCoeff() - surface.colwise().minCoeff()).maxCoeff();
+}
+
 /// From equilibrium to equilibrium, as long as there is one.
 class Closing {
  public:
@@ -83,7 +94,14 @@ Grasp close_around(const Statics& statics, const std::vector<Actuation>& closing
     if (stage) stage(doing, grasp.last);
   }
   const Actuation released = pulled(model, closing.back(), body, Vec3::UnitX(), 0);
-  grasp.held = gripper.go(released, "releasing " + name, name + " is not held when it is released");
+  const std::string not_held = name + " is not held when it is released";
+  const Points closed = grasp.last.state.positions;
+  grasp.held = gripper.go(released, "releasing " + name, not_held);
+  const double moved_mm = moved(body_at(model, body), closed, grasp.last.state.positions);
+  if (grasp.held && moved_mm > size_mm(model, body_at(model, body))) {
+    grasp.held = false;
+    grasp.remark = not_held + ": it comes to rest " + number(moved_mm, 4) + " mm away";
+  }
   if (stage && grasp.held) stage("releasing " + name, grasp.last);
   return grasp;
 }
@@ -247,7 +265,7 @@ Pull largest_pull(const Statics& statics, const State& grasp, const PullTask& ta
   const double presses = std::max(gravity * held.mass_kg, pressed(model, body, statics.measured(grasp)).normal_N);
   const double first = presses > 0 ? begin_share * presses : least_share * most_pull(model, body);
   Pulling(statics, grasp, body, options, progress, pull).to_limit(first, most);
-  pull.moved_mm = (held.center.at(pull.last.state.positions) - held.center.at(grasp.positions)).norm();
+  pull.moved_mm = moved(held, grasp.positions, pull.last.state.positions);
   pull.pressed = pressed(model, body, statics.measured(pull.last.state));
   return pull;
 }

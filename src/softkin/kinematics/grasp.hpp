@@ -28,7 +28,7 @@ using GraspStage = std::function<void(const std::string& done, const Equilibrium
 
 /// A gripper that was closed around its bodies and has let go of one.
 struct Grasp {
-  bool held = false;   // is there an equilibrium without what held the body?
+  bool held = false;   // is there an equilibrium without what held the body, no farther away than it is long?
   std::string remark;  // what was not found and why, where not held
   Equilibrium last;    // the grasp, where held; else as far as it came
 };
@@ -37,7 +37,7 @@ struct Grasp {
 ///
 /// closing  actuations, at least one
 /// body     index into model.bodies
-/// returns  that a step has no equilibrium, or the body falls, is not held
+/// returns  that a step has no equilibrium, or the body falls, be it onto something, is not held
 /// throws   InvalidInput as pulled() and Statics::solve do, and without a step
 [[nodiscard]] Grasp close_around(const Statics& statics, const std::vector<Actuation>& closing, Index body,
                                  const StaticsOptions& options = {}, const GraspProgress& progress = {},

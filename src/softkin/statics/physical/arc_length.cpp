@@ -29,12 +29,15 @@ constexpr double farthest_back = -1;
 
 }  // namespace
 
-/// How far it is from a point to where the share is largest before another one, by a cubic.
+/// How far it is from a point to where the share is largest before another one, by a cubic; and how large it is there.
 double ArcLength::largest_between(const Point& low, const Beyond& high) {
   const double length = high.away, rise = (high.share - low.share) / length;
   const double a = (low.slope + high.slope - 2 * rise) / (length * length),
                b = (3 * rise - 2 * low.slope - high.slope) / length, c = low.slope;
-  return std::min(length, c / (std::sqrt(std::max(0.0, b * b - 3 * a * c)) - b));  // the root at which it falls
+  const double top =
+      std::min(length, c / (std::sqrt(std::max(0.0, b * b - 3 * a * c)) - b));  // the root where it falls
+  largest_ = low.share + top * (c + top * (b + top * a));
+  return top;
 }
 
 ArcLength::ArcLength(Settler& settler, StepTracer& tracer, const Equilibria::Options& options, const Route& route)

@@ -31,6 +31,8 @@ class ArcLength : Follower {
 
   /// Share at the last one.
   [[nodiscard]] double done() const { return route_.done; }
+  /// The largest share, where the curve turned, about.
+  [[nodiscard]] double largest() const { return largest_; }
   /// Over which it came to that, where it lies beyond a turn.
   [[nodiscard]] const std::optional<Jump>& jump() const { return jump_; }
 
@@ -66,13 +68,14 @@ class ArcLength : Follower {
   std::optional<Point> next(const Point& from, Pace& pace);
   std::optional<Point> go(const Point& from, double length);
   bool correct(const Point& from, double length, Point& point);
-  [[nodiscard]] static double largest_between(const Point& low, const Beyond& high);
+  [[nodiscard]] double largest_between(const Point& low, const Beyond& high);
   [[nodiscard]] bool holds(const Point& point) const;
   bool keep(const Point& found, Iterate& at);
   End go_beyond(Point last, Iterate& at);
 
   Route route_;
   std::optional<Jump> jump_{};
+  double largest_ = 0;
   double missed_ = 0;     // by the last step, over its length
   const char* why_ = "";  // it was not found
   bool interrupted_ = false;

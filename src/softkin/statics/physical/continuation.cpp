@@ -17,8 +17,9 @@ bool same_shape(const Points& a, const Points& b) {
 /// Where weights are foretold to move something farther than this share of the diagonal, and something is in the way,
 /// what touches is looked for first.
 constexpr double far = 0.2;
-/// Shortest step of the continuation, over the way asked for.
-constexpr double least_advance = 1e-4;
+/// Shortest step of the continuation, over the way asked for; and where some of it was gone and nothing touches, over
+/// the way and over that, whichever is less: what is asked for may be a thousand times what is borne.
+constexpr double least_advance = 1e-4, least_of_way = 5e-4, least_of_gone = 0.005;
 /// A step that moves no vertex farther than so many tolerances and yet fails leads nowhere.
 constexpr double least_move = 1000;
 /// The same where things touch, over the contact distance: what sticks moves by a hundredth of that.
@@ -27,6 +28,8 @@ constexpr double least_contact_move = 1e-4;
 constexpr double most_turn = 30;
 /// Share of a step that is not worth another one at the end of a way.
 constexpr double least_left = 0.1;
+/// A step leads at most half the way to where one led nowhere, until that is this much nearer than it was then.
+constexpr double much_nearer = 0.35;
 /// In steps shorter than this an equilibrium is followed where it is unstable; and few factors tell where it ends.
 constexpr double follow_below = 0.05;
 /// Under a growing load an equilibrium this many times as far from the predicted shape as that is from the last one
@@ -232,6 +235,8 @@ Climb::End Continuation::climb(Climb::End (Climb::*along)(Iterate&), Index load,
 
 /// Where the next step ends. One that leaves hardly anything is as long as what is left.
 double Continuation::next_share() {
+  const double gap = way_.failed.share - way_.done;
+  if (gap > much_nearer * way_.failed.ahead) way_.advance = std::min(way_.advance, 0.5 * gap);
   const double turn = system_.placement().largest_turn(way_.from, way_.to);
   if (way_.advance * turn > most_turn) way_.advance = most_turn / turn;
   const double ahead = way_.done + way_.advance;
@@ -264,7 +269,6 @@ Continuation::StepEnd Continuation::judge(Newton::Outcome outcome, const Demand&
                                                            : ""};
   end.blocked = outcome == Newton::Outcome::blocked || outcome == Newton::Outcome::too_far;
   end.found = outcome != Newton::Outcome::stuck && !end.blocked;
-  end.hurried = outcome == Newton::Outcome::stuck && settler_.newton().hurried();
   const auto reject = [&](const char* because) {
     end.found = false;
     end.why = because;
@@ -313,8 +317,8 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
     trace(false, came.why);
     way_.factorised = came.blocked;
     settler_.active = active;
-    if (!came.blocked) way_.failed = way_.failed > way_.done ? std::min(way_.failed, next) : next;
-    end = shorten(length, came.hurried, at);
+    if (!came.blocked) way_.failed.note(next, way_.done);
+    end = shorten(length, at);
   } else if (length > 1.001 * longest) {
     trace(false,
           came.snap ? "it jumps: shorter ones may not" : "it is unstable: a shorter one shows where it becomes so");
@@ -348,11 +352,11 @@ void Continuation::lengthen(int iterations, bool unstable, Iterate& at) {
 /// something begins to touch in most steps.
 double Continuation::lengthened(int iterations) const {
   if (system_.contact()) return iterations <= 15 ? 3 : iterations <= 30 ? 2 : 1;
-  return iterations <= 5 ? 2 : iterations <= 9 ? 1.4 : 0.8;
+  return iterations <= 7 ? 2 : iterations <= 12 ? 1.5 : 1;
 }
 
-/// After a step that led to no equilibrium. Before a limit is told, one that hurried has every iteration.
-std::optional<Status> Continuation::shorten(double length, bool hurried, Iterate& at) {
+/// After a step that led to no equilibrium.
+std::optional<Status> Continuation::shorten(double length, Iterate& at) {
   const std::vector<bool> active = settler_.active;
   if (way_.load >= 0) {  // along what the load does
     const Climb::End end = climb(&Climb::up, std::exchange(way_.load, -1), at);
@@ -367,8 +371,8 @@ std::optional<Status> Continuation::shorten(double length, bool hurried, Iterate
   const ArcLength::End curve = follow_curve(at);
   if (curve == ArcLength::End::interrupted) return Status::interrupted;
   if (curve == ArcLength::End::turned) {
-    if (way_.loads_change) return limit(way_.done, beyond_here(), at);
-    way_.advance = finest;  // may jump to what is stable beyond
+    if (way_.loads_change && !way_.bears_all) return limit(way_.done, beyond_here(), at);
+    way_.advance = way_.bears_all ? 1 - way_.done : finest;  // may jump to what is stable beyond
     way_.thorough = true;
   }
   if (curve != ArcLength::End::lost) return std::nullopt;
@@ -382,15 +386,19 @@ std::optional<Status> Continuation::shorten(double length, bool hurried, Iterate
   double least = least_move * options_.tolerance_mm;
   if (system_.contact()) least = std::min(least, least_contact_move * system_.model().contact.distance_mm);
   const bool leads_nowhere = !way_.releases && step_.move_mm < least;
-  const bool ends = way_.advance < least_advance || leads_nowhere || way_.turned;
-  if (ends && hurried) {
-    way_.advance = length;
-    way_.thorough = true;
-    return std::nullopt;
-  }
   way_.thorough = false;
-  if (ends) return limit(way_.done, beyond_here(), at);
+  if (way_.advance < shortest_advance() || leads_nowhere || way_.turned) return limit(way_.done, beyond_here(), at);
   return std::nullopt;
+}
+
+double Continuation::shortest_advance() const {
+  if (system_.contact() || way_.releases) return least_advance;
+  return std::max(least_advance, std::min(least_of_way, least_of_gone * way_.done));
+}
+
+void Continuation::Failed::note(double at, double done) {
+  share = share > done ? std::min(share, at) : at;
+  ahead = share - done;
 }
 
 /// An equilibrium on the way; false: interrupted.

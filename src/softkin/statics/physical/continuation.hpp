@@ -37,7 +37,6 @@ class Continuation {
     std::string why{};                    // it ended
     bool found = false, blocked = false;  // an equilibrium; the way there
     bool snap = false, unstable = false;  // of what was found
-    bool hurried = false;                 // had it led on with every iteration, perhaps
   };
   /// Where a step came out that jumped: what is left where shorter ones find nothing.
   struct Beyond {
@@ -47,6 +46,14 @@ class Continuation {
     std::vector<bool> active;
     Judgement last;
     double jump_mm = 0;
+  };
+
+  /// The nearest share ahead at which a step led nowhere.
+  struct Failed {
+    double share = 0;  // 0: none
+    double ahead = 0;  // how far it was then
+
+    void note(double at, double done);
   };
 
   /// The way asked for, and how far it was gone.
@@ -59,13 +66,14 @@ class Continuation {
     bool factorised = false;  // the stiffness here
     std::optional<Beyond> beyond{};
     std::optional<Demand> then{};  // where the next way leads
-    double failed = 0;             // the nearest share ahead at which a step led nowhere; 0: none
-    bool thorough = true;          // is the next step given every iteration
-    double before = 0;             // share of all that was asked, gone on ways before
-    double marked = 0;             // the last share at which it was getting on
+    Failed failed{};
+    bool thorough = true;  // is the next step given every iteration
+    double before = 0;     // share of all that was asked, gone on ways before
+    double marked = 0;     // the last share at which it was getting on
     int marked_iterations = 0;
     int misses = 0, next_look = 2;  // steps that led nowhere, and after how many the curve is followed
     bool turned = false;            // does it turn back here
+    bool bears_all = false;         // beyond what is left, about
 
     [[nodiscard]] WholeWay whole() const { return {before, then.has_value()}; }
   };
@@ -115,7 +123,8 @@ class Continuation {
   [[nodiscard]] double longest_step(bool snap, bool unstable) const;
   void lengthen(int iterations, bool unstable, Iterate& at);
   [[nodiscard]] double lengthened(int iterations) const;
-  std::optional<Status> shorten(double length, bool hurried, Iterate& at);
+  std::optional<Status> shorten(double length, Iterate& at);
+  [[nodiscard]] double shortest_advance() const;
   [[nodiscard]] bool ends_early(bool short_step) const;
 
   // the end

@@ -21,6 +21,8 @@ constexpr double least_shift = 1e-5, least_limp_shift = 1e-4, most_shift = 100;
 constexpr double worthwhile_balance = 0.7;
 /// Of the diagonal, that the last steps may lead away from the factor whose negative pivots are told.
 constexpr double near_factor = 2e-4;
+/// Of the diagonal, that a step of a shape that anybody wants to see may move a vertex.
+constexpr double runaway = 10;
 /// Factors of a solve that is brief.
 constexpr int most_briefly = 10;
 /// A solve that got stuck may have done so by rounding where its last step was so many tolerances at most.
@@ -225,7 +227,6 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
   const Outcome outcome = descend(policy, factorised, at);
   if (outcome != Outcome::stuck) return outcome;
   const bool in_single = report_.factorisations - report_.factorisations_in_double != before && !system_.contact();
-  ending_.hurried = ending_.hurried || (ending_.brief && in_single);
   const bool rounded = ending_.rounded || report_.step_mm < near_tolerance * settings_.tolerance_mm;
   if (!in_single || ending_.brief || !rounded) return outcome;
   at = start_;
@@ -277,13 +278,16 @@ Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
           policy == Policy::near && factor_.negative > 0 ? step_to_stable(at, damping) : steps_from_here(at, damping);
       if (policy == Policy::near) policy = Policy::descend;
     }
+    if (advance == Advance::made && report_.step_mm > runaway * system_.model().diagonal_mm) {
+      ending_.why = "the shape runs away";
+      return Outcome::stuck;
+    }
     if (advance == Advance::arrived && (improve_balance() || improve_constraints())) {
       advance = Advance::made;
       policy = Policy::follow;  // a stiffness that was made positive makes steps small where forces are not
     }
   }
   if (advance == Advance::interrupted) return Outcome::interrupted;
-  ending_.hurried = ending_.hurried || (ending_.brief && advance == Advance::made);
   if (advance != Advance::arrived) {
     if (!std::isfinite(imbalance_.residual) || report_.step_mm >= settings_.tolerance_mm) return Outcome::stuck;
     (void)reject(at);  // the last step was small enough, and none follows it

@@ -34,10 +34,7 @@ class Newton {
   /// For its life, where a shorter step is worth more than patience: few factors, and none again in double precision.
   class Brief {
    public:
-    Brief(Newton& newton, bool brief) : newton_(newton) {
-      newton_.ending_.brief = brief;
-      newton_.ending_.hurried = false;
-    }
+    Brief(Newton& newton, bool brief) : newton_(newton) { newton_.ending_.brief = brief; }
     ~Brief() { newton_.ending_.brief = false; }
     Brief(const Brief&) = delete;
     Brief& operator=(const Brief&) = delete;
@@ -45,8 +42,6 @@ class Newton {
    private:
     Newton& newton_;
   };
-  /// Was a solve that got stuck since the last of these began too brief to tell?
-  [[nodiscard]] bool hurried() const { return ending_.hurried; }
   /// Does who asked for the solve let it go on? Asked before what takes as long as many iterations.
   [[nodiscard]] bool goes_on() const;
 
@@ -121,7 +116,6 @@ class Newton {
   /// How a solve is to end, and how the last one did.
   struct Ending {
     bool brief = false;    // after a few factors
-    bool hurried = false;  // did one end by that
     bool rounded = false;  // did the last one get stuck by rounding, perhaps
     const char* why = "";  // did the last one get stuck
   };

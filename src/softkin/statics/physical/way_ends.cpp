@@ -15,10 +15,12 @@ namespace {
 
 /// Share of normal forces whose friction gives way, from which on it is told where the way ends.
 constexpr double worth_telling = 0.5;
-/// A way on which so many iterations bring less than this share of it leads nowhere. Where things come to touch the
-/// next share may take hundreds, and those after it few.
-constexpr int patience = 200, patience_at_contact = 500;
-constexpr double least_progress = 0.01;
+/// A way on which so many iterations bring less than this share of it leads nowhere. Where things come to touch, or a
+/// body is released, the next share may take hundreds, and those after it few.
+constexpr int patience = 100, patience_at_contact = 250;
+constexpr double least_progress = 0.02, least_progress_at_contact = 0.01;
+/// So much more than before is worth as many again: what is asked for may be a thousand times what is borne.
+constexpr double much_gained = 2;
 
 }  // namespace
 
@@ -69,14 +71,16 @@ bool Continuation::leads_too_far(const Demand& here, const Demand& there, const 
 ArcLength::End Continuation::follow_curve(Iterate& at) {
   if (++way_.misses < way_.next_look || way_.turned || settler_.last.modes > 0 || way_.releases || system_.kinked())
     return ArcLength::End::lost;
-  ArcLength curve(settler_, tracer_, options_,
-                  {way_.from, way_.to, way_.done, way_.failed > way_.done ? way_.failed : 1, options_.stable});
+  ArcLength curve(
+      settler_, tracer_, options_,
+      {way_.from, way_.to, way_.done, way_.failed.share > way_.done ? way_.failed.share : 1, options_.stable});
   const ArcLength::End end = curve.follow(at);
   way_.factorised = false;
   const double gone = curve.done() - way_.done;
   way_.next_look = gone > 0 ? way_.misses + 1 : 2 * way_.misses;
   if (gone > 0) pass(between(way_.from, way_.to, curve.done()), curve.done());
   way_.turned = end == ArcLength::End::turned;
+  way_.bears_all = way_.turned && curve.largest() >= 1;
   if (const auto& jump = curve.jump()) tell_snap(jump->move_mm, whole(jump->share), report_);
   if (end == ArcLength::End::passed) way_.advance = std::max(way_.advance, gone);
   return end;
@@ -157,14 +161,16 @@ void Continuation::take_beyond(Iterate& at) {
 }
 
 std::optional<Status> Continuation::out_of_patience(const Iterate& at) {
-  if (way_.done - way_.marked >= least_progress) {
+  const bool jerky = system_.contact() || way_.releases;
+  const int most = jerky ? patience_at_contact : patience;
+  const double least = jerky ? least_progress_at_contact : least_progress;
+  if (way_.done - way_.marked >= least || (!jerky && way_.done > much_gained * way_.marked)) {
     way_.marked = way_.done;
     way_.marked_iterations = report_.iterations;
-  } else if (const int most = system_.contact() ? patience_at_contact : patience;
-             way_.done < 1 && report_.iterations - way_.marked_iterations >= most) {
+  } else if (way_.done < 1 && report_.iterations - way_.marked_iterations >= most) {
     return limit(way_.done,
                  "the way there goes on in ever smaller steps: " + std::to_string(most) +
-                     " iterations brought less than 1 % of it",
+                     " iterations brought less than " + number(100 * least, 2) + " % of it",
                  at);
   }
   if (way_.done == 1 || report_.iterations < options_.max_iterations) return std::nullopt;
