@@ -84,7 +84,8 @@ Pressed pressed(const Model& model, Index body, const ElementDeformation& shape)
 Grasp close_around(const Statics& statics, const std::vector<Actuation>& closing, Index body,
                    const StaticsOptions& options, const GraspProgress& progress, const GraspStage& stage) {
   const Model& model = statics.model();
-  const std::string name = "'" + body_at(model, body).name + "'";
+  const FreeBody& held = body_at(model, body);
+  const std::string name = "'" + held.name + "'";
   if (closing.empty()) throw InvalidInput("a grasp needs an actuation that the gripper closes with");
   Grasp grasp;
   Closing gripper(statics, options, progress, grasp);
@@ -97,8 +98,8 @@ Grasp close_around(const Statics& statics, const std::vector<Actuation>& closing
   const std::string not_held = name + " is not held when it is released";
   const Points closed = grasp.last.state.positions;
   grasp.held = gripper.go(released, "releasing " + name, not_held);
-  const double moved_mm = moved(body_at(model, body), closed, grasp.last.state.positions);
-  if (grasp.held && moved_mm > size_mm(model, body_at(model, body))) {
+  const double moved_mm = moved(held, closed, grasp.last.state.positions);
+  if (grasp.held && moved_mm > size_mm(model, held)) {
     grasp.held = false;
     grasp.remark = not_held + ": it comes to rest " + number(moved_mm, 4) + " mm away";
   }

@@ -392,7 +392,7 @@ std::optional<Status> Continuation::shorten(double length, Iterate& at) {
 }
 
 double Continuation::shortest_advance() const {
-  if (system_.contact() || way_.releases) return least_advance;
+  if (jerky()) return least_advance;
   return std::max(least_advance, std::min(least_of_way, least_of_gone * way_.done));
 }
 

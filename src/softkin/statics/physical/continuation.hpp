@@ -126,6 +126,7 @@ class Continuation {
   std::optional<Status> shorten(double length, Iterate& at);
   [[nodiscard]] double shortest_advance() const;
   [[nodiscard]] bool ends_early(bool short_step) const;
+  [[nodiscard]] bool jerky() const { return system_.contact() || way_.releases; }
 
   // the end
   Status arrive(const Demand& demand, Iterate& at);

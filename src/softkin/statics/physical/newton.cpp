@@ -21,8 +21,6 @@ constexpr double least_shift = 1e-5, least_limp_shift = 1e-4, most_shift = 100;
 constexpr double worthwhile_balance = 0.7;
 /// Of the diagonal, that the last steps may lead away from the factor whose negative pivots are told.
 constexpr double near_factor = 2e-4;
-/// Of the diagonal, that a step of a shape that anybody wants to see may move a vertex.
-constexpr double runaway = 10;
 /// Factors of a solve that is brief.
 constexpr int most_briefly = 10;
 /// A solve that got stuck may have done so by rounding where its last step was so many tolerances at most.
@@ -277,10 +275,6 @@ Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
       advance =
           policy == Policy::near && factor_.negative > 0 ? step_to_stable(at, damping) : steps_from_here(at, damping);
       if (policy == Policy::near) policy = Policy::descend;
-    }
-    if (advance == Advance::made && report_.step_mm > runaway * system_.model().diagonal_mm) {
-      ending_.why = "the shape runs away";
-      return Outcome::stuck;
     }
     if (advance == Advance::arrived && (improve_balance() || improve_constraints())) {
       advance = Advance::made;

@@ -12,6 +12,8 @@ namespace softkin::physical {
 namespace {
 
 constexpr double least_damping = 1e-3;
+/// Of the diagonal, that a step of a shape that anybody wants to see may move a vertex.
+constexpr double runaway = 10;
 /// Of the merit function's slope, that a step must bring.
 constexpr double worthwhile_descent = 1e-4;
 /// Of the steepest slope, that one must have to be followed for its own sake where nothing touches.
@@ -173,6 +175,10 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
       ending_.rounded = true;  // near a singular stiffness it may be by rounding, and nothing else shows it
       return Advance::none;
     }
+  }
+  if (damping * step_.size.largest > runaway * system_.model().diagonal_mm) {
+    ending_.why = "the shape runs away";
+    return Advance::none;
   }
   note_pace(damping);
   if (labours(damping)) {

@@ -161,10 +161,9 @@ void Continuation::take_beyond(Iterate& at) {
 }
 
 std::optional<Status> Continuation::out_of_patience(const Iterate& at) {
-  const bool jerky = system_.contact() || way_.releases;
-  const int most = jerky ? patience_at_contact : patience;
-  const double least = jerky ? least_progress_at_contact : least_progress;
-  if (way_.done - way_.marked >= least || (!jerky && way_.done > much_gained * way_.marked)) {
+  const int most = jerky() ? patience_at_contact : patience;
+  const double least = jerky() ? least_progress_at_contact : least_progress;
+  if (way_.done - way_.marked >= least || (!jerky() && way_.done > much_gained * way_.marked)) {
     way_.marked = way_.done;
     way_.marked_iterations = report_.iterations;
   } else if (way_.done < 1 && report_.iterations - way_.marked_iterations >= most) {
