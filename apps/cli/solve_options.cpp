@@ -120,7 +120,8 @@ void add_turn(CLI::App& command, std::vector<std::string>& turn) {
 }
 
 void add_solver(CLI::App& command, SolveOptions& options, const std::string& threads) {
-  const StaticsOptions defaults;
+  StaticsOptions newton, local_global;
+  local_global.solver = Solver::local_global;
   add_value(command, "--formulation", options.formulation, "NAME",
             "physical: elastic laws, pressures, tensions and forces;\ntarget-shape: Fang et al. 2020; default: "
             "the scene's",
@@ -133,14 +134,15 @@ void add_solver(CLI::App& command, SolveOptions& options, const std::string& thr
             "Stop when no vertex moves farther than this in an iteration\n[mm]; default: 8e-8 of the robot's "
             "diagonal, which is the\npaper's 1e-5 mm on its robots",
             finite_number(false));
-  add_value(command, "--max-iterations", options.max_iterations, "N",
-            "Give up on a step after so many, of Newton's method or of\nAlgorithm 1 (default: " +
-                std::to_string(defaults.max_iterations) + ")",
-            integer_from(1, most_iterations));
+  add_value(
+      command, "--max-iterations", options.max_iterations, "N",
+      "Give up on a shape after so many, of Newton's method (default: " + std::to_string(newton.iteration_limit()) +
+          ")\nor of Algorithm 1 (" + std::to_string(local_global.iteration_limit()) + ")",
+      integer_from(1, most_iterations));
   add_value(command, "--anderson", options.anderson, "N",
             "local-global: earlier iterations that Anderson acceleration\ncombines, 0 to 20; 0: Algorithm 1 as "
             "printed (default: " +
-                std::to_string(defaults.anderson) + ")",
+                std::to_string(newton.anderson) + ")",
             integer_from(0, 20));
   command.add_flag(
       "--stable", options.stable,

@@ -22,8 +22,8 @@ class Solver:
     """'newton', or for target shapes 'local-global': Algorithm 1 of Fang et al. 2020"""
     tolerance_mm: float | None = None
     """largest move of a vertex at which it stops [mm]; None: 8e-8 of the robot's size"""
-    max_iterations: int = 50000
-    """>= 1"""
+    max_iterations: int | None = None
+    """>= 1, of a shape; None: 500 of Newton's method, 50,000 of Algorithm 1"""
     anderson: int = 6
     """local-global: earlier steps that are combined, 0 to 20"""
     threads: int = 0

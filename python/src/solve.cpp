@@ -67,20 +67,22 @@ void bind_solve(nb::module_& module) {
   nb::class_<StaticsOptions>(module, "SolveOptions", "How equilibria are solved.")
       .def(
           "__init__",
-          [](StaticsOptions* self, const std::string& solver, double tolerance_mm, int max_iterations, int anderson,
-             int threads, bool stable, bool as_published) {
+          [](StaticsOptions* self, const std::string& solver, double tolerance_mm, std::optional<int> max_iterations,
+             int anderson, int threads, bool stable, bool as_published) {
             if (solver != "newton" && solver != "local-global")
               throw InvalidInput("solver must be 'newton' or 'local-global', not '" + solver + "'");
+            if (max_iterations && *max_iterations < 1)
+              throw InvalidInput("max_iterations must be at least 1, not " + std::to_string(*max_iterations));
             auto* options = new (self) StaticsOptions();
             options->solver = solver == "newton" ? Solver::newton : Solver::local_global;
             options->step_tolerance_mm = tolerance_mm;
-            options->max_iterations = max_iterations;
+            options->max_iterations = max_iterations.value_or(0);
             options->anderson = anderson;
             options->threads = threads;
             options->stable = stable;
             options->as_published = as_published;
           },
-          nb::arg("solver"), nb::arg("tolerance_mm"), nb::arg("max_iterations"), nb::arg("anderson"),
+          nb::arg("solver"), nb::arg("tolerance_mm"), nb::arg("max_iterations").none(), nb::arg("anderson"),
           nb::arg("threads"), nb::arg("stable"), nb::arg("as_published"))
       .def_ro("as_published", &StaticsOptions::as_published)
       .def(

@@ -263,7 +263,7 @@ def test_solver_options(robot: softkin.Robot, shape: softkin.Shape) -> None:
         (([1, 1, np.inf],), {}, r"actuation\[2\] is inf"),
         ((), {"start": np.zeros((3, 3))}, r"start must have shape \(324, 3\), not \(3, 3\)"),
         ((), {"tolerance_mm": -1}, "the tolerance must be a length > 0 in mm, not -1"),
-        ((), {"solver": softkin.Solver(max_iterations=0)}, "iterations >= 1"),
+        ((), {"max_iterations": 0}, "max_iterations must be at least 1, not 0"),
         ((), {"solver": "local-global"}, "is for the target-shape formulation"),
         ((), {"solver": "magic"}, "solver must be 'newton' or 'local-global', not 'magic'"),
     ],

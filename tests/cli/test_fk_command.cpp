@@ -241,9 +241,10 @@ TEST(FkCommand, NotConvergingIsMarkedEverywhere) {
   const std::string good_shape = read_text(shape), good_picture = read_text(picture);
   const ProgramResult result = run("1");
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_EQ(result.errors,
-            "softkin: not converged: the iterations allowed were not enough, and the shape is that after 1 iteration, "
-            "not an equilibrium\n");
+  EXPECT_EQ(
+      result.errors,
+      "softkin: not converged: the limit of 1 iteration (max_iterations) was reached, and the shape is that after 1 "
+      "iteration, not an equilibrium\n");
   EXPECT_NE(result.output.find("  not converged\n"), std::string::npos) << result.output;
   const json step = json::parse(read_text(folder / "a.json"))["steps"][0];
   EXPECT_EQ(step["status"], "not converged");

@@ -85,7 +85,6 @@ bool make_film(Making& m) {
     m.made.commands.push_back(Actuation::Constant(1, air.low + draw.between(0, 1) * (air.high - air.low)));
   m.made.spec = std::move(spec);
   m.made.options.threads = 1;
-  m.made.options.max_iterations = 1500;
   return true;
 }
 

@@ -232,7 +232,6 @@ void make_options(Making& m) {
   StaticsOptions& options = m.made.options;
   options.threads = 1;
   options.keep_history = m.draw.chance(0.1);
-  options.max_iterations = 1500;
   if (!m.physical && m.draw.chance(0.15)) options.solver = Solver::local_global;
   if (!m.made.sensible && m.draw.chance(0.01)) options.solver = Solver::local_global;
   if (options.solver == Solver::local_global && m.draw.chance(0.3)) options.anderson = m.draw.whole(0, 20);

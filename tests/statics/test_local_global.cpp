@@ -305,7 +305,7 @@ TEST(LocalGlobal, RefusesWhatItCannotSolve) {
   EXPECT_THROW((void)statics.solve(one(4.1), start), InvalidInput);
   EXPECT_THROW((void)statics.solve(one(std::nan("")), start), InvalidInput);
   StaticsOptions options = local_global();
-  options.max_iterations = 0;
+  options.max_iterations = -1;
   EXPECT_THROW((void)statics.solve(one(1.2), start, options), InvalidInput);
   start.positions(3, 1) = std::nan("");
   EXPECT_THROW((void)statics.solve(one(1.2), start), InvalidInput);

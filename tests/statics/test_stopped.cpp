@@ -164,6 +164,51 @@ TEST(Stopped, ATargetShapeToo) {
   }
 }
 
+/// What arrives with the last iteration that it may take has arrived, to the last bit; with one less it has its last
+/// good shape and share, from which it goes on.
+TEST(Stopped, ByItsLimitOfIterations) {
+  RobotSpec target = bending_finger();
+  target.formulation = Formulation::target_shape;
+  target.materials[0].shape_ratio = 1;
+  for (const RobotSpec& spec : {bending_finger(), cable_beam(), target}) {
+    const Model model = compile(spec);
+    const Statics statics(model);
+    Actuation asked = Actuation::Constant(std::ssize(model.actuators), 1.5);
+    if (model.actuators.size() == 2) asked[0] = 0.6;
+    StaticsOptions options;
+    options.reuse_factor = false;
+    const Equilibrium found = statics.solve(asked, statics.rest(), options);
+    ASSERT_EQ(found.report.status, Status::converged) << found.report.remark;
+    ASSERT_GT(found.report.iterations, 3);
+    options.max_iterations = found.report.iterations;
+    const Equilibrium just = statics.solve(asked, statics.rest(), options);
+    EXPECT_EQ(just.report.status, Status::converged) << just.report.remark;
+    EXPECT_EQ(just.state.positions, found.state.positions);
+    --options.max_iterations;
+    const Equilibrium cut = statics.solve(asked, statics.rest(), options);
+    EXPECT_EQ(cut.report.status, Status::not_converged);
+    EXPECT_EQ(cut.report.iterations, options.max_iterations);
+    EXPECT_FALSE(cut.report.stopped);  // so that a path goes on
+    EXPECT_EQ(cut.report.remark,
+              "the limit of " + std::to_string(options.max_iterations) + " iterations (max_iterations) was reached");
+    const Equilibrium on = statics.solve(asked, cut.state, {});
+    EXPECT_EQ(on.report.status, Status::converged) << on.report.remark;
+    EXPECT_LT((on.state.positions - found.state.positions).rowwise().norm().maxCoeff(), 1e-4);
+  }
+}
+
+/// Who stops at the same iteration has stopped it.
+TEST(Stopped, ByWhoAsksAtItsLimitOfIterations) {
+  const Model model = compile(bending_finger());
+  const Statics statics(model);
+  StaticsOptions options;
+  options.max_iterations = 2;
+  const Equilibrium found =
+      statics.solve(values({2}), statics.rest(), options, [](const Progress& p) { return p.iteration < 2; });
+  EXPECT_EQ(found.report.status, Status::interrupted);
+  EXPECT_TRUE(found.report.stopped);
+}
+
 /// Every iteration and factorisation of the steps is in the trace once, and what was taken leads from rest to the end.
 TEST(Trace, HasEveryStepOfTheWay) {
   const Model model = compile(cable_beam());

@@ -93,7 +93,7 @@ std::string journal_head(const Model& model, const MapOptions& options) {
          exact(options.accuracy_mm) + " mm, loads " + exact(options.load_accuracy) + ", ratios " +
          exact(options.ratio_accuracy) + ", shape " + exact(options.shape_accuracy_mm) + " mm; seed " +
          std::to_string(options.seed) + "; solver tolerance " + exact(options.statics.step_tolerance_mm) +
-         " mm, iterations " + std::to_string(options.statics.max_iterations) +
+         " mm, iterations " + std::to_string(options.statics.iteration_limit()) +
          (options.statics.stable ? ", stable" : "") + "\n";
 }
 

@@ -98,7 +98,7 @@ Json solver_json(const StaticsOptions& options, const UsedMap* map) {
   if (map != nullptr && !map->polished) return {{"name", "map"}, {"map", map_json(*map)}};
   Json json = {{"name", name_of(options.solver)},
                {"tolerance_mm", options.step_tolerance_mm},
-               {"max_iterations", options.max_iterations}};
+               {"max_iterations", options.iteration_limit()}};
   if (options.solver == Solver::local_global) json["anderson"] = options.anderson;
   if (options.as_published) json["as_published"] = true;
   if (options.stable) json["stable"] = true;

@@ -53,7 +53,7 @@ std::string solver_text(const StaticsOptions& solver) {
   if (solver.step_tolerance_mm != defaults.step_tolerance_mm)
     text += ", tolerance " + exact(solver.step_tolerance_mm) + " mm";
   if (solver.max_iterations != defaults.max_iterations)
-    text += ", at most " + counted(static_cast<std::size_t>(solver.max_iterations), "iteration");
+    text += ", at most " + counted(static_cast<std::size_t>(solver.iteration_limit()), "iteration");
   if (solver.stable) text += ", stable";
   if (solver.anderson != defaults.anderson) text += ", anderson " + std::to_string(solver.anderson);
   return text;

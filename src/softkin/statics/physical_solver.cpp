@@ -16,7 +16,6 @@ physical::Equilibria::Options PhysicalSolver::options_of(const StaticsOptions& o
   const double longest = step_tolerance_mm(model_, options);
   const double blur = 1e-6 * std::max(1.0, longest / step_tolerance_mm(model_, {}));
   return {.tolerance_mm = longest,
-          .max_iterations = options.max_iterations,
           .keep_history = options.keep_history,
           .trace = options.trace,
           .reuse_factor = options.reuse_factor,

@@ -32,6 +32,14 @@ class GivenSolver : public FormulationSolver {
   std::unique_ptr<const GivenEquilibria> given_;
 };
 
+/// Of what had not ended after as many iterations as it may have, in the middle of what the remark tells.
+void tell_limit(int iterations, SolveReport& report) {
+  const std::string told =
+      "the limit of " + counted(static_cast<std::size_t>(iterations), "iteration") + " (max_iterations) was reached";
+  const bool begun = report.remark.ends_with(": ");
+  report.remark = report.remark.empty() ? told : report.remark + (begun ? told : " (" + told + ")");
+}
+
 std::unique_ptr<FormulationSolver> solver_of(const Model& model, Lender& lender) {
   if (model.formulation == Formulation::physical) return std::make_unique<PhysicalSolver>(model, lender);
   return std::make_unique<TargetShapeSolver>(model, lender);
@@ -93,14 +101,16 @@ State Statics::rest() const {
 Equilibrium Statics::solve(const Actuation& actuation, const State& start, const StaticsOptions& options,
                            const ProgressCallback& asked_progress) const {
   const auto begin = std::chrono::steady_clock::now();
-  bool late = false;
-  const ProgressCallback until_deadline = [&](const Progress& p) {
-    // afterwards, as what is asked may look at the same deadline
-    const bool goes_on = !asked_progress || asked_progress(p);
-    late = options.deadline.passed();
-    return goes_on && !late;
+  const int most = options.iteration_limit();
+  bool stops = false, late = false, spent = false;
+  const ProgressCallback progress = [&](const Progress& p) {
+    if (stops) return false;
+    stops = asked_progress && !asked_progress(p);
+    late = options.deadline.passed();  // afterwards, as what is asked may look at the same deadline
+    spent = !stops && p.iteration >= most;
+    stops = stops || late || spent;
+    return !stops;
   };
-  const ProgressCallback& progress = options.deadline.any() ? until_deadline : asked_progress;
   const Model& model = parts_->model;
   check_actuation(model, actuation);
   check_start(model, start, options);
@@ -113,10 +123,13 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   }
   Equilibrium result = parts_->solver->solve(actuation, near.positions.rows() > 0 ? near : start, options, progress);
   SolveReport& report = result.report;
-  report.stopped = report.status == Status::interrupted;
-  if (report.stopped && late) {
-    report.status = Status::not_converged;
-    report.remark = options.deadline.spent();
+  if (report.status == Status::interrupted) {
+    report.stopped = late || !spent;
+    if (late || spent) report.status = Status::not_converged;
+    if (late)
+      report.remark = options.deadline.spent();
+    else if (spent)
+      tell_limit(most, report);
   }
   report.seconds = seconds_since(begin);
   return result;

@@ -41,10 +41,10 @@ void check_start(const Model& model, const State& start, const StaticsOptions& o
     throw InvalidInput("the start's cables rub elsewhere than the robot's");
   if (!std::all_of(start.anchors.begin(), start.anchors.end(), lies_on_model))
     throw InvalidInput("the start's friction is of another robot");
-  if (!(options.step_tolerance_mm >= 0) || options.max_iterations < 1 || options.anderson < 0 ||
+  if (!(options.step_tolerance_mm >= 0) || options.max_iterations < 0 || options.anderson < 0 ||
       options.anderson > 20 || options.threads < 0)
     throw InvalidInput(
-        "solver options out of range: tolerance >= 0 mm, iterations >= 1, anderson 0 to 20, threads >= 0");
+        "solver options out of range: tolerance >= 0 mm, iterations >= 0, anderson 0 to 20, threads >= 0");
   if (options.as_published && options.solver != Solver::local_global)
     throw InvalidInput("to stop as published is for solver local-global");
   if (options.as_published && model.markers.empty())

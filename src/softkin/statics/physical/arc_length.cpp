@@ -159,7 +159,7 @@ std::optional<ArcLength::Point> ArcLength::go(const Point& from, double length) 
 }
 
 ArcLength::Pace ArcLength::pace(double length, int iterations) const {
-  return {length, shortest_step * length, std::min(options_.max_iterations, report_.iterations + iterations)};
+  return {length, shortest_step * length, report_.iterations + iterations};
 }
 
 /// The point at the end of a step, which is made shorter where it leads nowhere; none: nor do those.

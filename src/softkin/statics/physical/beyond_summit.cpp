@@ -30,7 +30,7 @@ Climb::Passed Climb::go_along(double way, double end, double longest, Measured& 
   double length = std::min(first_beyond * last.measure, longest);
   std::optional<Measured> before;
   int missed = 0;
-  for (int i = 0; i < most_steps_beyond && report_.iterations < options_.max_iterations; ++i) {
+  for (int i = 0; i < most_steps_beyond; ++i) {
     const double left = way * (end - last.measure);
     if (!(left > 1e-9 * std::abs(end))) return Passed::end;
     const double there = length > 0.9 * left ? end : last.measure + way * length;

@@ -22,7 +22,6 @@ class Equilibria {
 
   struct Options {
     double tolerance_mm = 0;
-    int max_iterations = 0;  // of all Newton steps together
     bool keep_history = true;
     bool trace = false;
     bool reuse_factor = true;

@@ -152,7 +152,10 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
   for (;;) {
     double factor = 0.5;
     if (attempt(step_, damping, at)) {
-      if (last(step_, 0)) return accept(damping * step_.size.largest, at) ? Advance::made : Advance::interrupted;
+      if (last(step_, 0)) {
+        (void)accept(damping * step_.size.largest, at);
+        return Advance::made;
+      }
       const double rise = slope < 0 ? merit(trial_balance_) - before : 0;
       const bool lower = rise < worthwhile_descent * damping * slope;
       // the step that follows a shortened one tells nothing that is asked for
@@ -248,8 +251,9 @@ Newton::Advance Newton::quasi_newton_steps(Iterate& at) {
         return reject(at);
       }
     }
-    if (!accept(step_.size.largest, at)) return Advance::interrupted;
+    const bool goes_on = accept(step_.size.largest, at);
     if (arrives) return Advance::arrived;
+    if (!goes_on) return Advance::interrupted;
   }
   return Advance::made;
 }
@@ -288,8 +292,9 @@ Newton::Advance Newton::steps_from_nearby(Iterate& at) {
     find(trial_balance_, trial_, next_);
     if (!shrink_fast()) return reject(at);
   }
-  if (!accept(step_.size.largest, at)) return Advance::interrupted;
+  const bool goes_on = accept(step_.size.largest, at);
   if (arrives) return Advance::arrived;
+  if (!goes_on) return Advance::interrupted;
   return quasi_newton_steps(at);
 }
 

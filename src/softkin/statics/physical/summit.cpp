@@ -174,7 +174,6 @@ Climb::End Climb::up(Iterate& at) {
   bool prepared = true;
   int missed = 0;
   for (int i = 0; i < most_steps && ascent.length > shortest_step * begin; ++i) {
-    if (report_.iterations >= options_.max_iterations) return End::lost;
     auto [next, interrupted] = at_measure(low.measure + way * ascent.length, low, prepared, ascent.beside());
     if (interrupted) {
       keep(low, at);

@@ -172,10 +172,7 @@ std::optional<Status> Continuation::out_of_patience(const Iterate& at) {
                      " iterations brought less than " + number(100 * least, 2) + " % of it",
                  at);
   }
-  if (way_.done == 1 || report_.iterations < options_.max_iterations) return std::nullopt;
-  tell_balance();
-  report_.remark = "the limit of iterations was reached";
-  return Status::not_converged;
+  return std::nullopt;
 }
 
 /// What the last shape is.

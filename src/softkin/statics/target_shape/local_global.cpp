@@ -139,9 +139,12 @@ void solve_local_global(const Steps& steps, const StaticsOptions& options, const
   System::Scratch scratch = steps.system.make_scratch();
   ErrorEstimate estimate;
   Stall stall(patience, report.tolerance_mm);
-  while (report.iterations < options.max_iterations) {
+  for (;;) {
     IterationRecord record;
-    if (!iteration.iterate(scratch, team, record)) break;
+    if (!iteration.iterate(scratch, team, record)) {
+      report.remark = "the coordinates became too large to compute with";
+      break;
+    }
     accept(record, options.keep_history, report);
     estimate.add(iteration.before(), iteration.positions() - iteration.before());
     if (has_arrived(steps.model, iteration, options.as_published, report)) {
@@ -156,11 +159,8 @@ void solve_local_global(const Steps& steps, const StaticsOptions& options, const
       report.remark = "the last " + std::to_string(patience.iterations) + " iterations led nowhere";
       break;
     }
-    if (report.iterations < options.max_iterations) iteration.extrapolate();
+    iteration.extrapolate();
   }
-  if (report.status == Status::not_converged && report.remark.empty())
-    report.remark = report.iterations < options.max_iterations ? "the coordinates became too large to compute with"
-                                                               : "the limit of iterations was reached";
   report.estimated_error_mm = estimate.mm(report.step_mm);
 }
 

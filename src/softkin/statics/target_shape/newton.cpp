@@ -60,7 +60,7 @@ End follow(const Actuation& from, const Actuation& to, NewtonSearch& search, Poi
     const double next = std::min(1.0, share + step);
     positions = reached;
     const End end = search.run(from + next * (to - from), most_steps_on_the_way, 0, positions);
-    if (end == End::interrupted || end == End::exhausted || end == End::astray) return end;
+    if (end == End::interrupted || end == End::astray) return end;
     if (end == End::converged) {
       share = next;
       step *= 2;
@@ -232,8 +232,8 @@ NewtonSearch::Step NewtonSearch::newton_step(const Actuation& actuation, Points&
 
 NewtonSearch::End NewtonSearch::enter(const IterationRecord& record) {
   accept(record, options_.keep_history, report_);
-  if (progress_ && !progress_({report_.iterations, report_.step_mm, report_.tolerance_mm})) return End::interrupted;
-  return report_.iterations < options_.max_iterations ? End::stuck : End::exhausted;
+  const bool goes_on = !progress_ || progress_({report_.iterations, report_.step_mm, report_.tolerance_mm});
+  return goes_on ? End::stuck : End::interrupted;
 }
 
 /// stuck: go on
@@ -271,7 +271,7 @@ NewtonSearch::End NewtonSearch::run(const Actuation& actuation, int most, int le
     return End::converged;
   }
   int idle = 0;
-  for (int i = 0; i < most && idle < most_idle_steps && report_.iterations < options_.max_iterations; ++i) {
+  for (int i = 0; i < most && idle < most_idle_steps; ++i) {
     IterationRecord record = here();
     const Step step = newton_step(actuation, positions);
     if (step == Step::none) {
@@ -292,7 +292,7 @@ NewtonSearch::End NewtonSearch::run(const Actuation& actuation, int most, int le
       return End::converged;
     }
   }
-  return report_.iterations < options_.max_iterations ? End::stuck : End::exhausted;
+  return End::stuck;
 }
 
 Newton::Newton(const Unknowns& unknowns, const supports::GlobalStep& global) : global_(global), unknowns_(unknowns) {}
@@ -359,7 +359,6 @@ void Newton::solve(const Actuation& start, const StaticsOptions& options, const 
   report.status = end == End::converged     ? Status::converged
                   : end == End::interrupted ? Status::interrupted
                                             : Status::not_converged;
-  if (end == End::exhausted) report.remark = "the iterations allowed were not enough";
   if (end == End::astray) report.remark = "coordinates too large to compute with";
   report.estimated_error_mm = report.step_mm;
 }

@@ -21,8 +21,8 @@ struct Workspace {
 /// Runs of Newton's method, one after another.
 class NewtonSearch {
  public:
-  /// exhausted: no more iterations are allowed. astray: a number is not finite.
-  enum class End { converged, stuck, interrupted, exhausted, astray };
+  /// astray: a number is not finite.
+  enum class End { converged, stuck, interrupted, astray };
 
   /// All must outlive the object. The result does not depend on what the workspace was used for before.
   NewtonSearch(const Unknowns& unknowns, const supports::GlobalStep& global, Workspace& workspace,
