@@ -42,6 +42,21 @@ class Newton {
    private:
     Newton& newton_;
   };
+  /// For its life, where a solve only leads to the next one: it may end so many times as far from its
+  /// equilibrium.
+  class Loose {
+   public:
+    Loose(Newton& newton, double times) : newton_(newton) { newton_.ending_.loose = times; }
+    ~Loose() { newton_.ending_.loose = 1; }
+    Loose(const Loose&) = delete;
+    Loose& operator=(const Loose&) = delete;
+
+    /// Times its tolerances, where only the next solve is to find its way.
+    static constexpr double by_far = 1e5;
+
+   private:
+    Newton& newton_;
+  };
   /// Does who asked for the solve let it go on? Asked before what takes as long as many iterations.
   [[nodiscard]] bool goes_on() const;
 
@@ -116,6 +131,7 @@ class Newton {
   /// How a solve is to end, and how the last one did.
   struct Ending {
     bool brief = false;    // after a few factors
+    double loose = 1;      // times its tolerances
     bool rounded = false;  // did the last one get stuck by rounding, perhaps
     const char* why = "";  // did the last one get stuck
   };
@@ -127,6 +143,7 @@ class Newton {
   void find(const Balance& balance, const Iterate& at, Step& step);
   double refine(const Balance& balance, const Iterate& at, Step& step);
   bool refine_first(const Iterate& at);
+  [[nodiscard]] double tolerance_mm() const { return ending_.loose * settings_.tolerance_mm; }
   [[nodiscard]] bool last(const Step& step, double before) const;
   bool attempt(const Step& step, double& damping, const Iterate& from);
   bool attempt_whole(const Step& step, const Iterate& from);

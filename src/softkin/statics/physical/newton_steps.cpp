@@ -39,8 +39,7 @@ constexpr double cost_of_factor = 6;
 bool Newton::last(const Step& step, double before) const {
   constexpr double most_left = 0.02;  // of the tolerance
   const double size = step.size.largest, share = before > 0 ? std::min(1.0, size / before) : 1;
-  return size < settings_.tolerance_mm &&
-         (work_.saddle.factor().in_double() || share * size < most_left * settings_.tolerance_mm);
+  return size < tolerance_mm() && (work_.saddle.factor().in_double() || share * size < most_left * tolerance_mm());
 }
 
 /// Moves by `damping` times a step, less where something is in the way. False where the law has no energy, or where
@@ -132,13 +131,14 @@ double Newton::shorter(double damping) const {
 
 /// Newton step, as long as the simplified step that follows it is shorter. next_ is that step.
 Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
+  const auto ends = [this](const char* why) {
+    ending_.why = why;
+    return Advance::none;
+  };
   work_.saddle.first_step(balance_, step_.move, step_.change);
   step_.size = system_.freedoms().size_of(step_.move, at.positions);
   if (factor_.refines && !work_.saddle.factor().in_double()) (void)refine(balance_, at, step_);
-  if (!std::isfinite(step_.size.mean)) {
-    ending_.why = "the stiffness is singular";
-    return Advance::none;
-  }
+  if (!std::isfinite(step_.size.mean)) return ends("the stiffness is singular");
   damping = system_.contact() ? 1 : std::min(1.0, 2 * damping);  // what was in the way may be out of it now
   // where a gap closes the factor at hand knows nothing of what will push there, but the potential does
   // forces that follow their normal forces have none
@@ -174,20 +174,13 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
     }
     damping *= factor;
     if (!(damping >= least_damping)) {
-      ending_.why = "no length of a step comes nearer";
       ending_.rounded = true;  // near a singular stiffness it may be by rounding, and nothing else shows it
-      return Advance::none;
+      return ends("no length of a step comes nearer");
     }
   }
-  if (damping * step_.size.largest > runaway * system_.model().diagonal_mm) {
-    ending_.why = "the shape runs away";
-    return Advance::none;
-  }
+  if (damping * step_.size.largest > runaway * system_.model().diagonal_mm) return ends("the shape runs away");
   note_pace(damping);
-  if (labours(damping)) {
-    ending_.why = "step after step hardly comes nearer";
-    return Advance::none;
-  }
+  if (labours(damping)) return ends("step after step hardly comes nearer");
   if (slope < 0 && damping == 1 && !work_.factored.exact && (system_.contact() || system_.limp())) lengthen(damping);
   return accept(damping * step_.size.largest, at) ? Advance::made : Advance::interrupted;
 }
@@ -278,7 +271,7 @@ Newton::Advance Newton::step_to_stable(Iterate& at, double& damping) {
 bool Newton::shrink_fast() const {
   const double rate = next_.size.largest / step_.size.largest;
   if (!(rate < worthwhile_contraction)) return false;
-  const double left = std::log(settings_.tolerance_mm / next_.size.largest) / std::log(rate);
+  const double left = std::log(tolerance_mm() / next_.size.largest) / std::log(rate);
   return left < cost_of_factor;
 }
 

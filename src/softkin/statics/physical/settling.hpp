@@ -92,7 +92,8 @@ class Settler {
   Newton::Outcome settle_following(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised);
   Newton::Outcome settle_constraints(const Demand& demand, Newton::Policy policy, Iterate& at, bool factorised);
   Newton::Outcome settle_softly(const Demand& demand, bool falls, OtherContact& contact, Iterate& at);
-  Newton::Outcome sharpen_swollen(const Demand& there, Swelling how, double by, Iterate& trial);
+  Newton::Outcome settle_wrinkled(const Demand& demand, double barrier, bool asked, Iterate& trial);
+  Newton::Outcome sharpen_swollen(const Demand& demand, double barrier, bool asked, Iterate& trial);
   [[nodiscard]] Demand pressed(Demand demand, double times) const;
 
   const System& system_;

@@ -22,6 +22,8 @@ constexpr double ahead = 1.5;
 /// The shape that is kept stands so far before the maximum, over the way from where the search began: at it the
 /// stiffness is singular.
 constexpr double before_summit = 0.01;
+/// What leads on to the maximum may be so many times as far from its equilibrium as what is kept.
+constexpr double on_the_way = 10000;
 
 }  // namespace
 
@@ -171,14 +173,18 @@ Climb::End Climb::up(Iterate& at) {
   if (low.gain < 0 && !may_stand_there) return End::lost;
   if (!may_stand_there)
     ascent.length = std::clamp(up * (asked_load() - low.load) / low.gain, ascent.length, first_growth * begin);
+  const auto passes = [&](const Measured& point) { return up * (point.load - asked_load()) >= 0; };
+  const auto keep_where_stopped = [&](End end) {
+    if (end == End::interrupted) keep(low, at);
+    return end;
+  };
   bool prepared = true;
-  int missed = 0;
-  for (int i = 0; i < most_steps && ascent.length > shortest_step * begin; ++i) {
-    auto [next, interrupted] = at_measure(low.measure + way * ascent.length, low, prepared, ascent.beside());
-    if (interrupted) {
-      keep(low, at);
-      return End::interrupted;
-    }
+  for (int i = 0, missed = 0; i < most_steps && ascent.length > shortest_step * begin; ++i) {
+    auto [next, interrupted] = [&] {
+      const Newton::Loose loosely(settler_.newton(), on_the_way);
+      return at_measure(low.measure + way * ascent.length, low, prepared, ascent.beside());
+    }();
+    if (interrupted) return keep_where_stopped(End::interrupted);
     prepared = false;
     if (!next) {
       ascent.length *= 0.4;
@@ -186,22 +192,25 @@ Climb::End Climb::up(Iterate& at) {
       continue;
     }
     note_branch(*next);
-    if (up * (next->load - asked_load()) >= 0) {
-      const End end = arrive_at(*next, at, Newton::Policy::descend);
-      if (end == End::interrupted) keep(low, at);
-      return end;
-    }
+    if (passes(*next)) return keep_where_stopped(arrive_at(*next, at, Newton::Policy::descend));
     next->gain = up * way * slope_at(route_.here, *next);
     if (!std::isfinite(next->gain)) return End::lost;
     if (may_stand_there && i == 0 && next->gain < 0) return stop_at(way, begin, low, at);
     next->short_of = left_to_summit(way, ascent.beside(), low, *next);
-    if (at_maximum(*next) && !(may_stand_there && next->gain > low.gain)) return stop_at(way, begin, *next, at);
+    if (at_maximum(*next) && !(may_stand_there && next->gain > low.gain)) {
+      const Search<Measured> top = exactly(std::move(*next));
+      if (top.interrupted) return keep_where_stopped(End::interrupted);
+      return passes(*top.found) ? keep_where_stopped(arrive_at(*top.found, at, Newton::Policy::descend))
+                                : stop_at(way, begin, *top.found, at);
+    }
     prepared = next->gain >= 0;
     ascent.take(std::move(*next));
     if (prepared) report_.reached = route_.whole(share_of(low.load));
   }
-  if (low.measure != begin) keep(low, at);  // and loads go on from there
-  return End::lost;
+  if (low.measure == begin) return End::lost;
+  const Search<Measured> last = exactly(low);
+  keep(last.found ? *last.found : low, at);  // and loads go on from there
+  return last.interrupted ? End::interrupted : End::lost;
 }
 
 /// policy: follow where it may be unstable under its load
@@ -256,6 +265,18 @@ void Climb::keep(const Measured& kept, Iterate& at) {
   route_.here.share = kept.share;
   route_.done = share_of(kept.load);
   report_.reached = route_.whole(route_.done);
+}
+
+/// What was found on the way as near to its equilibrium as is asked for; as it is where that leads nowhere.
+Search<Climb::Measured> Climb::exactly(Measured found) {
+  Search<Measured> exact = at_measure(found.measure, found, false, nullptr);
+  if (exact.found) {
+    exact.found->gain = found.gain;
+    exact.found->short_of = found.short_of;
+  } else if (!exact.interrupted) {
+    exact.found = std::move(found);
+  }
+  return exact;
 }
 
 /// Of the way from one load to another; beyond a maximum it may have fallen below the first.

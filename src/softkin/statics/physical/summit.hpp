@@ -79,6 +79,7 @@ class Climb : Follower {
   Passed go_along(double way, double end, double longest, Measured& last, std::optional<Measured>& next);
   End go_beyond(double way, const Measured& summit, Iterate& at);
   void keep(const Measured& kept, Iterate& at);
+  Search<Measured> exactly(Measured found);
   [[nodiscard]] double share_of(double load) const;
   void note_branch(const Measured& point);
   [[nodiscard]] std::string measure_text(double measure) const;

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cmath>
 #include <softkin/statics/physical/settling.hpp>
 
@@ -7,8 +6,8 @@ namespace softkin::physical {
 namespace {
 
 /// How smoothly sheets that were flat wrinkle at last, and from one solve to the next; how pressures fall from one to
-/// the next; both less boldly where that leads nowhere.
-constexpr double narrowest_barrier = 1e-11, narrower = 0.1, hardly_narrower = 0.6, fall = 0.2, gentlest_fall = 0.9;
+/// the next; and up to where less boldly from a shape that leads nowhere.
+constexpr double narrowest_barrier = 1e-11, narrower = 0.1, hardly_narrower = 0.4, fall = 0.2, gentlest_fall = 0.9;
 
 }  // namespace
 
@@ -21,40 +20,57 @@ Demand Settler::pressed(Demand demand, double times) const {
   return demand;
 }
 
-/// Of sheets that were flat, where something touches a second time, less boldly.
-Newton::Outcome Settler::settle_swollen(const Demand& there, const Swelling& how, Iterate& trial) {
-  const Iterate begin = trial;
-  const auto outcome = sharpen_swollen(there, how, narrower, trial);
-  if (outcome != Newton::Outcome::stuck || !system_.contact()) return outcome;
-  trial = begin;
-  return sharpen_swollen(there, how, hardly_narrower, trial);
+/// asked  is it the shape that is asked for, or one on the way there
+Newton::Outcome Settler::settle_wrinkled(const Demand& demand, double barrier, bool asked, Iterate& trial) {
+  const Newton::Loose loosely(newton_, asked ? 1 : Newton::Loose::by_far);
+  work_.layers->barrier = barrier;
+  const auto outcome = settle(demand, Newton::Policy::descend, trial);
+  work_.layers->barrier = 0;
+  return outcome;
 }
 
-/// First what wrinkles does so without kinks, then with ever sharper ones, at last with its own; under pressures that
-/// stretch it, which fall to those that are asked for: from a shape that leads nowhere, back to the one before, by
-/// less.
-Newton::Outcome Settler::sharpen_swollen(const Demand& there, Swelling how, double by, Iterate& trial) {
-  const auto settled = [&](double barrier, double times) {
-    work_.layers->barrier = barrier;
-    const auto outcome = settle(pressed(there, times), Newton::Policy::descend, trial);
-    work_.layers->barrier = 0;
-    return outcome;
-  };
-  for (double barrier = how.barrier; barrier > narrowest_barrier; barrier *= by)
-    if (settled(barrier, how.boost) == Newton::Outcome::interrupted) return Newton::Outcome::interrupted;
-  auto outcome = settled(0, how.boost);
-  for (double falls = fall; how.boost > 1;) {
+/// What wrinkles does so without kinks at first, then with ever sharper ones, at last with its own; from what leads
+/// nowhere, back to the shape before, by less.
+///
+/// asked  as of settle_wrinkled()
+Newton::Outcome Settler::sharpen_swollen(const Demand& demand, double barrier, bool asked, Iterate& trial) {
+  std::optional<Iterate> good;
+  double before = barrier;
+  for (double by = narrower;;) {
+    const bool sharp = barrier <= narrowest_barrier;
+    const auto outcome = settle_wrinkled(demand, sharp ? 0 : barrier, sharp && asked, trial);
+    const bool stuck = outcome == Newton::Outcome::stuck && good;
+    if (outcome == Newton::Outcome::interrupted || (stuck && by >= hardly_narrower) || (sharp && !stuck))
+      return outcome;
+    if (stuck) {
+      by = std::sqrt(by);
+      trial = *good;
+    } else {
+      by = std::max(narrower, by * by);
+      good = trial;
+      before = barrier;
+    }
+    barrier = by * before;
+  }
+}
+
+/// Under pressures that stretch it, which fall to those that are asked for: from a shape that leads nowhere, back to
+/// the one before, by less.
+Newton::Outcome Settler::settle_swollen(const Demand& there, const Swelling& how, Iterate& trial) {
+  double times = how.boost;
+  auto outcome = sharpen_swollen(pressed(there, times), how.barrier, times == 1, trial);
+  for (double falls = fall; times > 1;) {
     if (outcome == Newton::Outcome::stuck || outcome == Newton::Outcome::interrupted) return outcome;
     const Iterate before = trial;
-    const double next = std::max(1.0, falls * how.boost);
-    outcome = settled(0, next);
+    const double next = std::max(1.0, falls * times);
+    outcome = settle_wrinkled(pressed(there, next), 0, next == 1, trial);
     if (outcome == Newton::Outcome::stuck && falls < gentlest_fall) {
       trial = before;
       outcome = Newton::Outcome::converged;
       falls = std::sqrt(falls);
       continue;
     }
-    how.boost = next;
+    times = next;
     falls = std::max(fall, falls * falls);
   }
   return outcome;
