@@ -23,7 +23,7 @@ constexpr double ahead = 1.5;
 /// stiffness is singular.
 constexpr double before_summit = 0.01;
 /// What leads on to the maximum may be so many times as far from its equilibrium as what is kept.
-constexpr double on_the_way = 10000;
+constexpr double on_the_way = 3000;
 
 }  // namespace
 
