@@ -107,7 +107,7 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
     if (stops) return false;
     stops = asked_progress && !asked_progress(p);
     late = options.deadline.passed();  // afterwards, as what is asked may look at the same deadline
-    spent = !stops && p.iteration >= most;
+    spent = !stops && !late && p.iteration >= most;
     stops = stops || late || spent;
     return !stops;
   };
@@ -124,12 +124,10 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   Equilibrium result = parts_->solver->solve(actuation, near.positions.rows() > 0 ? near : start, options, progress);
   SolveReport& report = result.report;
   if (report.status == Status::interrupted) {
-    report.stopped = late || !spent;
+    report.stopped = !spent;
     if (late || spent) report.status = Status::not_converged;
-    if (late)
-      report.remark = options.deadline.spent();
-    else if (spent)
-      tell_limit(most, report);
+    if (late) report.remark = options.deadline.spent();
+    if (spent) tell_limit(most, report);
   }
   report.seconds = seconds_since(begin);
   return result;

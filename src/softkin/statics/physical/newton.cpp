@@ -143,11 +143,13 @@ double Newton::weigh_constraints(const Iterate& at) {
   return slope;
 }
 
-bool Newton::accept(double moved_mm, Iterate& at) {
+/// What arrives has arrived, whoever stops it then.
+Newton::Advance Newton::accept(double moved_mm, bool arrives, Iterate& at) {
   record(moved_mm);
   std::swap(at, trial_);
   std::swap(balance_, trial_balance_);
-  return goes_on();
+  const bool on = goes_on();
+  return arrives ? Advance::arrived : on ? Advance::made : Advance::interrupted;
 }
 
 /// The workspace is back at the iterate, as the next factorisation wants it.

@@ -151,7 +151,7 @@ class Newton {
   void note_pace(double damping);
   [[nodiscard]] double merit(const Balance& balance) const;
   [[nodiscard]] double weigh_constraints(const Iterate& at);
-  bool accept(double moved_mm, Iterate& at);
+  Advance accept(double moved_mm, bool arrives, Iterate& at);
   Advance damped_step(Iterate& at, double& damping);
   [[nodiscard]] double shorter(double damping) const;
   void lengthen(double& damping);

@@ -152,10 +152,7 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
   for (;;) {
     double factor = 0.5;
     if (attempt(step_, damping, at)) {
-      if (last(step_, 0)) {
-        (void)accept(damping * step_.size.largest, at);
-        return Advance::made;
-      }
+      if (last(step_, 0)) return accept(damping * step_.size.largest, damping == 1, at);
       const double rise = slope < 0 ? merit(trial_balance_) - before : 0;
       const bool lower = rise < worthwhile_descent * damping * slope;
       // the step that follows a shortened one tells nothing that is asked for
@@ -182,7 +179,7 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
   note_pace(damping);
   if (labours(damping)) return ends("step after step hardly comes nearer");
   if (slope < 0 && damping == 1 && !work_.factored.exact && (system_.contact() || system_.limp())) lengthen(damping);
-  return accept(damping * step_.size.largest, at) ? Advance::made : Advance::interrupted;
+  return accept(damping * step_.size.largest, false, at);
 }
 
 /// Away from a saddle a stiffness that was made positive leaves nearly as much to go along its step as that was long:
@@ -244,9 +241,8 @@ Newton::Advance Newton::quasi_newton_steps(Iterate& at) {
         return reject(at);
       }
     }
-    const bool goes_on = accept(step_.size.largest, at);
-    if (arrives) return Advance::arrived;
-    if (!goes_on) return Advance::interrupted;
+    const Advance advance = accept(step_.size.largest, arrives, at);
+    if (advance != Advance::made) return advance;
   }
   return Advance::made;
 }
@@ -254,9 +250,7 @@ Newton::Advance Newton::quasi_newton_steps(Iterate& at) {
 /// Steps with the factor of the iterate.
 Newton::Advance Newton::steps_from_here(Iterate& at, double& damping) {
   const Advance advance = damped_step(at, damping);
-  if (advance != Advance::made || damping != 1) return advance;
-  if (last(step_, 0)) return Advance::arrived;
-  return quasi_newton_steps(at);
+  return advance == Advance::made && damping == 1 ? quasi_newton_steps(at) : advance;
 }
 
 /// One step with an exact stiffness that is not stable, from near a stable equilibrium.
@@ -285,10 +279,8 @@ Newton::Advance Newton::steps_from_nearby(Iterate& at) {
     find(trial_balance_, trial_, next_);
     if (!shrink_fast()) return reject(at);
   }
-  const bool goes_on = accept(step_.size.largest, at);
-  if (arrives) return Advance::arrived;
-  if (!goes_on) return Advance::interrupted;
-  return quasi_newton_steps(at);
+  const Advance advance = accept(step_.size.largest, arrives, at);
+  return advance == Advance::made ? quasi_newton_steps(at) : advance;
 }
 
 }  // namespace softkin::physical
