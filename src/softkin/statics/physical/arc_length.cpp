@@ -175,7 +175,7 @@ std::optional<ArcLength::Point> ArcLength::next(const Point& from, Pace& pace) {
 }
 
 ArcLength::End ArcLength::follow(Iterate& at) {
-  const InPrecision twice(work_.saddle, linear::MixedLdlt::Precision::twice);
+  const Temporarily twice(work_.saddle.precision(), linear::MixedLdlt::Precision::twice);
   Point low;
   if (!begin(at, low)) return End::lost;
   const double first = low.share;

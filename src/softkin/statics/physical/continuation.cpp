@@ -301,7 +301,7 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   tracer_.begin(whole(way_.done), whole(next), length);
   step_.unforetold = false;
   const auto outcome = [&] {
-    const Newton::Brief scope(settler_.newton(), ends_early(length < follow_below));
+    const auto briefly = settler_.newton().briefly(ends_early(length < follow_below));
     return step(way_.here, there, length, at, trial);
   }();
   settler_.free_way = {};

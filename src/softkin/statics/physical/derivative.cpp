@@ -132,7 +132,7 @@ bool Derivative::find(const Iterate& at, const Demand& demand) {
   }
   const auto solve_anew = [&](Precision precision) {
     work_.home.resize(0, 3);
-    const InPrecision scope(work_.saddle, precision);
+    const Temporarily scope(work_.saddle.precision(), precision);
     (void)system_.factorise(at, demand, active_, balance_, {}, work_, team_);
     if (system_.contact())
       system_.gather(at, balance_, work_, team_);  // else what was factorised is what is multiplied with

@@ -64,7 +64,7 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
     factor_.shape = at.positions;
     secants_.clear();
     factor_.looked_at = false;
-    const InPrecision scope(work_.saddle, precision);
+    const Temporarily scope(work_.saddle.precision(), precision);
     negative = system_.factorise(at, *asked_.demand, *asked_.active, balance_, {kind, shift, true}, work_, team_);
     report_.factorisations_in_double += work_.saddle.factor().in_double();
     return negative == 0 ? Advance::made : Advance::none;
@@ -211,7 +211,7 @@ bool Newton::doubts_stability(const Iterate& at) {
 
 /// The number of negative eigenvalues at an iterate, without a doubt.
 void Newton::make_sure(const Iterate& at) {
-  const InPrecision twice(work_.saddle, linear::MixedLdlt::Precision::twice);
+  const Temporarily twice(work_.saddle.precision(), linear::MixedLdlt::Precision::twice);
   factor_.negative = system_.factorise(at, *asked_.demand, *asked_.active, balance_, {}, work_, team_);
   ++report_.factorisations;
   ++report_.factorisations_in_double;
@@ -232,7 +232,7 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
   const bool rounded = ending_.rounded || report_.step_mm < near;
   if (!in_single || ending_.brief || !rounded) return outcome;
   at = start_;
-  const InPrecision twice(work_.saddle, linear::MixedLdlt::Precision::twice);
+  const Temporarily twice(work_.saddle.precision(), linear::MixedLdlt::Precision::twice);
   return descend(policy, false, at);
 }
 

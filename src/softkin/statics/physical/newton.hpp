@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <softkin/core/progress.hpp>
+#include <softkin/core/temporarily.hpp>
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/statics/physical/system.hpp>
 
@@ -31,32 +32,12 @@ class Newton {
   /// begun so near a stable equilibrium, what is unstable are mostly elements that a foretold shape presses.
   enum class Policy { descend, follow, near };
 
-  /// For its life, where a shorter step is worth more than patience: few factors, and none again in double precision.
-  class Brief {
-   public:
-    Brief(Newton& newton, bool brief) : newton_(newton) { newton_.ending_.brief = brief; }
-    ~Brief() { newton_.ending_.brief = false; }
-    Brief(const Brief&) = delete;
-    Brief& operator=(const Brief&) = delete;
-
-   private:
-    Newton& newton_;
-  };
-  /// For its life, where a solve only leads to the next one: it may end so many times as far from its
-  /// equilibrium.
-  class Loose {
-   public:
-    Loose(Newton& newton, double times) : newton_(newton) { newton_.ending_.loose = times; }
-    ~Loose() { newton_.ending_.loose = 1; }
-    Loose(const Loose&) = delete;
-    Loose& operator=(const Loose&) = delete;
-
-    /// Times its tolerances, where only the next solve is to find its way.
-    static constexpr double by_far = 1e5;
-
-   private:
-    Newton& newton_;
-  };
+  /// While it lives, where a shorter step is worth more than patience: few factors, and none again in double precision.
+  [[nodiscard]] Temporarily<bool> briefly(bool brief) { return {ending_.brief, brief}; }
+  /// While it lives a solve, which only leads to the next one, may end so many times as far from its equilibrium.
+  [[nodiscard]] Temporarily<double> loosely(double times) { return {ending_.loose, times}; }
+  /// Times its tolerances, where only the next solve is to find its way.
+  static constexpr double by_far = 1e5;
   /// Does who asked for the solve let it go on? Asked before what takes as long as many iterations.
   [[nodiscard]] bool goes_on() const;
 

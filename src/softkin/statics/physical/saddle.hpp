@@ -138,18 +138,4 @@ class Saddle {
   Spectrum spectrum_;
 };
 
-/// What is asked of factors while it lives; then again what was.
-class InPrecision {
- public:
-  InPrecision(Saddle& saddle, Saddle::Precision precision)
-      : saddle_(saddle), before_(std::exchange(saddle.precision(), precision)) {}
-  ~InPrecision() { saddle_.precision() = before_; }
-  InPrecision(const InPrecision&) = delete;
-  InPrecision& operator=(const InPrecision&) = delete;
-
- private:
-  Saddle& saddle_;
-  Saddle::Precision before_;
-};
-
 }  // namespace softkin::physical

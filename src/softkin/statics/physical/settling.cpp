@@ -54,7 +54,7 @@ Newton::Outcome Settler::settle_softly(const Demand& demand, bool falls, OtherCo
   constexpr int most_iterations = 20;  // of what was stuck for want of a way
   const std::vector<bool> before = active;
   const Iterate begun = at;
-  const Newton::Loose loosely(newton_, Newton::Loose::by_far);
+  const auto loosely = newton_.loosely(Newton::by_far);
   auto outcome = Newton::Outcome::stuck;
   const int iterations = report_.iterations;
   for (double first = nearest; outcome == Newton::Outcome::stuck && first <= most; first *= finer) {

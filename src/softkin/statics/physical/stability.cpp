@@ -68,7 +68,7 @@ LowestMode lowest_mode(const System& system, const Iterate& at, const Demand& de
     if (shift == 0) mean = work.saddle.spectrum().mean;
     return count;
   };
-  const InPrecision twice(work.saddle,
+  const Temporarily twice(work.saddle.precision(),
                           linear::MixedLdlt::Precision::twice);  // curvatures are differences of what hardly differs
   LowestMode mode;
   mode.unstable = negative(0);

@@ -118,7 +118,7 @@ double Climb::slope_at(const Demand& load, const Measured& point) {
   there.actuation[load_] = (1 + first_step) * point.measure;
   here.share = there.share = point.share;
   settler_.active[load_] = true;
-  const InPrecision twice(work_.saddle, linear::MixedLdlt::Precision::twice);
+  const Temporarily twice(work_.saddle.precision(), linear::MixedLdlt::Precision::twice);
   double slope = std::numeric_limits<double>::quiet_NaN();
   if (settler_.prepare(here, point.at) >= 0) {
     Iterate beside = point.at;
@@ -181,7 +181,7 @@ Climb::End Climb::up(Iterate& at) {
   bool prepared = true;
   for (int i = 0, missed = 0; i < most_steps && ascent.length > shortest_step * begin; ++i) {
     auto [next, interrupted] = [&] {
-      const Newton::Loose loosely(settler_.newton(), on_the_way);
+      const auto loosely = settler_.newton().loosely(on_the_way);
       return at_measure(low.measure + way * ascent.length, low, prepared, ascent.beside());
     }();
     if (interrupted) return keep_where_stopped(End::interrupted);
@@ -244,7 +244,7 @@ Climb::End Climb::stop_at(double way, double begin, const Measured& summit, Iter
     keep(summit, at);
     return End::summit;
   }
-  const InPrecision twice(work_.saddle,
+  const Temporarily twice(work_.saddle.precision(),
                           linear::MixedLdlt::Precision::twice);  // so short a step is near what rounding hides
   const auto [kept, interrupted] = at_measure(summit.measure - way * before, summit, false, nullptr);
   if (interrupted) {

@@ -22,11 +22,9 @@ Demand Settler::pressed(Demand demand, double times) const {
 
 /// asked  is it the shape that is asked for, or one on the way there
 Newton::Outcome Settler::settle_wrinkled(const Demand& demand, double barrier, bool asked, Iterate& trial) {
-  const Newton::Loose loosely(newton_, asked ? 1 : Newton::Loose::by_far);
-  work_.layers->barrier = barrier;
-  const auto outcome = settle(demand, Newton::Policy::descend, trial);
-  work_.layers->barrier = 0;
-  return outcome;
+  const auto loosely = newton_.loosely(asked ? 1 : Newton::by_far);
+  const Temporarily smoothly(work_.layers->barrier, barrier);
+  return settle(demand, Newton::Policy::descend, trial);
 }
 
 /// What wrinkles does so without kinks at first, then with ever sharper ones, at last with its own; from what leads
