@@ -82,6 +82,28 @@ TEST(Stopped, AtAnyInstantOfTheSearchForAMaximum) {
   EXPECT_GT(most, 0);
 }
 
+/// Of a large robot a factorisation takes seconds: whoever asks is heard before each.
+TEST(Stopped, WithinOneFactorisation) {
+  RobotSpec pressed = bending_finger(), onto = BlockOnFloor{0.05, 0.03, 0.3}.robot();
+  pressed.materials[0].elastic = elastic(Law::neo_hookean, 0.1, 0.45);
+  pressed.actuators[0] = by_load(pressed.actuators[0]);
+  const auto expect_heard = [](const RobotSpec& spec, const Actuation& asked) {
+    const Model model = compile(spec);
+    const Statics statics(model);
+    int before = 0;
+    for (int looks = 0;; ++looks) {
+      const Equilibrium part = stopped_after(statics, asked, looks);
+      EXPECT_LE(part.report.factorisations, before + 1) << looks;
+      before = part.report.factorisations;
+      if (!part.report.stopped) break;
+    }
+    EXPECT_GT(before, 3);
+  };
+  expect_heard(pressed, values({1000}));
+  expect_heard(cable_beam(), values({0.6, 1.5}));
+  expect_heard(onto, Actuation(0));
+}
+
 /// As a callback throws at every instant: what is asked next is answered as by a solver that is new.
 void expect_unharmed_by_exceptions(const RobotSpec& spec, const Actuation& asked) {
   struct Thrown {};

@@ -23,7 +23,9 @@ constexpr double ahead = 1.5;
 /// stiffness is singular.
 constexpr double before_summit = 0.01;
 /// What leads on to the maximum may be so many times as far from its equilibrium as what is kept.
-constexpr double on_the_way = 3000;
+constexpr double on_the_way = 6000;
+/// A step along the measure that passed the load after this share of it led near enough.
+constexpr double whole_step = 0.9;
 
 }  // namespace
 
@@ -36,6 +38,7 @@ Climb::Climb(Settler& settler, StepTracer& tracer, const Equilibria::Options& op
 /// prepared  the workspace is as slope_at(from) left it
 /// beside    another equilibrium, by which the prediction bends
 Search<Climb::Measured> Climb::at_measure(double measure, const Measured& from, bool prepared, const Measured* beside) {
+  if (!prepared && !settler_.newton().goes_on()) return {.interrupted = true};
   Demand here = route_.to, there = route_.to;
   here.actuation[load_] = from.measure;
   here.share = from.share;
@@ -163,6 +166,7 @@ void Climb::Ascent::take(Measured&& next) {
 }
 
 Climb::End Climb::up(Iterate& at) {
+  if (!settler_.newton().goes_on()) return End::interrupted;
   Ascent ascent = ascent_from(at);
   const double up = ascent.up, way = ascent.way, begin = ascent.begin;
   const Measured& low = ascent.low;
@@ -192,7 +196,7 @@ Climb::End Climb::up(Iterate& at) {
       continue;
     }
     note_branch(*next);
-    if (passes(*next)) return keep_where_stopped(arrive_at(*next, at, Newton::Policy::descend));
+    if (passes(*next)) return keep_where_stopped(arrive_before(std::move(*next), ascent, at));
     next->gain = up * way * slope_at(route_.here, *next);
     if (!std::isfinite(next->gain)) return End::lost;
     if (may_stand_there && i == 0 && next->gain < 0) return stop_at(way, begin, low, at);
@@ -211,6 +215,29 @@ Climb::End Climb::up(Iterate& at) {
   const Search<Measured> last = exactly(low);
   keep(last.found ? *last.found : low, at);  // and loads go on from there
   return last.interrupted ? End::interrupted : End::lost;
+}
+
+/// The equilibrium under the load that is asked, before a point that has passed it: from where a parabola of the load
+/// has it, as Newton's method under loads takes many iterations from as far as a step along the measure.
+Climb::End Climb::arrive_before(Measured next, const Ascent& ascent, Iterate& at) {
+  const Measured& low = ascent.low;
+  const double went = ascent.way * (next.measure - low.measure), rose = ascent.up * (next.load - low.load);
+  const double asked = ascent.up * (asked_load() - low.load), bends = (rose - low.gain * went) / (went * went);
+  const double share = 2 * asked / (low.gain + std::sqrt(low.gain * low.gain + 4 * bends * asked)) / went;
+  if (share < whole_step) {
+    const bool from_low = share < 0.5;
+    const Measured &from = from_low ? low : next, &beside = from_low ? next : low;
+    auto [nearer, interrupted] = [&] {
+      const auto loosely = settler_.newton().loosely(on_the_way);
+      return at_measure(low.measure + share * (next.measure - low.measure), from, false, &beside);
+    }();
+    if (interrupted) return End::interrupted;
+    if (nearer) {
+      note_branch(*nearer);
+      next = std::move(*nearer);
+    }
+  }
+  return arrive_at(next, at, Newton::Policy::descend);
 }
 
 /// policy: follow where it may be unstable under its load

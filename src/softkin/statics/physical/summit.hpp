@@ -74,6 +74,7 @@ class Climb : Follower {
   [[nodiscard]] static bool at_maximum(const Measured& point);
   double slope_at(const Demand& load, const Measured& point);
   End arrive_at(const Measured& near, Iterate& at, Newton::Policy policy);
+  End arrive_before(Measured next, const Ascent& ascent, Iterate& at);
   End arrive_between(Measured low, Measured high, Iterate& at);
   End stop_at(double way, double begin, const Measured& summit, Iterate& at);
   Passed go_along(double way, double end, double longest, Measured& last, std::optional<Measured>& next);
