@@ -225,6 +225,7 @@ void Continuation::set_out(const Demand& from, const Demand& to) {
 
 /// Along what a load does.
 Climb::End Continuation::climb(Climb::End (Climb::*along)(Iterate&), Index load, Iterate& at) {
+  if (!settler_.newton().goes_on()) return Climb::End::interrupted;
   Climb climb(settler_, tracer_, options_, {load, way_.from, way_.to, way_.here, way_.done, way_.whole()});
   const Climb::End end = (climb.*along)(at);
   way_.here = climb.route().here;
@@ -255,6 +256,7 @@ std::optional<Status> Continuation::start_step(const Demand& there, Iterate& at)
     const Climb::End back = climb(&Climb::back, way_.load, at);
     if (back == Climb::End::interrupted) return Status::interrupted;
     if (back == Climb::End::arrived) return arrive(way_.to, at);
+    if (!settler_.newton().goes_on()) return Status::interrupted;
     way_.factorised = settler_.prepare(way_.here, at) >= 0;
   }
   return std::nullopt;

@@ -78,6 +78,12 @@ Search<Climb::Measured> Climb::at_measure(double measure, const Measured& from, 
   return search;
 }
 
+/// The same, as near to its equilibrium as what only leads on is to be.
+Search<Climb::Measured> Climb::nearly_at(double measure, const Measured& from, bool prepared, const Measured* beside) {
+  const auto loosely = settler_.newton().loosely(on_the_way);
+  return at_measure(measure, from, prepared, beside);
+}
+
 /// Adds to a first-order prediction what one back to another equilibrium misses, which grows with the square of the
 /// way.
 void Climb::bend(const Demand& here, const Demand& there, const Measured& from, const Measured& beside,
@@ -166,7 +172,6 @@ void Climb::Ascent::take(Measured&& next) {
 }
 
 Climb::End Climb::up(Iterate& at) {
-  if (!settler_.newton().goes_on()) return End::interrupted;
   Ascent ascent = ascent_from(at);
   const double up = ascent.up, way = ascent.way, begin = ascent.begin;
   const Measured& low = ascent.low;
@@ -184,10 +189,7 @@ Climb::End Climb::up(Iterate& at) {
   };
   bool prepared = true;
   for (int i = 0, missed = 0; i < most_steps && ascent.length > shortest_step * begin; ++i) {
-    auto [next, interrupted] = [&] {
-      const auto loosely = settler_.newton().loosely(on_the_way);
-      return at_measure(low.measure + way * ascent.length, low, prepared, ascent.beside());
-    }();
+    auto [next, interrupted] = nearly_at(low.measure + way * ascent.length, low, prepared, ascent.beside());
     if (interrupted) return keep_where_stopped(End::interrupted);
     prepared = false;
     if (!next) {
@@ -227,10 +229,7 @@ Climb::End Climb::arrive_before(Measured next, const Ascent& ascent, Iterate& at
   if (share < whole_step) {
     const bool from_low = share < 0.5;
     const Measured &from = from_low ? low : next, &beside = from_low ? next : low;
-    auto [nearer, interrupted] = [&] {
-      const auto loosely = settler_.newton().loosely(on_the_way);
-      return at_measure(low.measure + share * (next.measure - low.measure), from, false, &beside);
-    }();
+    auto [nearer, interrupted] = nearly_at(low.measure + share * (next.measure - low.measure), from, false, &beside);
     if (interrupted) return End::interrupted;
     if (nearer) {
       note_branch(*nearer);

@@ -68,6 +68,7 @@ class Climb : Follower {
   [[nodiscard]] double first_load() const { return route_.from.actuation[load_]; }
   [[nodiscard]] Ascent ascent_from(const Iterate& at);
   Search<Measured> at_measure(double measure, const Measured& from, bool prepared, const Measured* beside);
+  Search<Measured> nearly_at(double measure, const Measured& from, bool prepared, const Measured* beside);
   void bend(const Demand& here, const Demand& there, const Measured& from, const Measured& beside, Iterate& trial);
   [[nodiscard]] static double left_to_summit(double way, const Measured* beside, const Measured& low,
                                              const Measured& next);
