@@ -204,7 +204,7 @@ void fill_chamber(Compilation& c, const ActuatorSpec& spec, const PneumaticSpec&
     found = in_model(spec, chamber_region(c, spec, *given.region), c.tetrahedron_at, "tetrahedron");
   } else {
     TriangleSurface surface =
-        given.surface ? checked_surface(spec, *given.surface) : checked_wall(c, spec, *given.wall);
+        given.surface ? checked_surface(spec, *given.surface) : checked_wall(c, spec, *given.wall).closed;
     found = tetrahedra_inside(model, surface);
     if (found.empty())
       refuse(spec,

@@ -122,7 +122,7 @@ bool is_plate(const Model& model, const CavityFace& face, bool loose) {
   };
   const auto normal_to = [&](int axis) {
     return std::all_of(vertices.begin(), vertices.end(), [&](Index v) {
-      return std::abs(model.rest(v, axis) - model.rest(vertices[0], axis)) < 1e-9 * model.diagonal_mm;
+      return std::abs(model.rest(v, axis) - model.rest(vertices[0], axis)) <= plane_tolerance * model.diagonal_mm;
     });
   };
   if (all_held(0) && all_held(1) && all_held(2)) return true;
@@ -153,6 +153,16 @@ void check_openings(const Compilation& c, const ActuatorSpec& spec, const Chambe
                    " not the body's. Close it with elements of the body, or hold the body's vertices there without "
                    "displacement (`fixed`): along x, y and z as a plate would, or, in a plane of symmetry, along its "
                    "normal");
+}
+
+/// A vertex of no element, after those of the mesh.
+void add_fixed_vertex(Model& model, const Vec3& place) {
+  for (Points* points : {&model.rest, &model.held.at}) {
+    points->conservativeResize(points->rows() + 1, 3);
+    points->bottomRows(1) = place.transpose();
+  }
+  model.held.fixed.push_back({true, true, true});
+  model.elements.used.push_back(false);
 }
 
 /// An empty bag has no volume that others could be compared with.
@@ -199,14 +209,20 @@ void compile_cavity(Compilation& c, const ActuatorSpec& spec, const PneumaticSpe
   if (given.surface) return select_cavity(c, spec, *given.surface, actuator);
   if (!given.region && !given.wall) return take_only_space(c, spec, actuator);
   auto& chamber = std::get<ChamberDrive>(actuator.drive);
+  std::vector<CavityFace> closing;
+  std::vector<Vec3> corners;
   if (given.region) {
     add_faces(c, spec, boundary_of_chamber(c, elements), chamber);
   } else {
-    const TriangleSurface wall = checked_wall(c, spec, *given.wall);
-    check_filling(c, spec, wall);
+    ChamberWall wall = checked_wall(c, spec, *given.wall);
+    check_filling(c, spec, wall.closed);
     add_faces(c, spec, wall.triangles, chamber);
+    closing = std::move(wall.closing);
+    corners = std::move(wall.corners);
   }
   check_contact(c, spec, chamber);
+  chamber.cavity.insert(chamber.cavity.end(), closing.begin(), closing.end());
+  for (const Vec3& corner : corners) add_fixed_vertex(c.model, corner);
   actuator.rest_measure = enclosed_volume(c.model.rest, chamber.cavity);
   take_as_flat(c, spec, chamber, actuator.rest_measure);
 }

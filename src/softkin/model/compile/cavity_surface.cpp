@@ -164,25 +164,32 @@ TriangleSurface checked_surface(const ActuatorSpec& spec, TriangleSurface surfac
   return surface;
 }
 
-TriangleSurface checked_wall(const Compilation& c, const ActuatorSpec& spec, const std::string& name) {
+ChamberWall checked_wall(const Compilation& c, const ActuatorSpec& spec, const std::string& name) {
   const Region& region = c.regions.find(name, spec.origin);
   if (region.dimension != 2)
     refuse(spec, "has a wall, region '" + name + "', that is no group of faces" +
                      (region.dimension == 3 ? "; a volume is named with `region: " + name + "`" : ""));
-  TriangleSurface wall{c.model.rest, {}};
+  ChamberWall wall;
   for (const Index i : region.triangles) wall.triangles.push_back(c.mesh.triangles[i]);
   for (const Index i : region.quads) {
     const Quad& q = c.mesh.quads[i];
     wall.triangles.insert(wall.triangles.end(), {{q[0], q[1], q[2]}, {q[0], q[2], q[3]}});
   }
+  const Points& rest = c.model.rest;
   try {
-    wall.triangles = c.sheets.empty() ? turned_outwards(wall.vertices, std::move(wall.triangles))
-                                      : turned_outwards_or_flat(wall.vertices, std::move(wall.triangles));
+    wall.triangles = turned_alike(rest, std::move(wall.triangles));
+    if (rim_of(wall.triangles).empty())
+      wall.triangles = c.sheets.empty() ? turned_outwards(rest, std::move(wall.triangles))
+                                        : turned_outwards_or_flat(rest, std::move(wall.triangles));
   } catch (const InvalidInput& error) {
     refuse(spec, "has a wall, region '" + name + "', that bounds no chamber: " + error.what() +
                      "; the region must hold every face around the chamber and no other");
   }
-  refuse_nested(spec, wall, shells_of(wall.vertices, wall.triangles));
+  if (rim_of(wall.triangles).empty())
+    wall.closed = {rest, wall.triangles};
+  else
+    wall = closed_by_planes(c, spec, name, std::move(wall.triangles));
+  refuse_nested(spec, wall.closed, shells_of(wall.closed.vertices, wall.closed.triangles));
   return wall;
 }
 

@@ -76,8 +76,23 @@ void compile_actuator_elements(Compilation& c);
 ///
 /// throws  InvalidInput where it is not closed, or a shell of it lies inside another
 [[nodiscard]] TriangleSurface checked_surface(const ActuatorSpec& spec, TriangleSurface surface);
-/// The triangles of a region that is an actuator's wall, normals out of the chamber; throws as checked_surface.
-[[nodiscard]] TriangleSurface checked_wall(const Compilation& c, const ActuatorSpec& spec, const std::string& name);
+/// Distance from a plane below which a vertex lies in it, over the body's diagonal.
+inline constexpr double plane_tolerance = 1e-6;
+/// A chamber's wall that is given as faces of the mesh.
+struct ChamberWall {
+  std::vector<Triangle> triangles;    // of the region, normals out of the chamber
+  TriangleSurface closed;             // the same and, where they leave openings in planes that are held, what closes
+                                      // them; with vertices of its own after those of the mesh
+  std::vector<CavityFace> closing{};  // the same openings closed by faces between vertices of the model; from #V on:
+  std::vector<Vec3> corners{};        // corners inside the chamber where three planes meet [mm]
+};
+/// The wall that is a region; throws as checked_surface.
+[[nodiscard]] ChamberWall checked_wall(const Compilation& c, const ActuatorSpec& spec, const std::string& name);
+/// The wall of a chamber that ends at plates or planes of symmetry. triangles: of the region, neighbours agree
+///
+/// throws  InvalidInput where no plane that is held closes the rim
+[[nodiscard]] ChamberWall closed_by_planes(const Compilation& c, const ActuatorSpec& spec, const std::string& name,
+                                           std::vector<Triangle> triangles);
 
 /// Physical: the boundary of a chamber of an actuator, which is not of several.
 ///

@@ -72,7 +72,8 @@ std::vector<bool> to_turn(const Points& vertices, const std::vector<Triangle>& t
                           const std::vector<Side>& sides) {
   std::vector<std::array<std::pair<Index, bool>, 3>> neighbours(triangles.size());  // and whether it disagrees
   std::vector<int> count(triangles.size());
-  visit_edges(sides, [&](const Side* begin, const Side*) {
+  visit_edges(sides, [&](const Side* begin, const Side* end) {
+    if (end != begin + 2) return;  // a rim
     const bool disagree = begin[0].ascending == begin[1].ascending;
     for (int i = 0; i < 2; ++i)
       neighbours[begin[i].triangle][count[begin[i].triangle]++] = {begin[1 - i].triangle, disagree};
@@ -86,7 +87,8 @@ std::vector<bool> to_turn(const Points& vertices, const std::vector<Triangle>& t
     while (!next.empty()) {
       const Index t = next.back();
       next.pop_back();
-      for (const auto& [other, disagree] : neighbours[t]) {
+      for (int i = 0; i < count[t]; ++i) {
+        const auto [other, disagree] = neighbours[t][i];
         const bool wanted = turn[t] != disagree;
         if (seen[other] && turn[other] != wanted)
           throw InvalidInput("the surface has one side only, " + place(vertex_at(vertices, triangles[t][0])));
@@ -100,7 +102,7 @@ std::vector<bool> to_turn(const Points& vertices, const std::vector<Triangle>& t
   return turn;
 }
 
-void refuse_rims(const Points& vertices, const std::vector<Side>& sides) {
+void refuse_rims(const Points& vertices, const std::vector<Side>& sides, bool may_be_open) {
   std::size_t rim = 0;
   Vec3 middle = Vec3::Zero();
   visit_edges(sides, [&](const Side* begin, const Side* end) {
@@ -112,7 +114,7 @@ void refuse_rims(const Points& vertices, const std::vector<Side>& sides) {
       throw InvalidInput("the surface has an edge of " + std::to_string(end - begin) + " faces " + place(at));
     }
   });
-  if (rim > 0)
+  if (rim > 0 && !may_be_open)
     throw InvalidInput("the surface is not closed: its rim of " + counted(rim, "edge") + " has its middle " +
                        place(middle / static_cast<double>(rim)));
 }
@@ -150,16 +152,21 @@ std::vector<Shell> shells_of(const Points& vertices, const std::vector<Triangle>
 
 namespace {
 
-std::vector<Triangle> turned(const Points& vertices, std::vector<Triangle> triangles, bool flat_too) {
+std::vector<Triangle> alike(const Points& vertices, std::vector<Triangle> triangles, bool may_be_open) {
   if (triangles.empty()) throw InvalidInput("the surface has no triangle");
   for (const Triangle& t : triangles)
     for (const Index v : t)
       if (v < 0 || v >= vertices.rows()) throw InvalidInput("the surface names a vertex that is not there");
   const std::vector<Side> sides = sides_of(triangles);
-  refuse_rims(vertices, sides);
+  refuse_rims(vertices, sides, may_be_open);
   const std::vector<bool> turn = to_turn(vertices, triangles, sides);
   for (std::size_t t = 0; t < triangles.size(); ++t)
     if (turn[t]) std::swap(triangles[t][1], triangles[t][2]);
+  return triangles;
+}
+
+std::vector<Triangle> turned(const Points& vertices, std::vector<Triangle> given, bool flat_too) {
+  std::vector<Triangle> triangles = alike(vertices, std::move(given), false);
   for (const Shell& shell : shells_of(vertices, triangles)) {
     if (is_flat(shell) && !flat_too) throw InvalidInput("the surface encloses no volume, " + place(shell.center));
     if (is_flat(shell) || shell.volume > 0) continue;
@@ -176,6 +183,22 @@ std::vector<Triangle> turned_outwards(const Points& vertices, std::vector<Triang
 
 std::vector<Triangle> turned_outwards_or_flat(const Points& vertices, std::vector<Triangle> triangles) {
   return turned(vertices, std::move(triangles), true);
+}
+
+std::vector<Triangle> turned_alike(const Points& vertices, std::vector<Triangle> triangles) {
+  return alike(vertices, std::move(triangles), true);
+}
+
+std::vector<std::array<Index, 2>> rim_of(const std::vector<Triangle>& triangles) {
+  std::vector<std::array<Index, 2>> rim;
+  visit_edges(sides_of(triangles), [&](const Side* begin, const Side* end) {
+    if (end != begin + 1) return;
+    if (begin->ascending)
+      rim.push_back({begin->low, begin->high});
+    else
+      rim.push_back({begin->high, begin->low});
+  });
+  return rim;
 }
 
 std::vector<EmptySpace> empty_spaces_in(const Points& vertices, const std::vector<Tetrahedron>& tetrahedra,

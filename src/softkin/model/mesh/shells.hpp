@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <softkin/model/mesh/box_tree.hpp>
 #include <softkin/model/mesh/mesh.hpp>
 
@@ -25,6 +26,13 @@ struct Shell {
 /// The same where pieces may be flat, as an empty bag is: of these neighbours agree, and which side is outside is what
 /// the first triangle says.
 [[nodiscard]] std::vector<Triangle> turned_outwards_or_flat(const Points& vertices, std::vector<Triangle> triangles);
+
+/// The triangles, turned so that neighbours agree, of a surface that may be open.
+///
+/// throws  InvalidInput as turned_outwards, but for a rim and for what encloses no volume
+[[nodiscard]] std::vector<Triangle> turned_alike(const Points& vertices, std::vector<Triangle> triangles);
+/// The rim of a surface: edges of one triangle alone, from end to end as that triangle passes them.
+[[nodiscard]] std::vector<std::array<Index, 2>> rim_of(const std::vector<Triangle>& triangles);
 
 /// An empty space that elements enclose, bounded by a piece of their boundary.
 struct EmptySpace {
