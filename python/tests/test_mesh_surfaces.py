@@ -103,7 +103,13 @@ def test_triangles_without_area_and_doubled_ones_go(tmp_path):
         ("a.ply", b"ply\nformat ascii 1.0\nelement vertex x\nend_header\n", "a.ply:3: 'element vertex x' is no line"),
         ("a.ply", ply(CUBE, "ascii").replace(b"\n3 0 1 3", b"\n3 0 1"), "a.ply:20: 3 indices are told and 2 are there"),
         ("a.ply", ply(CUBE, "binary_little_endian")[:-5], "the file ends at element 11 of 12 'face'"),
-        ("a.off", b"OFF", "surfaces are .stl, .obj or .ply"),
+        ("a.off", b"OFF", "a.off: no numbers of vertices and faces"),
+        ("a.off", b"OFF\n3 1 0\n0 0 0\n1 0 0\n", "a.off:2: 3 vertices and 1 faces are told, 2 lines follow"),
+        ("a.off", b"OFF\n2 1 0\n0 0 0\n1 0 0\n3 0 1 2\n", "a.off:5: a face needs 3 vertices from 0 to 1"),
+        ("a.off", b"OFF\n2 x\n", "a.off:2: 'x' is no whole number"),
+        ("a.off", b"OFF BINARY\n", "a.off:1: 'OFF BINARY': text of three coordinates is read"),
+        ("a.txt", b"hello", "surfaces are STL, OBJ, PLY or OFF"),
+        ("a.stl", b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n", "Git LFS pointer"),
     ],
 )  # fmt: skip
 def test_bad_files_are_one_clear_error(tmp_path, name, content, told):
@@ -112,6 +118,18 @@ def test_bad_files_are_one_clear_error(tmp_path, name, content, told):
     with pytest.raises(InvalidInput) as raised:
         read_surface(path)
     assert told in str(raised.value) and "\n" not in str(raised.value)
+
+
+def test_the_content_tells_the_form(tmp_path):
+    shape = box((0, 0, 0), (3, 2, 1))
+    corners = "".join("{!r} {!r} {!r} 9 9 9 1\n".format(*p) for p in shape.vertices.tolist())
+    faces = "".join("3 {} {} {} 0.5 0.5 0.5\n".format(*t) for t in shape.triangles.tolist())
+    off = f"# by hand\nCOFF\n{len(shape.vertices)} {len(shape.triangles)} 0\n{corners}{faces}"
+    for content in (off.encode(), obj(shape).encode(), ply(shape, "binary_big_endian"), ascii_stl(shape).encode()):
+        path = tmp_path / "shape.stl"
+        path.write_bytes(content)
+        read = read_surface(path)
+        assert len(read.triangles) == 12 and read.volume == pytest.approx(6, rel=1e-12)
 
 
 def test_a_missing_file_and_bad_arrays():

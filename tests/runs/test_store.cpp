@@ -45,6 +45,20 @@ std::string message_of(const std::function<void()>& work) {
   return "nothing was thrown";
 }
 
+/// A journal that a repository keeps by Git LFS.
+TEST(Store, IsNotResumedFromAPointer) {
+  const StoreFolder folder;
+  const std::string pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n";
+  write_file(folder.file, pointer);
+  try {
+    (void)folder.resumed();
+    ADD_FAILURE() << "resumed";
+  } catch (const InvalidInput& error) {
+    EXPECT_NE(std::string(error.what()).find("is a Git LFS pointer"), std::string::npos) << error.what();
+  }
+  EXPECT_EQ(read_beginning(folder.file, 1000), pointer);
+}
+
 TEST(Store, KeepsRecordsInTheirOrder) {
   const StoreFolder folder;
   {

@@ -103,7 +103,7 @@ def _from_geo(arguments: argparse.Namespace, parts: dict[str, str], regions: dic
         raise InvalidInput(f"{arguments.body}: only --backend gmsh reads that")
     if parts:
         raise InvalidInput(
-            f"{arguments.body}: its physical groups are the regions; --part goes with .stl, .obj, .ply or CAD models"
+            f"{arguments.body}: its physical groups are the regions; --part goes with .stl, .obj, .ply, .off or CAD models"
         )
     scale = MM_PER_UNIT[arguments.unit]
     mesh = mesh_geo(Path(arguments.body), arguments.edge_length / scale)
@@ -150,7 +150,7 @@ def _parser() -> argparse.ArgumentParser:
         "--body",
         metavar="F",
         required=True,
-        help=".stl, .obj or .ply; with --backend gmsh also .step, .brep, .iges and .geo",
+        help=".stl, .obj, .ply or .off; with --backend gmsh also .step, .brep, .iges and .geo",
     )
     one.add_argument(
         "--chamber",

@@ -53,7 +53,7 @@ def from_surfaces(
 ) -> VolumeMesh:
     """A volume mesh of a body with chambers and parts, each given by its surface.
 
-    body, chambers, parts: surfaces by region name: files (.stl, .obj, .ply; with backend 'gmsh' .step too),
+    body, chambers, parts: surfaces by region name: files (.stl, .obj, .ply, .off; with backend 'gmsh' .step too),
         `Surface`s, pairs (vertices, triangles), PyVista or meshio meshes. They may have holes (which are closed),
         flipped faces and self-intersections. Chambers lie within the body, as shells of the body's own surface or not.
         Parts that stick out of the body add to it. Where they overlap, chambers count before parts, and the smaller

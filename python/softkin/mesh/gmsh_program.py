@@ -16,6 +16,7 @@ from .errors import InvalidInput
 from .msh_read import read_msh
 from .repair import components, open_edges
 from .surface import Surface, SurfaceLike, as_surface
+from .surface_files import refuse_lfs_pointer
 from .volume_mesh import VolumeMesh
 from .winding import winding_numbers
 
@@ -44,6 +45,7 @@ def read_surface(given: SurfaceLike, name: str) -> Surface:
         return as_surface(given, name)
     if not Path(given).is_file():
         raise InvalidInput(f"{given}: no such file")
+    refuse_lfs_pointer(Path(given))
     with tempfile.TemporaryDirectory() as folder:
         script = (
             f'SetFactory("OpenCASCADE");\nMerge "{Path(given).resolve()}";\nMesh.MeshSizeFromCurvature ='
@@ -60,6 +62,7 @@ def mesh_geo(path: Path, edge_length: float) -> VolumeMesh:
     path = Path(path)
     if not path.is_file():
         raise InvalidInput(f"{path}: no such file")
+    refuse_lfs_pointer(path)
     heading = 'SetFactory("OpenCASCADE");\n' if path.suffix.lower() in CAD else ""
     bound = _size(0, edge_length) + "Mesh.MshFileVersion = 2.2;\nMesh.Binary = 0;\nMesh.ElementOrder = 1;\n"
     with tempfile.TemporaryDirectory() as folder:

@@ -9,6 +9,7 @@ import numpy as np
 from .arrays import Array
 from .elements import positive, renumbering
 from .errors import InvalidInput
+from .surface_files import refuse_lfs_pointer
 from .volume_mesh import VolumeMesh
 
 CORNERS = {15: 1, 1: 2, 2: 3, 3: 4, 4: 4, 5: 8, 6: 6, 7: 5}  # by type of Gmsh, order 1; others are refused
@@ -51,6 +52,7 @@ def read_msh(path: str | Path) -> VolumeMesh:
         content = path.read_bytes()
     except OSError as error:
         raise InvalidInput(f"{path}: {error.strerror}") from None
+    refuse_lfs_pointer(path, content)
     heading = _section(path, content, "MeshFormat").split(b"\n")[0].split()
     version, binary = heading[0].decode(), heading[1:2] == [b"1"]
     if version not in ("4.1", "2.2") or (binary and version == "2.2"):

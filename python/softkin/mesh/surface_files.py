@@ -1,7 +1,8 @@
-"""Surfaces from STL, OBJ and PLY files; STL out."""
+"""Surfaces from STL, OBJ, PLY and OFF files; STL out."""
 
 from __future__ import annotations
 
+import re
 import struct
 from collections.abc import Callable
 from pathlib import Path
@@ -24,21 +25,51 @@ Elements = list[tuple[str, int, Properties]]  # name, how many, properties
 Polygons = list[tuple[str, list[int]]]  # place in the file, vertices
 
 
+LFS = b"version https://git-lfs.github.com/spec/"
+
+
+def refuse_lfs_pointer(path: Path, content: bytes | None = None) -> None:
+    """Throws InvalidInput where Git LFS left a pointer in place of the file, whose content is read where not given."""
+    if content is None:
+        with path.open("rb") as file:
+            content = file.read(len(LFS))
+    if content.startswith(LFS):
+        raise InvalidInput(f"{path}: is a Git LFS pointer, not the file itself; run `git lfs pull`")
+
+
 def read_surface(path: str | Path) -> Surface:
-    """Reads .stl (text, binary), .obj or .ply (text, binary); polygons become fans of triangles, points at the same
-    place are merged. Lengths as they are in the file. Throws InvalidInput with file and line or byte."""
+    """Reads STL (text, binary), OBJ, PLY (text, binary) or OFF (text), which the content tells, else the extension;
+    polygons become fans of triangles, points at the same place are merged. Lengths as they are in the file. Throws
+    InvalidInput with file and line or byte."""
     path = Path(path)
-    readers: dict[str, Callable[[Path, bytes], Surface]] = {".stl": _stl, ".obj": _obj, ".ply": _ply}
-    reader = readers.get(path.suffix.lower())
-    if reader is None:
-        raise InvalidInput(f"{path}: surfaces are .stl, .obj or .ply; backend 'gmsh' reads CAD models too")
+    readers: dict[str, Callable[[Path, bytes], Surface]] = {".stl": _stl, ".obj": _obj, ".ply": _ply, ".off": _off}
     try:
         content = path.read_bytes()
     except OSError as error:
         raise InvalidInput(f"{path}: {error.strerror}") from None
-    if not content:
+    if not content.strip():
         raise InvalidInput(f"{path}: the file is empty")
+    refuse_lfs_pointer(path, content)
+    reader = readers.get(_form(content) or path.suffix.lower())
+    if reader is None:
+        raise InvalidInput(f"{path}: surfaces are STL, OBJ, PLY or OFF; backend 'gmsh' reads CAD models too")
     return reader(path, content).merged()
+
+
+def _form(content: bytes) -> str:
+    """The extension of what the content is, where it tells."""
+    if len(content) >= 134 and len(content) == 84 + 50 * struct.unpack("<I", content[80:84])[0]:
+        return ".stl"
+    lines = (line.split(b"#")[0].split() for line in content[:4096].splitlines())
+    first = next((words[0] for words in lines if words), b"")
+    if first == b"ply" or (first.lower() == b"solid" and b"facet" in content[:2000].lower()):
+        return ".ply" if first == b"ply" else ".stl"
+    if _OFF.fullmatch(first):
+        return ".off"
+    return ".obj" if first in (b"v", b"vn", b"vt", b"f", b"o", b"g", b"s", b"mtllib", b"usemtl") else ""
+
+
+_OFF = re.compile(rb"(ST)?C?N?4?n?OFF")
 
 
 def write_stl(path: str | Path, surface: Surface) -> None:
@@ -259,6 +290,39 @@ def _binary_lists(
             at += length * value.itemsize
         polygons.append((f"byte {begin}", polygon))
     return polygons, at
+
+
+def _off(path: Path, content: bytes) -> Surface:
+    rows = ((line, text.split("#")[0].split()) for line, text in enumerate(_lines(content), 1))
+    lines = [(line, words) for line, words in rows if words]
+    keyword = lines[0][1][0] if lines else ""
+    if _OFF.fullmatch(keyword.encode()):
+        if "4" in keyword or "n" in keyword or "BINARY" in lines[0][1]:
+            raise InvalidInput(f"{path}:{lines[0][0]}: '{' '.join(lines[0][1])}': text of three coordinates is read")
+        lines[0] = (lines[0][0], lines[0][1][1:])
+        lines = lines if lines[0][1] else lines[1:]
+    if not lines:
+        raise InvalidInput(f"{path}: no numbers of vertices and faces")
+    line, words = lines[0]
+    vertices, faces = (_whole(path, line, word) for word in (words[:2] if len(words) > 1 else ["", ""]))
+    if len(lines) != 1 + vertices + faces:
+        raise InvalidInput(f"{path}:{line}: {vertices} vertices and {faces} faces are told, {len(lines) - 1} lines follow")
+    points = [_numbers(path, line, words, 3) for line, words in lines[1 : 1 + vertices]]
+    polygons: Polygons = []
+    for line, words in lines[1 + vertices :]:
+        corners = [_whole(path, line, word) for word in words[1 : 1 + _whole(path, line, words[0])]]
+        if len(corners) != int(words[0]) or max(corners, default=0) >= vertices:
+            raise InvalidInput(f"{path}:{line}: a face needs {words[0]} vertices from 0 to {vertices - 1}")
+        polygons.append((f"line {line}", corners))
+    if not polygons:
+        raise InvalidInput(f"{path}: no faces")
+    return Surface(np.array(points), np.array(_fans(path, polygons)), str(path))
+
+
+def _whole(path: Path, line: int, word: str) -> int:
+    if not word.isdecimal():
+        raise InvalidInput(f"{path}:{line}: '{word}' is no whole number")
+    return int(word)
 
 
 def _fans(path: Path, polygons: Polygons) -> list[tuple[int, int, int]]:

@@ -30,6 +30,13 @@ std::ifstream opened(const fs::path& path) {
   return std::ifstream(path, std::ios::binary);
 }
 
+constexpr std::string_view lfs_mark = "version https://git-lfs.github.com/spec/";
+
+void refuse_pointer(const fs::path& path, std::string_view content) {
+  if (content.starts_with(lfs_mark))
+    throw InvalidInput({path.string()}, "is a Git LFS pointer, not the file itself; run `git lfs pull`");
+}
+
 }  // namespace
 
 std::string read_file(const fs::path& path) {
@@ -40,7 +47,13 @@ std::string read_file(const fs::path& path) {
     if (stream && fs::is_empty(path, failure)) return "";
     throw InvalidInput({path.string()}, "cannot be read");
   }
-  return std::move(content).str();
+  std::string text = std::move(content).str();
+  refuse_pointer(path, text);
+  return text;
+}
+
+void refuse_lfs_pointer(const fs::path& path) {
+  refuse_pointer(path, read_beginning(path, lfs_mark.size()));
 }
 
 std::string read_beginning(const fs::path& path, std::size_t most) {

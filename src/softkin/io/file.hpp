@@ -10,10 +10,12 @@
 
 namespace softkin {
 
-/// The whole file. Throws InvalidInput when it cannot be read.
+/// The whole file. Throws InvalidInput when it cannot be read, or is a pointer that Git LFS left in place of a file.
 [[nodiscard]] std::string read_file(const std::filesystem::path& path);
 /// At most so many bytes from its beginning.
 [[nodiscard]] std::string read_beginning(const std::filesystem::path& path, std::size_t most);
+/// Throws InvalidInput where a file is a pointer of Git LFS; for files that read_file does not read.
+void refuse_lfs_pointer(const std::filesystem::path& path);
 
 /// Writes beside the file and renames, so that a reader never sees half a file. Throws InvalidInput on failure.
 void write_file(const std::filesystem::path& path, std::string_view content);

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <memory>
 #include <softkin/core/error.hpp>
+#include <softkin/io/file.hpp>
 #include <softkin/runs/store.hpp>
 
 namespace softkin::runs {
@@ -48,6 +49,7 @@ void each_line(int file, std::size_t offset, const std::function<bool(std::strin
 
 Store::Store(fs::path path, const std::string& head, bool resume) : path_(std::move(path)), head_(head) {
   const bool begin = !resume || path_.empty() || !fs::exists(path_);
+  if (!begin) refuse_lfs_pointer(path_);
   open(begin);
   try {
     if (begin || ends_within(head)) {

@@ -138,6 +138,7 @@ Film::Film(std::vector<fs::path> files, std::optional<double> rate) : name_(file
     rate_ = *rate;
   } else {
     (void)fs::file_size(files[0]);  // names what is wrong with the file
+    refuse_lfs_pointer(files[0]);
     video_ = opencv::open_video(name_);
     if (!video_) throw InvalidInput({name_}, "not a video that can be read");
     rate_ = rate ? *rate : video_->rate();

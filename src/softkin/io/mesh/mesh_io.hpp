@@ -55,7 +55,8 @@ void write_mesh(const std::filesystem::path& path, const Mesh& mesh);
 void write_gmsh(const std::filesystem::path& path, const Mesh& mesh, bool binary = true);
 
 /// Medit .mesh (INRIA, ASCII). References become regions "ref_N" (tetrahedra, prisms) and "surface_ref_N"
-/// (triangles, quadrilaterals), so that a name stands for one region. TetrahedraP2 and TrianglesP2 are of order 2.
+/// (triangles, quadrilaterals), so that a name stands for one region. TetrahedraP2 and TrianglesP2 are of order 2. End may
+/// be missing.
 [[nodiscard]] Mesh read_medit(const std::filesystem::path& path);
 
 /// TetGen .node + .ele (path names either; the other stands beside it) and, where present, .face. Numbering from 0 or
@@ -65,8 +66,8 @@ void write_gmsh(const std::filesystem::path& path, const Mesh& mesh, bool binary
 
 /// Abaqus .inp: *NODE, *ELEMENT (C3D4, C3D6, C3D10), *NSET, *ELSET (also GENERATE, and sets of sets), *SURFACE of
 /// element faces. Sets become regions by their names (spelled as at first mention). Flat files, or one part with one
-/// instance that is not moved; other element types and *INCLUDE, *SYSTEM, *NGEN, ... are refused; materials, steps and
-/// the like are passed over.
+/// instance that is not moved; *INCLUDE of files in the deck's folder; other element types and *SYSTEM, *NGEN, ... are
+/// refused; materials, steps and the like are passed over. Shells alone are a mesh of triangles.
 [[nodiscard]] Mesh read_abaqus(const std::filesystem::path& path);
 
 /// The form that the paper's authors publish: "N vertices", "M tets", coordinates, "4 a b c d" from 0. Sidecars beside
@@ -82,6 +83,12 @@ struct Sidecar {
   bool bare = false;                        // one 0/1 a row, without ids
 };
 [[nodiscard]] Sidecar read_sidecar(const std::filesystem::path& path);  // throws as read_mesh
+
+/// A surface of triangles from a file of STL, OBJ, PLY or OFF (surface_files.hpp), which its content tells, and where
+/// that does not the extension. Lengths as they are in the file.
+///
+/// throws  InvalidInput naming file and line (or byte); of a file of another form what it is
+[[nodiscard]] TriangleSurface read_surface(const std::filesystem::path& path);
 
 /// ASCII (one or several solids) or binary STL; vertices with equal coordinates are welded. Also refused: no facets, a
 /// facet without area, a number that is not finite (normals included), a file that goes on after the last facet.

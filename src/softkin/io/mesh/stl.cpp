@@ -11,10 +11,11 @@
 #include <limits>
 #include <softkin/io/file.hpp>
 #include <softkin/io/mesh/mesh_io.hpp>
+#include <softkin/io/mesh/surface_builder.hpp>
+#include <softkin/io/mesh/surface_files.hpp>
 #include <softkin/io/scanner.hpp>
 #include <string>
 #include <string_view>
-#include <unordered_map>
 #include <utility>
 #include <vector>
 
@@ -26,62 +27,17 @@ constexpr std::size_t kHeaderBytes = 84;  // 80 of text, the number of facets
 constexpr std::size_t kFacetBytes = 50;   // normal, three vertices, two bytes of attribute
 constexpr bool kSwap = std::endian::native == std::endian::big;
 
-using Corner = std::array<double, 3>;
-using Corners = std::array<Corner, 3>;
+using Corner = SurfaceCorner;
+using Corners = FacetCorners;
 
 bool is_token(std::string_view text, std::string_view word) {
   return std::equal(text.begin(), text.end(), word.begin(), word.end(),
                     [](char a, char b) { return std::tolower(static_cast<unsigned char>(a)) == b; });
 }
 
-/// Twice the area, as a vector; zero where the corners are on a line as far as double precision can tell.
-Vec3 normal_of(const Vec3& a, const Vec3& b, const Vec3& c) {
-  const Vec3 u = b - a, v = c - a;
-  const double longest = std::max({u.cwiseAbs().maxCoeff(), v.cwiseAbs().maxCoeff(), (c - b).cwiseAbs().maxCoeff()});
-  if (!(longest > 0) || !std::isfinite(longest)) return Vec3::Zero();
-  const Vec3 normal = (u / longest).cross(v / longest);
-  return normal.norm() > 1e-12 ? normal : Vec3::Zero();
-}
-
-class Welder {
- public:
-  void add(const Corners& corners) {
-    Triangle triangle;
-    std::transform(corners.begin(), corners.end(), triangle.begin(), [&](const Corner& c) { return vertex(c); });
-    triangles_.push_back(triangle);
-  }
-
-  TriangleSurface surface() && {
-    TriangleSurface result;
-    result.vertices = Eigen::Map<const Points>(coordinates_.data(), static_cast<Index>(coordinates_.size() / 3), 3);
-    result.triangles = std::move(triangles_);
-    return result;
-  }
-
- private:
-  struct Hash {
-    std::size_t operator()(const Corner& point) const {
-      std::size_t hash = 0;
-      for (const double x : point) hash = hash * 0x9E3779B97F4A7C15u + std::hash<double>{}(x);
-      return hash;
-    }
-  };
-
-  Index vertex(Corner point) {
-    for (double& x : point) x += 0.0;  // -0 becomes 0
-    const auto [found, is_new] = known_.try_emplace(point, static_cast<Index>(known_.size()));
-    if (is_new) coordinates_.insert(coordinates_.end(), point.begin(), point.end());
-    return found->second;
-  }
-
-  std::unordered_map<Corner, Index, Hash> known_;
-  std::vector<double> coordinates_;
-  std::vector<Triangle> triangles_;
-};
-
 void check_area(const Scanner& scanner, std::size_t facet, const Corners& corners) {
   const auto point = [&](int i) { return Vec3(corners[i][0], corners[i][1], corners[i][2]); };
-  if (normal_of(point(0), point(1), point(2)).isZero(0))
+  if (facet_normal(point(0), point(1), point(2)).isZero(0))
     scanner.fail("facet " + std::to_string(facet) + " has no area");
 }
 
@@ -184,11 +140,14 @@ void append(std::string& bytes, const Vec3& vector) {
 
 }  // namespace
 
-TriangleSurface read_stl(const std::filesystem::path& path) {
-  const std::string content = read_file(path);
-  Scanner scanner(path.string(), content);
+TriangleSurface read_stl(const std::string& file, const std::string& content) {
+  Scanner scanner(file, content);
   if (content.empty()) scanner.fail("the file is empty");
   return is_binary(content) ? read_binary(scanner) : read_ascii(scanner);
+}
+
+TriangleSurface read_stl(const std::filesystem::path& path) {
+  return read_stl(path.string(), read_file(path));
 }
 
 void write_stl(const std::filesystem::path& path, const Points& vertices, const std::vector<Triangle>& triangles) {
@@ -209,7 +168,7 @@ void write_stl(const std::filesystem::path& path, const Points& vertices, const 
         fail("vertex " + std::to_string(vertex) + " is not finite in single precision");
       corners[k] = corners[k].cast<float>().cast<double>();
     }
-    const Vec3 normal = normal_of(corners[0], corners[1], corners[2]);
+    const Vec3 normal = facet_normal(corners[0], corners[1], corners[2]);
     if (normal.isZero(0)) fail("facet " + std::to_string(i) + " has no area in single precision");
     append(bytes, Vec3(normal.normalized()));
     for (const Vec3& corner : corners) append(bytes, corner);

@@ -21,14 +21,17 @@ std::string upper_case(std::string_view text) {
   return upper;
 }
 
-std::string read_without_comments(const std::filesystem::path& path) {
-  std::string content = read_file(path);
+std::string without_comments(std::string content) {
   for (std::size_t begin = content.find('#'); begin != std::string::npos; begin = content.find('#', begin)) {
     const std::size_t end = std::min(content.find('\n', begin), content.size());
     std::fill(content.begin() + static_cast<std::ptrdiff_t>(begin), content.begin() + static_cast<std::ptrdiff_t>(end),
               ' ');
   }
   return content;
+}
+
+std::string read_without_comments(const std::filesystem::path& path) {
+  return without_comments(read_file(path));
 }
 
 std::string_view trimmed(std::string_view text) {

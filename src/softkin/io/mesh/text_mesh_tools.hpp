@@ -15,7 +15,9 @@ namespace softkin {
 
 [[nodiscard]] std::string upper_case(std::string_view text);
 
-/// The file with everything from each '#' to the end of its line replaced by blanks: lines keep their numbers.
+/// The text with everything from each '#' to the end of its line replaced by blanks: lines keep their numbers.
+[[nodiscard]] std::string without_comments(std::string text);
+/// The same of a file.
 [[nodiscard]] std::string read_without_comments(const std::filesystem::path& path);
 
 /// Without the blanks around it.

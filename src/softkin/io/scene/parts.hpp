@@ -46,7 +46,7 @@ auto load_file(const Context& context, const Node& node, const Load& load) {
 [[nodiscard]] Sphere read_sphere(const Context& context, const Node& node);
 [[nodiscard]] Cylinder read_cylinder(const Context& context, const Node& node);
 [[nodiscard]] Halfspace read_halfspace(const Context& context, const Node& node);
-/// Of an STL file in a unit of its own or that of the scene.
+/// Of a surface's file (read_surface) in a unit of its own or that of the scene.
 ///
 /// unit  its key; nullptr: the scene's
 [[nodiscard]] TriangleSurface read_surface_file(const Context& context, const Node& file, const Node* unit);
