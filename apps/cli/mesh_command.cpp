@@ -123,7 +123,7 @@ std::string text_of(const SceneVerdict& scene) {
 }
 
 std::string judgement(const MeshVerdict& verdict) {
-  std::string errors = verdict.scene && verdict.scene->error ? "the scene is refused" : "", warnings;
+  std::string errors = verdict.scene && verdict.scene->error ? "the scene is refused" : verdict.no_volume, warnings;
   for (const MeshFinding& finding : verdict.findings) {
     if (finding.count == 0 || finding.severity == MeshSeverity::remark) continue;
     std::string& text = finding.severity == MeshSeverity::error ? errors : warnings;

@@ -217,6 +217,54 @@ Counts edge_counts(const json& report) {
   return found;
 }
 
+/// Two triangles in every form of file: the same words in every command, which say what to do.
+TEST(MeshCheckCommand, AMeshWithoutVolumeIsNotUsable) {
+  const TemporaryFolder folder;
+  GmshText sheet;
+  sheet.vertices = {{0, 0, 0}, {10, 0, 0}, {0, 10, 0}, {10, 10, 0}};
+  sheet.names = {"2 1 \"skin\""};
+  sheet.elements = {{2, 1, {0, 1, 2}}, {2, 1, {1, 3, 2}}};
+  const std::string corners = "0 0 0 0\n10 0 0 0\n0 10 0 0\n10 10 0 0\n";
+  folder.write("a.msh", sheet.text());
+  folder.write("a.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n" + corners +
+                             "Triangles\n2\n1 2 3 1\n2 4 3 1\nEnd\n");
+  folder.write("a.inp",
+               "*NODE\n1,0,0,0\n2,10,0,0\n3,0,10,0\n4,10,10,0\n*ELEMENT, TYPE=S3, ELSET=skin\n1,1,2,3\n2,2,4,3\n");
+  folder.write("a.vtk",
+               "# vtk DataFile Version 3.0\nx\nASCII\nDATASET UNSTRUCTURED_GRID\nPOINTS 4 double\n"
+               "0 0 0 10 0 0 0 10 0 10 10 0\nCELLS 2 8\n3 0 1 2\n3 1 3 2\nCELL_TYPES 2\n5 5\n");
+  ASSERT_EQ(run_program({"mesh", "convert", folder / "a.msh", folder / "a.vtu"}).exit_code, 0);
+  const std::string advice =
+      "the mesh has triangles and no volume element: mesh it in three dimensions, with tetrahedra or prisms; where "
+      "that "
+      "was done, the file lacks them: in Gmsh, which saves physical groups alone where there are any, add the volume "
+      "to "
+      "a physical group, too, or save all elements (Mesh.SaveAll = 1); a mesh of triangles alone serves a robot of "
+      "fabric or film, which the scene describes by `layers` in the physical formulation";
+  const std::string rest =
+      "materials:\n  - {youngs_modulus: 1, poisson_ratio: 0.4}\nfixed:\n  - {box: [[-1, -1, -1], [1, 11, 1]]}\n";
+  for (const std::string form : {"msh", "vtk", "vtu", "mesh", "inp"}) {
+    SCOPED_TRACE(form);
+    const std::string file = folder / ("a." + form);
+    const ProgramResult checked = run_program({"mesh", "check", file});
+    EXPECT_EQ(checked.exit_code, 1);
+    EXPECT_NE(checked.output.find("\nnot usable: " + advice + "\n"), std::string::npos) << checked.output;
+    EXPECT_EQ(check(file).report["no_volume"], advice);
+    const ProgramResult info = run_program({"mesh", "info", file});
+    EXPECT_EQ(info.exit_code, 0);
+    EXPECT_EQ(info.errors, "softkin: warning: " + file + ": " + advice + "\n");
+    folder.write("s.yaml", "softkin: 1\nmesh: {file: a." + form + "}\n" + rest);
+    const ProgramResult solved = run_program({"fk", folder / "s.yaml"});
+    EXPECT_EQ(solved.exit_code, 2);
+    EXPECT_NE(solved.errors.find(advice), std::string::npos) << solved.errors;
+    folder.write("s.yaml", "softkin: 1\nformulation: physical\nmesh: {file: a." + form +
+                               "}\nlayers:\n  - {name: film, region: all, thickness: 0.1, youngs_modulus: 100, "
+                               "poisson_ratio: 0.3}\nfixed:\n  - {vertices: [0, 1, 2]}\n");
+    const ProgramResult layers = run_program({"mesh", "check", folder / "s.yaml"});
+    EXPECT_EQ(layers.exit_code, 0) << layers.output << layers.errors;
+  }
+}
+
 TEST(MeshCheckCommand, EdgesOfOrder2) {
   const TemporaryFolder folder;
   GmshText mesh =

@@ -26,7 +26,7 @@ void check_list(const std::vector<Index>& list, std::size_t end) {
 void check(const Mesh& mesh) {
   const Index vertices = mesh.vertices.rows();
   require(mesh.vertices.allFinite(), "a coordinate is not finite");
-  require(!mesh.tetrahedra.empty() || !mesh.prisms.empty(), "a mesh without elements");
+  require(!mesh.tetrahedra.empty() || !mesh.prisms.empty() || !mesh.triangles.empty(), "a mesh without elements");
   check_vertices(mesh.tetrahedra, vertices);
   check_vertices(mesh.edge_nodes, vertices);
   check_vertices(mesh.prisms, vertices);
@@ -80,6 +80,11 @@ void run_reader(const Input& input) {
   check(read(input.file("mesh.any")));
 }
 
+void run_abaqus(const Input& input) {
+  (void)input.file("more.inp", 1);  // which the deck may include
+  check(read_abaqus(input.file("mesh.inp")));
+}
+
 void run_tetgen(const Input& input) {
   (void)input.file("mesh.ele", 1);
   (void)input.file("mesh.face", 2);
@@ -109,6 +114,13 @@ void run_stl(const Input& input) {
   require(copy.vertices == again.vertices && copy.triangles == again.triangles, "a copied surface reads otherwise");
 }
 
+/// Of any form, as its content says.
+void run_surface(const Input& input) {
+  const TriangleSurface surface = read_surface(input.file("surface.any"));
+  check(surface);
+  require(!surface.triangles.empty(), "a surface without faces");
+}
+
 /// What `softkin mesh` does with a mesh: measures it, looks for faults, writes it in every form.
 void run_review(const Input& input) {
   const std::string file = input.file("mesh.msh").string();
@@ -130,9 +142,10 @@ std::vector<Target> mesh_targets() {
           {"vtu", "vtk.dict", run_reader<read_vtu>},
           {"medit", "text_meshes.dict", run_reader<read_medit>},
           {"tetgen", "text_meshes.dict", run_tetgen},
-          {"abaqus", "text_meshes.dict", run_reader<read_abaqus>},
+          {"abaqus", "text_meshes.dict", run_abaqus},
           {"tet", "text_meshes.dict", run_tet},
           {"stl", "text_meshes.dict", run_stl},
+          {"surface", "surfaces.dict", run_surface},
           {"mesh_review", "gmsh.dict", run_review}};
 }
 

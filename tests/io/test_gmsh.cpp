@@ -115,6 +115,21 @@ TEST_F(Gmsh, ReadsLinesThatEndInCarriageReturns) {
   }
 }
 
+/// Gmsh's window appends such lines; Gmsh passes over whatever stands between sections.
+TEST_F(Gmsh, TextBetweenSectionsIsPassedOver) {
+  const std::string text = "//+\nShow \"*\";\n//+\nHide { Volume{1}; }\n";
+  for (const std::string& content :
+       {kText2, kText4, binary_2(false), binary_2(true), binary_4(false), binary_4(true)}) {
+    const Mesh mesh = read_gmsh("a.msh", content);
+    expect_same(read_gmsh("a.msh", content + text), mesh);
+    expect_same(read_gmsh("a.msh", content + "//+"), mesh);
+    expect_same(read_gmsh("a.msh", text + content), mesh);
+    expect_same(read_gmsh("a.msh", "\n" + text + "\r\n" + content + text), mesh);
+    for (const char* section : {"$Nodes", "$Elements"})
+      expect_same(read_gmsh("a.msh", replaced(content, std::string("\n") + section, "\n" + text + section)), mesh);
+  }
+}
+
 TEST_F(Gmsh, ReadsWhatGmshWrote) {
   const Mesh mesh = read(written_by_gmsh());
   EXPECT_EQ(mesh.vertices.rows(), 4);

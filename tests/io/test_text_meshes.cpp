@@ -1,7 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <numeric>
 #include <softkin/core/error.hpp>
 #include <softkin/io/mesh/mesh_io.hpp>
 #include <sstream>
@@ -112,6 +115,69 @@ TEST(TextMeshes, Abaqus) {
   EXPECT_EQ(skin.quads, Indices{0});
   EXPECT_EQ(mesh.triangles, (std::vector<Triangle>{{0, 2, 1}, {0, 3, 1}, {3, 7, 8}, {1, 3, 2}}));
   EXPECT_EQ(mesh.quads, (std::vector<Quad>{{0, 3, 8, 2}}));
+}
+
+/// A deck in pieces is the deck: keywords, data of a keyword that stands before, files in files and in folders.
+TEST(TextMeshes, AbaqusIncludedFilesAreReadInTheirPlace) {
+  TemporaryFolder whole, parts;
+  const Mesh mesh = read_abaqus(whole.write("a.inp", abaqus_file));
+  std::vector<std::string> lines;
+  for (std::size_t begin = 0, end = 0; begin < abaqus_file.size(); begin = end + 1) {
+    end = std::min(abaqus_file.find('\n', begin), abaqus_file.size());
+    lines.push_back(abaqus_file.substr(begin, end - begin) + "\n");
+  }
+  std::filesystem::create_directory(parts / "mesh");
+  for (std::size_t cut = 0; cut + 4 < lines.size(); ++cut) {
+    const auto text = [&](std::size_t from, std::size_t to) {
+      return std::accumulate(lines.begin() + static_cast<std::ptrdiff_t>(from),
+                             lines.begin() + static_cast<std::ptrdiff_t>(to), std::string());
+    };
+    parts.write("mesh/in.inp", text(cut + 1, cut + 2));
+    parts.write("mesh/out file.inp",
+                text(cut, cut + 1) + "** comment\n*include,\n  Input = mesh/in.inp\n" + text(cut + 2, cut + 3));
+    const auto deck =
+        parts.write("a.inp", text(0, cut) + "*INCLUDE, INPUT=\"mesh\\out file.inp\"\n" + text(cut + 3, lines.size()));
+    const Mesh read = read_abaqus(deck);
+    ASSERT_EQ(read.vertices, mesh.vertices) << cut;
+    ASSERT_EQ(read.tetrahedra, mesh.tetrahedra) << cut;
+    ASSERT_EQ(read.prisms, mesh.prisms) << cut;
+    ASSERT_EQ(read.regions.size(), mesh.regions.size()) << cut;
+    for (std::size_t i = 0; i < mesh.regions.size(); ++i) {
+      EXPECT_EQ(read.regions[i].name, mesh.regions[i].name);
+      EXPECT_EQ(read.regions[i].vertices, mesh.regions[i].vertices);
+      EXPECT_EQ(read.regions[i].triangles, mesh.regions[i].triangles);
+      EXPECT_EQ(read.regions[i].tetrahedra, mesh.regions[i].tetrahedra);
+    }
+  }
+}
+
+/// As sfepy's: sections are complete by their counts.
+TEST(TextMeshes, MeditWithoutEnd) {
+  TemporaryFolder folder;
+  const Mesh whole = read_medit(folder.write("a.mesh", medit_file));
+  const std::string text = medit_file.substr(0, medit_file.rfind("End"));
+  for (const std::string& content : {text, text.substr(0, text.find_last_not_of(" \n") + 1)}) {
+    const Mesh mesh = read_medit(folder.write("b.mesh", content));
+    EXPECT_EQ(mesh.vertices, whole.vertices);
+    EXPECT_EQ(mesh.tetrahedra, whole.tetrahedra);
+    EXPECT_EQ(mesh.prisms, whole.prisms);
+    EXPECT_EQ(mesh.regions.size(), whole.regions.size());
+  }
+}
+
+/// For robots of layers alone.
+TEST(TextMeshes, TrianglesAlone) {
+  TemporaryFolder folder;
+  const std::string corners = "0 0 0 0\n1 0 0 0\n0 1 0 0\n1 1 0 0\n";
+  const Mesh medit = read_medit(folder.write(
+      "a.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n" + corners + "Triangles\n2\n1 2 3 5\n2 4 3 6\n"));
+  EXPECT_EQ(medit.triangles, (std::vector<Triangle>{{0, 1, 2}, {1, 3, 2}}));
+  EXPECT_EQ(region_of_dimension(medit, "surface_ref_6", 2).triangles, Indices{1});
+  const Mesh abaqus = read_abaqus(folder.write("a.inp",
+                                               "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,1,1,0\n*ELEMENT, TYPE=M3D3, "
+                                               "ELSET=film\n1,1,2,3\n2,2,4,3\n"));
+  EXPECT_EQ(abaqus.triangles, medit.triangles);
+  EXPECT_EQ(region_of_dimension(abaqus, "film", 2).triangles, (Indices{0, 1}));
 }
 
 TEST(TextMeshes, AbaqusFacesAreTheFacesOfTheElement) {

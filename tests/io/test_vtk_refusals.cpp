@@ -83,7 +83,7 @@ TEST(VtkRefusals, Legacy) {
            changed("10\n10\n", "99\n10\n")},
           {"a.vtk:13: cell 0 has 4 vertices, but a wedge has 6", changed("10\n10\n", "13\n10\n")},
           {"a.vtk: tetrahedra of order 1 and of order 2 in one mesh", quadratic_and_linear()},
-          {"a.vtk: holds no tetrahedron and no wedge", changed("10\n10\n", "9\n9\n")},
+          {"a.vtk: the mesh has no volume element and no triangle", changed("10\n10\n", "9\n9\n")},
           {"a.vtk:15: CELL_DATA is for 3, but the file has 2 cells", changed("CELL_DATA 2", "CELL_DATA 3")},
           {"a.vtk:15: POINT_DATA is for 2, but the file has 5 points", changed("CELL_DATA 2", "POINT_DATA 2")},
           {"a.vtk:17: expected LOOKUP_TABLE", changed("LOOKUP_TABLE", "TABLE")},

@@ -143,7 +143,7 @@ inline void expect_consistent(const Mesh& mesh) {
   check_cells(mesh.prisms);
   check_cells(mesh.triangles);
   check_cells(mesh.quads);
-  EXPECT_GT(mesh.tetrahedra.size() + mesh.prisms.size(), 0u);
+  EXPECT_GT(mesh.tetrahedra.size() + mesh.prisms.size() + mesh.triangles.size(), 0u);
   const auto check_members = [](const std::vector<Index>& members, std::size_t count) {
     for (std::size_t i = 0; i < members.size(); ++i) {
       ASSERT_TRUE(members[i] >= 0 && static_cast<std::size_t>(members[i]) < count);

@@ -155,7 +155,7 @@ TEST(Compile, BadElementsAndMaterials) {
       {
           {"no element",
            [](RobotSpec& s) { s.mesh.tetrahedra.clear(), s.mesh.triangles.clear(), s.mesh.regions.clear(); },
-           "block: the mesh has no element"},
+           "block: the mesh has no volume element and no triangle: mesh it in three dimensions"},
           {"no volume", [](RobotSpec& s) { s.mesh.tetrahedra.clear(), s.mesh.regions.clear(); },
            "block: the mesh has triangles and no volume element: mesh it in three dimensions"},
           {"all void", [](RobotSpec& s) { s.voids.push_back(named("body")); }, "every element of the mesh is void"},

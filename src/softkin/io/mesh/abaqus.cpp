@@ -4,6 +4,7 @@
 #include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
 #include <softkin/model/mesh/mesh_order.hpp>
+#include <softkin/model/mesh/mesh_review.hpp>
 #include <unordered_map>
 #include <utility>
 
@@ -95,8 +96,8 @@ class AbaqusMeshBuilder {
       const std::string refusal = refusal_of_orders(mesh_);
       if (!refusal.empty()) throw InvalidInput(cards_.origin(element.line), refusal);
     }
-    if (mesh_.tetrahedra.empty() && mesh_.prisms.empty())
-      throw InvalidInput(cards_.origin(cards_.last_line), "the mesh has neither tetrahedra nor prisms");
+    if (mesh_.tetrahedra.empty() && mesh_.prisms.empty() && mesh_.triangles.empty())
+      throw InvalidInput(cards_.origin(cards_.last_line), missing_volume(mesh_));
   }
 
   void add_element(const AbaqusElement& element) {

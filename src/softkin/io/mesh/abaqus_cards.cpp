@@ -3,6 +3,7 @@
 #include <limits>
 #include <map>
 #include <softkin/io/mesh/abaqus_cards.hpp>
+#include <softkin/io/mesh/abaqus_lines.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
 #include <utility>
 
@@ -10,43 +11,11 @@ namespace softkin {
 
 namespace {
 
-/// Capitals; one blank where there are several.
-std::string normal_key(std::string_view text) {
-  std::string key;
-  for (const char c : upper_case(trimmed(text))) {
-    const bool blank = c == ' ' || c == '\t';
-    if (!blank)
-      key += c;
-    else if (key.back() != ' ')
-      key += ' ';
-  }
-  return key;
-}
-
-/// At commas outside of quotes.
-std::vector<std::string_view> split(std::string_view text) {
-  std::vector<std::string_view> parts;
-  std::size_t begin = 0;
-  bool quoted = false;
-  for (std::size_t i = 0; i < text.size(); ++i) {
-    if (text[i] == '"') quoted = !quoted;
-    if (text[i] != ',' || quoted) continue;
-    parts.push_back(trimmed(text.substr(begin, i - begin)));
-    begin = i + 1;
-  }
-  parts.push_back(trimmed(text.substr(begin)));
-  return parts;
-}
-
-std::string unquoted(std::string_view text) {
-  if (text.size() >= 2 && text.front() == '"' && text.back() == '"') text = text.substr(1, text.size() - 2);
-  return std::string(text);
-}
-
-/// Walks an Abaqus input file keyword by keyword; knows of comments, letter case, blanks and continued keyword lines.
+/// Walks an Abaqus input file keyword by keyword; knows of comments, letter case, blanks, continued keyword lines and
+/// included files.
 class AbaqusDeck {
  public:
-  explicit AbaqusDeck(const std::filesystem::path& path) : file_(path.string()), scanner_(path) {}
+  explicit AbaqusDeck(const std::filesystem::path& path) : lines_(path) {}
 
   /// Passes over data lines that are left; false: the file ends
   bool next_keyword() {
@@ -68,7 +37,7 @@ class AbaqusDeck {
     if (!peek() || next_.front() == '*') return false;
     peeked_ = false;
     line_ = next_line_;
-    fields_ = split(next_);
+    fields_ = abaqus_fields(next_);
     continued_ = fields_.back().empty();
     if (continued_) fields_.pop_back();
     return true;
@@ -118,24 +87,21 @@ class AbaqusDeck {
     return value;
   }
 
-  [[nodiscard]] std::size_t line() const { return line_; }
-  [[nodiscard]] Origin origin(std::size_t line) const { return {file_, line}; }
+  [[nodiscard]] AbaqusLine line() const { return line_; }
+  [[nodiscard]] std::vector<std::string> files() const { return lines_.files(); }
+  [[nodiscard]] Origin origin(AbaqusLine line) const { return lines_.origin(line); }
   [[noreturn]] void fail(const std::string& message) const { throw InvalidInput(origin(line_), message); }
 
  private:
   /// Is there a line ahead that is neither blank nor a comment?
   bool peek() {
-    while (!peeked_ && !scanner_.at_end()) {
-      next_ = trimmed(scanner_.line());
-      next_line_ = scanner_.here().line;
-      peeked_ = !next_.starts_with("**");
-    }
+    if (!peeked_) peeked_ = lines_.next(next_, next_line_);
     return peeked_;
   }
 
   void read_parameters(std::string_view text) {
-    const std::vector<std::string_view> parts = split(text);
-    keyword_ = normal_key(parts.front());
+    const std::vector<std::string_view> parts = abaqus_fields(text);
+    keyword_ = abaqus_key(parts.front());
     parameters_.clear();
     repeated_.clear();
     for (std::size_t i = 1; i < parts.size(); ++i)
@@ -144,17 +110,16 @@ class AbaqusDeck {
 
   void add_parameter(std::string_view text) {
     const std::size_t equals = text.find('=');
-    const std::string key = normal_key(text.substr(0, equals));
-    const std::string value = equals == std::string_view::npos ? "" : unquoted(trimmed(text.substr(equals + 1)));
+    const std::string key = abaqus_key(text.substr(0, equals));
+    const std::string value = equals == std::string_view::npos ? "" : without_quotes(trimmed(text.substr(equals + 1)));
     if (!parameters_.emplace(key, value).second) repeated_ = key;
   }
 
-  std::string file_;
-  Scanner scanner_;
+  AbaqusLines lines_;
   bool peeked_ = false;
   std::string_view next_;  // the line ahead, valid where peeked_
-  std::size_t next_line_ = 0;
-  std::size_t line_ = 0;
+  AbaqusLine next_line_;
+  AbaqusLine line_;
   std::string keyword_;
   std::map<std::string, std::string> parameters_;
   std::string repeated_;  // a parameter that stands twice
@@ -184,12 +149,13 @@ constexpr ElementType element_types[] = {
 
 class CardReader {
  public:
-  explicit CardReader(const std::filesystem::path& path) : deck_(path) { cards_.file = path.string(); }
+  explicit CardReader(const std::filesystem::path& path) : deck_(path) {}
 
   AbaqusCards read() {
     if (deck_.next_data()) deck_.fail("data before the first keyword");
     while (deck_.next_keyword()) read_keyword(deck_.keyword());
     cards_.last_line = deck_.line();
+    cards_.files = deck_.files();
     return std::move(cards_);
   }
 
@@ -205,7 +171,6 @@ class CardReader {
     if (keyword == "END ASSEMBLY") in_assembly_ = false;
     if (keyword == "INSTANCE") return begin_instance();
     if (keyword == "END INSTANCE") in_instance_ = false;
-    if (keyword == "INCLUDE") deck_.fail("*INCLUDE is not supported: put the included lines into this file");
     if (keyword == "SYSTEM") deck_.fail("*SYSTEM is not supported: write global Cartesian coordinates");
     static constexpr std::string_view generators[] = {"NCOPY", "NFILL",  "NGEN",   "NMAP",
                                                       "ELGEN", "ELCOPY", "IMPORT", "PARAMETER"};
@@ -217,7 +182,7 @@ class CardReader {
     deck_.allow({"NSET"});
     refuse_in_assembly();
     std::vector<AbaqusItem> numbers;
-    const std::size_t line = deck_.line();
+    const AbaqusLine line = deck_.line();
     const std::string set = deck_.has("NSET") ? deck_.required("NSET") : "";
     while (deck_.next_data()) {
       if (deck_.fields().size() != 4)
@@ -235,7 +200,7 @@ class CardReader {
     deck_.allow({"TYPE", "ELSET"});
     refuse_in_assembly();
     const ElementType type = type_of(upper_case(deck_.required("TYPE")));
-    const std::size_t line = deck_.line();
+    const AbaqusLine line = deck_.line();
     const std::string set = deck_.has("ELSET") ? deck_.required("ELSET") : "";
     std::vector<AbaqusItem> numbers;
     while (deck_.next_data()) {
@@ -284,7 +249,7 @@ class CardReader {
     else
       deck_.allow({"ELSET", "GENERATE", "INSTANCE", "INTERNAL", "UNSORTED"});
     const std::string name = deck_.required(nodes ? "NSET" : "ELSET");
-    const std::size_t line = deck_.line();
+    const AbaqusLine line = deck_.line();
     check_instance_parameter();
     std::vector<AbaqusItem> items;
     if (nodes && deck_.has("ELSET")) {
@@ -318,7 +283,7 @@ class CardReader {
   void read_surface() {
     deck_.allow({"NAME", "TYPE", "INTERNAL"});
     const std::string name = deck_.required("NAME");
-    const std::size_t line = deck_.line();
+    const AbaqusLine line = deck_.line();
     const std::string type = deck_.has("TYPE") ? upper_case(deck_.value("TYPE")) : "ELEMENT";
     if (type != "ELEMENT" && type != "NODE")
       deck_.fail("surface '" + name + "' has TYPE=" + deck_.value("TYPE") +
@@ -395,7 +360,7 @@ class CardReader {
     items.push_back(std::move(item));
   }
 
-  void add_set(const std::string& name, AbaqusSetKind kind, std::vector<AbaqusItem> items, std::size_t line) {
+  void add_set(const std::string& name, AbaqusSetKind kind, std::vector<AbaqusItem> items, AbaqusLine line) {
     if (items.empty()) throw InvalidInput(deck_.origin(line), "'" + name + "' has no members");
     cards_.sets.push_back({name, kind, in_assembly_ && !in_instance_, std::move(items), line});
   }

@@ -1,5 +1,6 @@
 #include <softkin/io/mesh/gmsh_builder.hpp>
 #include <softkin/model/mesh/mesh_order.hpp>
+#include <softkin/model/mesh/mesh_review.hpp>
 
 namespace softkin::gmsh {
 
@@ -130,10 +131,7 @@ void Builder::make_regions() {
 Mesh Builder::take() {
   if (tetrahedra_.size() + prisms_.size() == 0) {
     for (const Triangle& triangle : loose_) (void)triangles_.add(triangle);
-    if (triangles_.size() == 0)
-      in_.fail_file(
-          "holds no volume elements: mesh in three dimensions, with tetrahedra or prisms; or, of a robot of "
-          "`layers` alone, in two, with triangles");
+    if (triangles_.size() == 0) in_.fail_file(missing_volume({}));
   }
   make_regions();
   for (Region& region : regions_)

@@ -65,7 +65,7 @@ bool is_unquotable(std::string_view name) {
 Source::Source(const std::string& file, std::string_view content) : scan_(file, content) {
   if (scan_.at_end()) fail("file is empty: expected $MeshFormat");
   while (open_section() == "Comments") skip_section();
-  if (section_.empty()) fail("file ends before $MeshFormat");
+  if (section_.empty()) fail_file("not a Gmsh mesh: it has no section $MeshFormat");
   if (section_ != "MeshFormat") {
     const std::string why = section_ == "NOD" ? " (MSH version 1 is not supported: save as 4.1 or 2.2)" : "";
     fail("not a Gmsh mesh: expected $MeshFormat, found '" + printable("$" + section_) + "'" + why);
@@ -97,15 +97,22 @@ void Source::read_byte_order() {
 }
 
 std::string Source::open_section() {
-  if (scan_.at_end()) return section_ = "";
-  const std::string_view word = scan_.token("a section");
-  section_origin_ = scan_.here();
-  if (word.size() < 2 || word[0] != '$') fail("expected a section such as $Nodes, found '" + printable(word) + "'");
-  section_ = word.substr(1);
-  if (section_.starts_with("End")) fail("'" + printable(word) + "' closes no section");
-  scan_.end_line();
-  record_begins_ = true;
-  return section_;
+  while (!scan_.at_end()) {
+    const std::string_view line = trimmed(scan_.line());
+    if (!line.starts_with('$'))
+      continue;  // what stands between sections is no business of a mesh: Gmsh's window
+                 // appends lines such as Show "*";
+    section_origin_ = scan_.here();
+    const std::string_view word = line.substr(0, line.find_first_of(" \t"));
+    if (word.size() < 2) fail("expected a section such as $Nodes, found '" + printable(word) + "'");
+    section_ = word.substr(1);
+    if (section_.starts_with("End")) fail("'" + printable(word) + "' closes no section");
+    if (word.size() < line.size())
+      fail("unexpected '" + printable(trimmed(line.substr(word.size()))) + "' at the end of the line");
+    record_begins_ = true;
+    return section_;
+  }
+  return section_ = "";
 }
 
 void Source::close_section() {

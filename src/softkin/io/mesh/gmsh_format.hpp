@@ -52,7 +52,8 @@ inline constexpr std::int64_t kMaxSize = std::numeric_limits<std::int64_t>::max(
 /// A .msh file as sections of values: words, one record a line (ASCII), or binary in either byte order.
 class Source {
  public:
-  /// Reads $MeshFormat; other sections may not stand before it, except $Comments. content must outlive the source.
+  /// Reads $MeshFormat; other sections may not stand before it, except $Comments. Text between sections is passed over,
+  /// as Gmsh does. content must outlive the source.
   Source(const std::string& file, std::string_view content);
 
   [[nodiscard]] bool version_4() const { return version_4_; }

@@ -4,6 +4,7 @@
 #include <softkin/io/mesh/mesh_io.hpp>
 #include <softkin/io/mesh/text_mesh_tools.hpp>
 #include <softkin/model/mesh/mesh_order.hpp>
+#include <softkin/model/mesh/mesh_review.hpp>
 #include <string>
 #include <utility>
 #include <vector>
@@ -43,11 +44,18 @@ class MeditReader {
   Mesh read() {
     scanner_.expect("MeshVersionFormatted");
     (void)scanner_.integer("MeshVersionFormatted", 0, 4);
-    for (std::string name(scanner_.token("End")); name != "End"; name = scanner_.token("End")) read_section(name);
-    if (mesh_.tetrahedra.empty() && mesh_.prisms.empty()) scanner_.fail("the mesh has neither tetrahedra nor prisms");
+    while (!scanner_.at_end()) {  // many write no End: sections are complete by their counts
+      const std::string name(scanner_.token("End"));
+      if (name == "End") {
+        expect_end(scanner_);
+        break;
+      }
+      read_section(name);
+    }
+    if (mesh_.tetrahedra.empty() && mesh_.prisms.empty() && mesh_.triangles.empty())
+      scanner_.fail(missing_volume(mesh_));
     const std::string refusal = refusal_of_orders(mesh_);
     if (!refusal.empty()) scanner_.fail(refusal);
-    expect_end(scanner_);
     append_regions(mesh_, std::move(volumes_), "ref_", 3);
     append_regions(mesh_, std::move(surfaces_), "surface_ref_", 2);
     return std::move(mesh_);

@@ -180,6 +180,8 @@ MeshInfo mesh_info(const std::string& file, const std::string& unit) {
   MeshInfo info{file, unit, measure_mesh(mesh, check_mesh(mesh)),
                 empty_spaces_in(mesh.vertices, mesh.tetrahedra, mesh.prisms)};
   info.warnings = warnings_of(mesh);
+  if (std::string missing = missing_volume(mesh); !missing.empty() && !is_scene(file))
+    info.warnings.push_back(file + ": " + missing);
   info.curved = curved_info(spec);
   return info;
 }
@@ -188,7 +190,7 @@ bool MeshVerdict::usable() const {
   const bool blocked = std::any_of(findings.begin(), findings.end(), [](const MeshFinding& finding) {
     return finding.severity == MeshSeverity::error && finding.count > 0;
   });
-  return (!blocked || errors_accepted()) && !(scene && scene->error);
+  return no_volume.empty() && (!blocked || errors_accepted()) && !(scene && scene->error);
 }
 
 bool MeshVerdict::errors_accepted() const {
@@ -199,6 +201,7 @@ MeshVerdict mesh_verdict(const std::string& file, const std::string& unit) {
   if (!is_scene(file)) {
     const Mesh mesh = read_mesh_in_mm(file, unit);
     MeshVerdict verdict = verdict_of(mesh, file);
+    verdict.no_volume = missing_volume(mesh);
     verdict.empty_spaces = empty_spaces_in(mesh.vertices, mesh.tetrahedra, mesh.prisms);
     return verdict;
   }
@@ -279,6 +282,7 @@ std::string to_json(const MeshVerdict& verdict) {
     json["scene"]["notes"] = verdict.scene->notes;
     json["scene"]["error"] = verdict.scene->error ? Json(*verdict.scene->error) : Json(nullptr);
   }
+  if (!verdict.no_volume.empty()) json["no_volume"] = verdict.no_volume;
   json["usable"] = verdict.usable();
   if (!verdict.warnings.empty()) json["warnings"] = verdict.warnings;
   return json_text(json);

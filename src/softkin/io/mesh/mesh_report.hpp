@@ -51,6 +51,8 @@ struct MeshVerdict {
   std::vector<EmptySpace> empty_spaces;  // that the elements enclose; of a scene that compiles those of the body
   std::optional<SceneVerdict> scene;
   std::vector<std::string> warnings{};  // a sentence each
+  std::string no_volume{};              // what to do where a mesh alone has no volume element; "": it has, or a scene
+                                        // tells what it is
 
   [[nodiscard]] bool usable() const;
   /// Does the scene compile in spite of the mesh's errors?

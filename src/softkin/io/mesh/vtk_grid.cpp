@@ -7,6 +7,7 @@
 #include <set>
 #include <softkin/io/mesh/vtk_grid.hpp>
 #include <softkin/model/mesh/mesh_order.hpp>
+#include <softkin/model/mesh/mesh_review.hpp>
 #include <utility>
 
 namespace softkin {
@@ -104,7 +105,7 @@ class GridMeshBuilder {
     mesh_.vertices = grid_.points;
     for (std::size_t cell = 0; cell < grid_.types.size(); ++cell) place(cell);
     if (mesh_.tetrahedra.empty() && mesh_.prisms.empty() && mesh_.triangles.empty())
-      throw InvalidInput(origin, "holds no tetrahedron and no wedge, so no volume, and no triangle either");
+      throw InvalidInput(origin, missing_volume(mesh_));
     const std::string refusal = refusal_of_orders(mesh_);
     if (!refusal.empty()) throw InvalidInput(origin, refusal);
     for (const CellLabels* labels : labels_) add_regions(*labels);

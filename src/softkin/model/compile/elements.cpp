@@ -2,6 +2,7 @@
 #include <cmath>
 #include <softkin/model/compile/parts.hpp>
 #include <softkin/model/layer.hpp>
+#include <softkin/model/mesh/mesh_review.hpp>
 #include <softkin/model/mesh/quadratic_elements.hpp>
 #include <softkin/model/mesh/surface_tree.hpp>
 
@@ -199,11 +200,9 @@ void name_regions(Compilation& c) {
 void refuse_empty(const Compilation& c) {
   const Mesh& mesh = c.mesh;
   if (!mesh.tetrahedra.empty() || !mesh.prisms.empty()) return;
-  if (mesh.triangles.empty()) throw InvalidInput(c.origin, "the mesh has no element");
-  if (c.spec.formulation == Formulation::physical && !c.spec.layers.empty()) return;
-  throw InvalidInput(c.origin, "the mesh has triangles and no volume element: mesh it in three dimensions; or, where " +
-                                   std::string("the robot is of fabric or film alone, say of what in `layers`") +
-                                   (c.spec.formulation == Formulation::physical ? "" : ", which are `physical`"));
+  const bool is_sheet = c.spec.formulation == Formulation::physical && !c.spec.layers.empty();
+  if (!mesh.triangles.empty() && is_sheet) return;
+  throw InvalidInput(c.origin, missing_volume(mesh));
 }
 
 }  // namespace

@@ -220,6 +220,21 @@ class Collector {
 
 }  // namespace
 
+std::string missing_volume(const Mesh& mesh) {
+  if (!mesh.tetrahedra.empty() || !mesh.prisms.empty()) return "";
+  const bool faces = !mesh.triangles.empty();
+  return std::string("the mesh has ") +
+         (faces ? "triangles and no volume element" : "no volume element and no triangle") +
+         ": mesh it in three dimensions, with tetrahedra or prisms; where that was done, the file lacks them: in "
+         "Gmsh, " +
+         "which saves physical groups alone where there are any, add the volume to a physical group, too, or save "
+         "all " +
+         "elements (Mesh.SaveAll = 1)" +
+         (faces ? "; a mesh of triangles alone serves a robot of fabric or film, which the scene describes by `layers` "
+                  "in the physical formulation"
+                : "");
+}
+
 MeshMeasures measure_mesh(const Mesh& mesh, const MeshCheck& check) {
   MeshMeasures measures;
   measures.order = order_of(mesh);

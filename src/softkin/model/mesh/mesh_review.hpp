@@ -16,6 +16,9 @@ struct RegionMeasures {
   double measure = 0;        // dimension 3: volume [mm^3], 2: area [mm^2]
 };
 
+/// What is wrong with a mesh that has no volume element, and what to do, without a full stop; "" where it has one.
+[[nodiscard]] std::string missing_volume(const Mesh& mesh);
+
 /// Counts and sizes of a mesh. Reversed elements count with their volume as if they were not; sizes and quality of
 /// elements of order 2 are those of their corners.
 struct MeshMeasures {
