@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 from numpy.typing import NDArray
@@ -96,7 +96,7 @@ class ActuatorState:
 
 @dataclass(frozen=True)
 class Reaction:
-    """What an entry of `fixed` does to the robot; physical formulation."""
+    """The force and moment that an entry of `fixed` exerts on the robot; physical formulation."""
 
     name: str
     force_N: Floats
@@ -105,6 +105,11 @@ class Reaction:
     """(3,) about the centre [N mm]"""
     center_mm: Floats
     """(3,) mean of the vertices that it holds [mm]"""
+    air_force_N: dict[str, Floats] = field(default_factory=dict)
+    """(3,) by actuator, of each chamber that the support closes: force of its pressure on the support [N], which is no
+    part of `force_N`"""
+    air_moment_Nmm: dict[str, Floats] = field(default_factory=dict)
+    """(3,) the same, moment about the centre [N mm]"""
 
 
 @dataclass(frozen=True)

@@ -159,8 +159,15 @@ class Shape(Saving[CoreShape]):
     def reactions(self) -> dict[str, Reaction]:
         """By the name of the entry of `fixed`; physical formulation, else zero."""
         return {
-            name: Reaction(name, np.array(force), np.array(moment), np.array(center))
-            for name, (force, moment, center) in zip(self._robot.supports, self._core.reactions)
+            name: Reaction(
+                name,
+                np.array(force),
+                np.array(moment),
+                np.array(center),
+                {chamber: np.array(of) for chamber, of, _ in chambers},
+                {chamber: np.array(of) for chamber, _, of in chambers},
+            )
+            for name, (force, moment, center, chambers) in zip(self._robot.supports, self._core.reactions)
         }
 
     @cached_property

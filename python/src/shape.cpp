@@ -103,12 +103,18 @@ void bind_fields(nb::class_<Shape>& type) {
           "reactions",
           [](const Shape& s) {
             using Three = std::array<double, 3>;
-            std::vector<std::tuple<Three, Three, Three>> all;
-            for (const Reaction& r : s.record().forces.reactions)
-              all.emplace_back(array_of(r.force), array_of(r.moment), array_of(r.center));
+            using Chambers = std::vector<std::tuple<std::string, Three, Three>>;
+            std::vector<std::tuple<Three, Three, Three, Chambers>> all;
+            for (const Reaction& r : s.record().forces.reactions) {
+              Chambers chambers;
+              for (const ChamberForce& of : r.chambers)
+                chambers.emplace_back(s.model().actuators[of.actuator].name, array_of(of.force), array_of(of.moment));
+              all.emplace_back(array_of(r.force), array_of(r.moment), array_of(r.center), std::move(chambers));
+            }
             return all;
           },
-          "Force [N], moment [N mm] and centre [mm] of every support.")
+          "Force [N], moment [N mm] and centre [mm] of every support; and by chambers that it closes, name, force and "
+          "moment of the pressure on it.")
       .def_prop_ro(
           "magnetic_load",
           [](const Shape& s) {

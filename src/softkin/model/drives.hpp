@@ -38,6 +38,14 @@ struct ConnectedChamber {
   Index end = 0;       // in ChamberDrive::cavity
 };
 
+/// A face of a chamber's boundary where a support closes the chamber: no material of the robot lies behind it, and the
+/// vertices that carry it are held against its normal. The pressure in the chamber acts on the support there, not on the
+/// robot.
+struct ChamberCap {
+  Index face = -1;     // index into ChamberDrive::cavity, or into its surface where it has one
+  Index support = -1;  // index into Held::supports: the support that closes the chamber there
+};
+
 /// A chamber, or several that are connected: by its elements, by its boundary, or by a surface that the body carries.
 struct ChamberDrive {
   std::vector<Index> tetrahedra{};            // target-shape: elements of Model
@@ -47,6 +55,7 @@ struct ChamberDrive {
   std::optional<Filling> filling{};           // physical: of control filling
   std::vector<ConnectedChamber> connected{};  // physical: of several
   bool flat = false;                          // encloses nothing at rest, as an empty bag does
+  std::vector<ChamberCap> caps{};             // physical: where supports close it
 };
 
 /// A layer of a dielectric elastomer.

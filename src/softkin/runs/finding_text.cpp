@@ -83,7 +83,11 @@ struct Telling {
            number(least.value, 4) + " to " + number(greatest.value, 4) + " MPa";
   }
   std::string operator()(const finding::Support& of) const {
-    return "support '" + of.name + "' exerts " + wrench_text(of.exerts);
+    std::string text = "support '" + of.name + "' exerts " + wrench_text(of.exerts);
+    for (const ChamberForce& chamber : of.exerts.chambers)
+      text += "; the pressure of '" + model.actuators[chamber.actuator].name + "' acts on the support with " +
+              place_text(chamber.force) + " N";
+    return text;
   }
   std::string operator()(const MagneticLoad& of) const { return "magnetic fields exert " + wrench_text(of); }
   std::string operator()(const finding::Contact& of) const {

@@ -73,11 +73,20 @@ void add_branch(const StepRecord& record, std::vector<Finding>& found) {
   found.emplace_back(std::move(chosen));
 }
 
+/// Without what is but rounding, of the forces of chambers, too.
+Reaction rounded(Reaction reaction, const Model& model, const StepRecord& record) {
+  const double rounding = 1e-9 * record.physical.pull_N;
+  for (ChamberForce& chamber : reaction.chambers)
+    for (double& component : chamber.force)
+      if (!(std::abs(component) > rounding)) component = 0;
+  return without_rounding(std::move(reaction), model, record);
+}
+
 void add_forces(const Model& model, const StepRecord& record, std::vector<Finding>& found) {
   if (record.forces.stress) found.emplace_back(*record.forces.stress);
   for (std::size_t s = 0; s < record.forces.reactions.size(); ++s)
     found.emplace_back(
-        finding::Support{model.held.supports[s].name, without_rounding(record.forces.reactions[s], model, record)});
+        finding::Support{model.held.supports[s].name, rounded(record.forces.reactions[s], model, record)});
   if (record.forces.magnetic) found.emplace_back(without_rounding(*record.forces.magnetic, model, record));
   add_contacts(model, record, found);
   if (record.physical.buckled > 0)

@@ -35,11 +35,27 @@ StressExtremes stress_of(const Json& json) {
   return stress;
 }
 
-Json reaction_json(const Support& support, const Reaction& reaction) {
-  return {{"support", support.name},
-          {"force_N", json_of(reaction.force)},
-          {"moment_N_mm", json_of(reaction.moment)},
-          {"center_mm", json_of(reaction.center)}};
+Json reaction_json(const Model& model, const Support& support, const Reaction& reaction) {
+  Json json = {{"support", support.name},
+               {"force_N", json_of(reaction.force)},
+               {"moment_N_mm", json_of(reaction.moment)},
+               {"center_mm", json_of(reaction.center)}};
+  for (const ChamberForce& chamber : reaction.chambers)
+    json["chambers"].push_back({{"actuator", model.actuators[chamber.actuator].name},
+                                {"air_force_N", json_of(chamber.force)},
+                                {"air_moment_N_mm", json_of(chamber.moment)}});
+  return json;
+}
+
+Reaction reaction_of(const Model& model, const Json& json) {
+  Reaction reaction{point_of(json.at("force_N")), point_of(json.at("moment_N_mm")), point_of(json.at("center_mm")), {}};
+  if (!json.contains("chambers")) return reaction;
+  for (const Json& each : json.at("chambers")) {
+    const std::optional<Index> actuator = find_actuator(model, each.at("actuator").get<std::string>());
+    if (!actuator) throw std::out_of_range("no such actuator");
+    reaction.chambers.push_back({*actuator, point_of(each.at("air_force_N")), point_of(each.at("air_moment_N_mm"))});
+  }
+  return reaction;
 }
 
 Json magnetic_json(const MagneticLoad& load) {
@@ -112,7 +128,7 @@ Json physical_json(const Model& model, const StepRecord& record) {
   json["limit"] = record.worst ? worst_json(*record.worst) : Json();
   json["reactions"] = Json::array();
   for (std::size_t s = 0; s < record.forces.reactions.size(); ++s)
-    json["reactions"].push_back(reaction_json(model.held.supports[s], record.forces.reactions[s]));
+    json["reactions"].push_back(reaction_json(model, model.held.supports[s], record.forces.reactions[s]));
   if (model.magnetism) json["magnetic"] = record.forces.magnetic ? magnetic_json(*record.forces.magnetic) : Json();
   if (!record.forces.fibres.empty()) json["fibres"] = fibres_json(model, record.forces.fibres);
   if (!record.forces.layers.empty()) json["layers"] = layers_json(model, record.forces.layers);
@@ -129,9 +145,7 @@ void read_physical(const Model& model, const Json& json, StepRecord& record) {
   if (const Json& stress = json.at("stress"); !stress.is_null()) record.forces.stress = stress_of(stress);
   if (json.contains("branch")) record.physical.branch = branch_of(model, json.at("branch"));
   if (const Json& worst = json.at("limit"); !worst.is_null()) record.worst = worst_of(worst);
-  for (const Json& each : json.at("reactions"))
-    record.forces.reactions.push_back(
-        {point_of(each.at("force_N")), point_of(each.at("moment_N_mm")), point_of(each.at("center_mm"))});
+  for (const Json& each : json.at("reactions")) record.forces.reactions.push_back(reaction_of(model, each));
   if (model.magnetism)
     if (const Json& load = json.at("magnetic"); !load.is_null())
       record.forces.magnetic = {point_of(load.at("force_N")), point_of(load.at("moment_N_mm")),

@@ -218,6 +218,10 @@ std::vector<Reaction> reactions(const Model& model, const Points& positions, con
       all[s].force += force;
       all[s].moment += (vertex_at(positions, v) - all[s].center).cross(force);
     }
+  std::vector<Vec3> centers;
+  for (const Reaction& reaction : all) centers.push_back(reaction.center);
+  std::vector<std::vector<ChamberForce>> chambers = chamber_forces(model, positions, centers, deformation.multipliers);
+  for (std::size_t s = 0; s < all.size(); ++s) all[s].chambers = std::move(chambers[s]);
   return all;
 }
 

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <softkin/model/model.hpp>
+#include <softkin/statics/chamber_caps.hpp>
 #include <softkin/statics/contact_forces.hpp>
 
 namespace softkin {
@@ -58,7 +59,8 @@ struct ElementDeformation {
   // Physical, and of Statics::measured() alone; else empty.
   ElementStress stress;
   Eigen::VectorXd multipliers;  // m: tension [N], gauge pressure [kPa], voltage of a dea [kV]
-  Points reactions;  // #V by 3: what supports push and pull at the vertices that they hold [N]; 0 along free axes
+  Points reactions;  // #V by 3: forces of the supports on the robot at the vertices that they hold [N]; 0 along free
+                     // axes; without pressures of chambers on the supports themselves, see ChamberForce
   std::optional<ContactForces> contacts;               // where the robot may touch anything
   std::optional<MagneticLoad> magnetic;                // where there is a magnetic field
   std::vector<std::optional<TendonForces>> tendons{};  // per actuator where any cable rubs; of those
@@ -67,13 +69,17 @@ struct ElementDeformation {
 };
 [[nodiscard]] ElementDeformation deformation_of(const Model& model, const Points& positions);  // of #V by 3 [mm]
 
-/// What an entry of the scene's `fixed` does to the robot.
+/// The reaction of an entry of the scene's `fixed`: the force and moment that the support exerts on the robot. The
+/// reactions, the loads on the robot and the pressures on the walls of its chambers are in equilibrium. Where a support
+/// closes a chamber, the pressure also acts on the support itself; that force is no part of the reaction.
 struct Reaction {
-  Vec3 force = Vec3::Zero();   // that the support exerts on the robot [N]
-  Vec3 moment = Vec3::Zero();  // the same, about the centre [N mm]
-  Vec3 center = Vec3::Zero();  // mean of the vertices that it holds, where they are [mm]
+  Vec3 force = Vec3::Zero();             // that the support exerts on the robot [N]
+  Vec3 moment = Vec3::Zero();            // the same, about the centre [N mm]
+  Vec3 center = Vec3::Zero();            // mean of the vertices that it holds, where they are [mm]
+  std::vector<ChamberForce> chambers{};  // of each chamber that the support closes, on the support
 };
-/// Of every support, in their order; deformation: of positions, with its reactions.
+/// Of every support, in their order; deformation: of positions, with its reactions; the forces of chambers follow where
+/// it has multipliers.
 [[nodiscard]] std::vector<Reaction> reactions(const Model& model, const Points& positions,
                                               const ElementDeformation& deformation);
 

@@ -81,9 +81,23 @@ std::array<Index, 3> sorted(Triangle corners) {
   return corners;
 }
 
-/// The faces of a cavity that are none of the body's elements, nor of sheets.
-std::vector<CavityFace> open_faces(const Model& model, const std::vector<Triangle>& sheets,
-                                   const std::vector<CavityFace>& cavity) {
+/// The faces of layers that are groups of faces of the mesh.
+std::vector<Triangle> faces_of_layers(const Compilation& c) {
+  std::vector<Triangle> faces;
+  for (const auto& spec : c.spec.layers) {
+    const auto* where = std::get_if<RegionRef>(&spec->where);
+    if (where == nullptr) continue;
+    const Region region = c.regions.resolve(*where);
+    if (region.dimension != 2) continue;
+    for (const Index i : region.triangles) faces.push_back(c.mesh.triangles[i]);
+  }
+  return faces;
+}
+
+}  // namespace
+
+std::vector<Index> open_faces(const Compilation& c, const std::vector<CavityFace>& cavity) {
+  const Model& model = c.model;
   std::vector<bool> marked(model.elements.used.size());
   for (const CavityFace& face : cavity)
     for (const Index v : face.corners) marked[v] = true;
@@ -100,22 +114,18 @@ std::vector<CavityFace> open_faces(const Model& model, const std::vector<Triangl
     for (const auto& q : prism_quads)  // either diagonal may have split it
       for (int i = 0; i < 4; ++i) add(p[q[i]], p[q[(i + 1) % 4]], p[q[(i + 2) % 4]]);
   }
-  for (const Triangle& t : sheets) shared.push_back(sorted(t));
+  for (const Triangle& t : faces_of_layers(c)) shared.push_back(sorted(t));
   sort_unique(shared);
-  std::vector<CavityFace> open;
-  for (const CavityFace& face : cavity)
-    if (!std::binary_search(shared.begin(), shared.end(), sorted(face.corners))) open.push_back(face);
+  std::vector<Index> open;
+  for (std::size_t f = 0; f < cavity.size(); ++f)
+    if (!std::binary_search(shared.begin(), shared.end(), sorted(cavity[f].corners))) open.push_back(f);
   return open;
 }
 
-/// Can the face change neither its place nor, in its plane, what it closes? So a plate or a plane of symmetry may close
-/// the chamber there: all of its vertices are held, or all along the axis to which it is normal. Vertices of no element
-/// stay at rest, so that where there are such the others must be held at rest too.
-bool is_plate(const Model& model, const CavityFace& face, bool loose) {
-  const std::vector<Index> vertices = nodes_of(face);
+bool is_plate(const Model& model, const std::vector<Index>& vertices, bool at_rest) {
   const auto held = [&](Index v, int axis) {
     return model.held.fixed[v][axis] &&
-           (!loose || (model.held.at(v, axis) == model.rest(v, axis) && turn_of(model, v) == nullptr));
+           (!at_rest || (model.held.at(v, axis) == model.rest(v, axis) && turn_of(model, v) == nullptr));
   };
   const auto all_held = [&](int axis) {
     return std::all_of(vertices.begin(), vertices.end(), [&](Index v) { return held(v, axis); });
@@ -131,9 +141,12 @@ bool is_plate(const Model& model, const CavityFace& face, bool loose) {
   return false;
 }
 
+namespace {
+
 void check_openings(const Compilation& c, const ActuatorSpec& spec, const ChamberDrive& chamber) {
   const Model& model = c.model;
-  const std::vector<CavityFace> open = open_faces(model, c.sheets, chamber.cavity);
+  std::vector<CavityFace> open;
+  for (const Index face : open_faces(c, chamber.cavity)) open.push_back(chamber.cavity[face]);
   const bool loose = std::any_of(open.begin(), open.end(), [&](const CavityFace& face) {
     return std::any_of(face.corners.begin(), face.corners.end(), [&](Index v) { return !model.elements.used[v]; });
   });
@@ -142,7 +155,7 @@ void check_openings(const Compilation& c, const ActuatorSpec& spec, const Chambe
   std::vector<Shell> openings = shells_of(model.rest, triangles);
   std::erase_if(openings, [&](const Shell& opening) {
     return std::all_of(opening.triangles.begin(), opening.triangles.end(),
-                       [&](Index t) { return is_plate(model, open[t], loose); });
+                       [&](Index t) { return is_plate(model, nodes_of(open[t]), loose); });
   });
   if (openings.empty()) return;
   std::string text;

@@ -151,6 +151,7 @@ Model compile(const RobotSpec& spec) {
   compile_actuator_points(c);
   compile_supports(c);
   check_openings(c);
+  compile_caps(c);
   compile_markers(c);
   compile_feet(c);
   compile_loads(c);

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <softkin/statics/chamber_caps.hpp>
 #include <softkin/statics/physical/bordered.hpp>
 #include <softkin/statics/physical/contact_steps.hpp>
 #include <softkin/statics/physical/derivative.hpp>
@@ -108,12 +109,22 @@ Eigen::VectorXd Derivative::multipliers(Index column) const {
   return multipliers;
 }
 
-/// What supports exert changes as the gradient where they hold: by the number itself, by the moves, and by what the
-/// held measures' multipliers pull with. force: the first of these
-Points Derivative::reactions(const Iterate& at, const Demand& demand, Index column, Points force) {
-  system_.add_pull(at, demand, balance_, positions(at, column), work_, force, team_);
+/// The derivative of the supports' forces is that of the gradient where they hold: by the number itself, by the moves,
+/// and by the held measures' multipliers; without the pressure on what closes chambers.
+///
+/// force  the first of these
+/// loads  derivatives of all tensions and pressures, as users know them
+Points Derivative::reactions(const Iterate& at, const Demand& demand, Index column, Points force,
+                             const Eigen::VectorXd& loads) {
+  const Points moves = positions(at, column);
+  system_.add_pull(at, demand, balance_, moves, work_, force, team_);
   for (Index i = 0; i < std::ssize(held_); ++i)
     force += system_.measures().sign(held_[i]) * found_.multipliers(i, column) * system_.pull(held_[i], at);
+  for (Index a = 0; a < system_.actuators(); ++a) {
+    const Actuator& actuator = system_.model().actuators[a];
+    add_cap_force(system_.model(), actuator, at.positions, system_.measures().unit(a) * loads[a], force);
+    add_cap_force_change(system_.model(), actuator, at.positions, moves, at.multipliers[a], force);
+  }
   for (Index v = 0; v < force.rows(); ++v)
     for (int axis = 0; axis < 3; ++axis)
       if (system_.model().held.support_of[v][axis] < 0) force(v, axis) = 0;
@@ -199,13 +210,16 @@ ParameterSensitivity Derivative::of(const Iterate& at, const Demand& demand, con
   result.regular = count == 0 || find(at, demand);
   for (Index p = 0; p < count; ++p) {
     result.positions.push_back(result.regular ? positions(at, p) : nothing);
-    if (reactions)
-      result.reactions.push_back(result.regular ? this->reactions(at, demand, p, std::move(forces[p])) : nothing);
-    if (!result.regular) continue;
+    if (!result.regular) {
+      if (reactions) result.reactions.push_back(nothing);
+      continue;
+    }
     result.multipliers.col(p) = multipliers(p);
     for (Index a = 0; a < system_.actuators(); ++a)
       if (system_.measures().given_load(a))
         result.multipliers(a, p) += changes[p][a] * system_.measures().rate(a) / system_.measures().unit(a);
+    if (reactions)
+      result.reactions.push_back(this->reactions(at, demand, p, std::move(forces[p]), result.multipliers.col(p)));
   }
   return result;
 }
@@ -278,8 +292,9 @@ ParameterSensitivity Derivative::of(const Iterate& at, const Demand& demand,
       result.multipliers(a, p) += direct[p].loads[a] / system_.measures().unit(a);
   }
   for (Index p = 0; reactions && p < count; ++p)
-    result.reactions.push_back(result.regular ? this->reactions(at, demand, p, std::move(direct[p].force))
-                                              : Points(Points::Zero(at.positions.rows(), 3)));
+    result.reactions.push_back(
+        result.regular ? this->reactions(at, demand, p, std::move(direct[p].force), result.multipliers.col(p))
+                       : Points(Points::Zero(at.positions.rows(), 3)));
   return result;
 }
 

@@ -70,7 +70,8 @@ class Derivative {
   bool solve(const Iterate& at, bool exact_factor);
   [[nodiscard]] Points positions(const Iterate& at, Index column) const;
   [[nodiscard]] Eigen::VectorXd multipliers(Index column) const;
-  [[nodiscard]] Points reactions(const Iterate& at, const Demand& demand, Index column, Points force);
+  [[nodiscard]] Points reactions(const Iterate& at, const Demand& demand, Index column, Points force,
+                                 const Eigen::VectorXd& loads);
 
   const System& system_;
   Workspace& work_;

@@ -3,6 +3,7 @@
 #include <initializer_list>
 #include <limits>
 #include <softkin/core/error.hpp>
+#include <softkin/statics/chamber_caps.hpp>
 #include <softkin/statics/physical/contact_at_rest.hpp>
 #include <softkin/statics/physical/system.hpp>
 #include <stdexcept>
@@ -266,6 +267,8 @@ void System::measure(const Iterate& at, const Demand& demand, Workspace& work, E
   Balance balance;
   evaluate(at, demand, std::vector<bool>(actuators(), false), work, balance, team);
   out.reactions = work.gradient;
+  for (Index a = 0; a < actuators(); ++a)
+    add_cap_force(model_, model_.actuators[a], at.positions, at.multipliers[a], out.reactions);
   for (Index v = 0; v < out.reactions.rows(); ++v)
     for (int axis = 0; axis < 3; ++axis)
       if (model_.held.support_of[v][axis] < 0) out.reactions(v, axis) = 0;
