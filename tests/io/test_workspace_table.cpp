@@ -103,6 +103,32 @@ TEST_F(WorkspaceTables, SamplesWithoutAnEquilibriumHaveEmptyCells) {
   }
 }
 
+/// Processes send each other samples as rows.
+TEST_F(WorkspaceTables, ARowAloneIsReadAsInItsTable) {
+  std::mt19937 generator(3);
+  for (const double reached : {1.0, 0.75}) {
+    WorkspaceSample written = sample(17, generator);
+    written.status = reached == 1 ? Status::converged : Status::limit;
+    written.reached = reached;
+    const std::string row = workspace_row(written, columns);
+    const WorkspaceSample found = read_workspace_row(row, columns, "rank 2");
+    EXPECT_EQ(found.number, 17);
+    EXPECT_EQ(found.actuation, written.actuation);
+    EXPECT_EQ(found.markers, written.markers);
+    EXPECT_EQ(found.multipliers, written.multipliers);
+    EXPECT_EQ(found.status, written.status);
+    EXPECT_EQ(found.reached, reached);
+    EXPECT_EQ(found.iterations, written.iterations);
+    EXPECT_EQ(workspace_row(found, columns), row);
+  }
+  try {
+    (void)read_workspace_row("17,1,2,3,4,5,6,converged,7\n", columns, "rank 2");
+    ADD_FAILURE() << "a row without the column 'reached' is read";
+  } catch (const InvalidInput& error) {
+    EXPECT_EQ(std::string(error.what()).rfind("rank 2: ", 0), 0u) << error.what();
+  }
+}
+
 TEST_F(WorkspaceTables, SamplesAtALimitKeepTheLastGoodShape) {
   const std::string row = "0,0.25,0,1,2,3,4,limit,0.75,7\n";
   const WorkspaceTable table = read(header + row);

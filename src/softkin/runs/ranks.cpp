@@ -98,36 +98,15 @@ std::optional<Status> told_status(int number) {
   return number < 0 ? std::nullopt : std::optional(static_cast<Status>(number));
 }
 
-std::vector<double> packed(const WorkspaceSample& sample) {
-  std::vector<double> values{static_cast<double>(sample.number), static_cast<double>(sample.status),
-                             static_cast<double>(sample.iterations)};
-  values.insert(values.end(), sample.markers.data(), sample.markers.data() + sample.markers.size());
-  values.insert(values.end(), sample.multipliers.data(), sample.multipliers.data() + sample.multipliers.size());
-  return values;
-}
-
-WorkspaceSample unpacked(const std::vector<double>& values, const Model& model, const WorkspacePlan& plan) {
-  WorkspaceSample sample;
-  sample.number = values.at(0);
-  sample.status = static_cast<Status>(static_cast<int>(values.at(1)));
-  sample.iterations = static_cast<int>(values.at(2));
-  sample.actuation = plan.actuations.row(sample.number);
-  if (sample.status != Status::converged) return sample;
-  const std::size_t markers = 3 * model.markers.size(), loads = model.actuators.size();
-  if (values.size() != 3 + markers + loads) throw InvalidInput("a rank sent a sample of another robot");
-  sample.markers = Eigen::Map<const Points>(values.data() + 3, model.markers.size(), 3);
-  sample.multipliers = Eigen::Map<const Eigen::VectorXd>(values.data() + 3 + markers, loads);
-  return sample;
-}
-
-/// The desk of rank 0, from another rank. Its threads take turns.
+/// The desk of rank 0, from another rank. Its threads take turns. A sample is sent as its row of the workspace's file,
+/// so that no column can be missing.
 class RemoteDesk : public GroupDesk {
  public:
-  explicit RemoteDesk(const WorkspacePlan& plan) : plan_(plan) {}
+  RemoteDesk(const WorkspacePlan& plan, const WorkspaceColumns& columns) : plan_(plan), columns_(columns) {}
 
   std::optional<GroupTask> take() override {
     const std::lock_guard lock(mutex_);
-    send(nullptr, 0, ask);
+    send("", ask);
     std::vector<int> reply(2 + longest());
     MPI_Request request = MPI_REQUEST_NULL;
     check_mpi(
@@ -140,14 +119,14 @@ class RemoteDesk : public GroupDesk {
   }
 
   void keep(const WorkspaceSample& sample) override {
-    const std::vector<double> values = packed(sample);
+    const std::string row = workspace_row(sample, columns_);
     const std::lock_guard lock(mutex_);
-    send(values.data(), values.size(), sample_made);
+    send(row, sample_made);
   }
 
   void say_goodbye() {
     const std::lock_guard lock(mutex_);
-    send(nullptr, 0, leave);
+    send("", leave);
   }
 
  private:
@@ -157,21 +136,22 @@ class RemoteDesk : public GroupDesk {
     return most;
   }
 
-  static void send(const double* values, std::size_t count, Tag tag) {
+  static void send(const std::string& text, Tag tag) {
     MPI_Request request = MPI_REQUEST_NULL;
-    check_mpi(MPI_Isend(values, static_cast<int>(count), MPI_DOUBLE, 0, tag, MPI_COMM_WORLD, &request));
+    check_mpi(MPI_Isend(text.data(), static_cast<int>(text.size()), MPI_CHAR, 0, tag, MPI_COMM_WORLD, &request));
     wait_for(request);
   }
 
   const WorkspacePlan& plan_;
+  const WorkspaceColumns& columns_;
   std::mutex mutex_;
 };
 
 /// Rank 0's side: answers the others until all have left.
 class Counter {
  public:
-  Counter(const Model& model, const WorkspacePlan& plan, GroupDesk& desk, int others)
-      : model_(model), plan_(plan), desk_(desk), others_(others) {}
+  Counter(const WorkspacePlan& plan, const WorkspaceColumns& columns, GroupDesk& desk, int others)
+      : plan_(plan), columns_(columns), desk_(desk), others_(others) {}
 
   void serve() {
     while (others_ > 0)
@@ -184,14 +164,21 @@ class Counter {
     MPI_Status status;
     check_mpi(MPI_Iprobe(MPI_ANY_SOURCE, MPI_ANY_TAG, MPI_COMM_WORLD, &waits, &status));
     if (!waits) return false;
-    check_mpi(MPI_Get_count(&status, MPI_DOUBLE, &count));
-    std::vector<double> values(count);
-    check_mpi(MPI_Recv(values.data(), count, MPI_DOUBLE, status.MPI_SOURCE, status.MPI_TAG, MPI_COMM_WORLD,
-                       MPI_STATUS_IGNORE));
-    if (status.MPI_TAG == sample_made) desk_.keep(unpacked(values, model_, plan_));
+    check_mpi(MPI_Get_count(&status, MPI_CHAR, &count));
+    std::string text(count, '\0');
+    check_mpi(
+        MPI_Recv(text.data(), count, MPI_CHAR, status.MPI_SOURCE, status.MPI_TAG, MPI_COMM_WORLD, MPI_STATUS_IGNORE));
+    if (status.MPI_TAG == sample_made) keep(text, "rank " + std::to_string(status.MPI_SOURCE));
     if (status.MPI_TAG == ask) give(status.MPI_SOURCE);
     if (status.MPI_TAG == leave) --others_;
     return true;
+  }
+
+  void keep(const std::string& row, const std::string& rank) {
+    const WorkspaceSample sample = read_workspace_row(row, columns_, rank);
+    if (sample.number >= plan_.samples() || plan_.actuations.row(sample.number).transpose() != sample.actuation)
+      throw InvalidInput({rank}, "sent sample " + std::to_string(sample.number) + " of another actuation");
+    desk_.keep(sample);
   }
 
   void give(int rank) {
@@ -203,8 +190,8 @@ class Counter {
     check_mpi(MPI_Send(reply.data(), static_cast<int>(reply.size()), MPI_INT, rank, group_given, MPI_COMM_WORLD));
   }
 
-  const Model& model_;
   const WorkspacePlan& plan_;
+  const WorkspaceColumns& columns_;
   GroupDesk& desk_;
   int others_;
 };
@@ -274,8 +261,9 @@ void Ranks::share(const Model& model, const WorkspacePlan& plan, GroupDesk* desk
     MPI_Abort(MPI_COMM_WORLD, 2);
   };
   try {
+    const WorkspaceColumns columns = workspace_columns(model);
     if (!leads()) {
-      RemoteDesk remote(plan);
+      RemoteDesk remote(plan, columns);
       work(remote);
       return remote.say_goodbye();
     }
@@ -287,7 +275,7 @@ void Ranks::share(const Model& model, const WorkspacePlan& plan, GroupDesk* desk
         failure = std::current_exception();
       }
     });
-    Counter(model, plan, *desk, size_ - 1).serve();
+    Counter(plan, columns, *desk, size_ - 1).serve();
     own.join();
     if (failure) std::rethrow_exception(failure);
   } catch (const std::exception& error) {

@@ -8,6 +8,7 @@
 #include <softkin/io/scanner.hpp>
 #include <softkin/io/table/workspace_table.hpp>
 #include <string_view>
+#include <utility>
 
 namespace softkin {
 
@@ -35,6 +36,99 @@ void add_number(std::string& line, double value) {
   line.append(text.data(), std::to_chars(text.data(), text.data() + text.size(), printed).ptr);
 }
 
+/// The cells of one row.
+class RowReader {
+ public:
+  RowReader(Origin origin, const WorkspaceColumns& columns, std::string_view line)
+      : origin_(std::move(origin)), columns_(columns), line_(line) {}
+
+  /// Cells of markers and loads stand before the status that determines whether they are empty.
+  WorkspaceSample read() {
+    WorkspaceSample sample;
+    sample.number = integer("sample");
+    sample.actuation.resize(columns_.actuators.size());
+    for (Index a = 0; a < sample.actuation.size(); ++a) sample.actuation[a] = real(columns_.actuators[a]);
+    const std::size_t values = cursor_;
+    for (std::size_t i = 0; i < columns_.markers.size() + columns_.loads.size(); ++i) (void)cell();
+    sample.status = status();
+    const bool has_values = read_reached(sample);
+    sample.iterations = integer("iterations");
+    if (!ended_) fail("the row has more cells than the header has columns");
+    cursor_ = values;
+    ended_ = false;
+    if (has_values)
+      read_values(sample);
+    else
+      for (std::size_t i = 0; i < columns_.markers.size() + columns_.loads.size(); ++i)
+        if (!cell().empty()) fail("a sample without an equilibrium has values of markers or loads");
+    return sample;
+  }
+
+ private:
+  [[noreturn]] void fail(const std::string& message) const { throw InvalidInput(origin_, message); }
+
+  std::string_view cell() {
+    if (ended_) fail("the row has fewer cells than the header has columns");
+    const std::size_t comma = line_.find(',', cursor_);
+    const std::string_view text = line_.substr(cursor_, comma - cursor_);
+    ended_ = comma == std::string_view::npos;
+    cursor_ = comma + 1;
+    return text;
+  }
+
+  Index integer(const char* column) {
+    const std::string_view text = cell();
+    std::int64_t value = 0;
+    if (!parse_integer(text, value) || value < 0 || value > std::numeric_limits<Index>::max())
+      fail(std::string("column '") + column + "' must hold a whole number, not " + excerpt(text));
+    return value;
+  }
+
+  double real(const std::string& column) { return real(cell(), column); }
+
+  double real(std::string_view text, const std::string& column) const {
+    double value = 0;
+    if (!parse_real(text, value))
+      fail("column " + excerpt(column) + " must hold a finite number, not " + excerpt(text));
+    return value;
+  }
+
+  Status status() {
+    const std::string_view text = cell();
+    for (const Status each : statuses)
+      if (text == workspace_status(each)) return each;
+    fail("column 'status' must hold converged, not_converged or limit, not " + excerpt(text));
+  }
+
+  /// Has the sample a shape?
+  bool read_reached(WorkspaceSample& sample) {
+    const std::string_view text = cell();
+    if (sample.status != Status::converged && text.empty()) return false;
+    sample.reached = real(text, "reached");
+    const bool whole = sample.status == Status::converged;
+    if (sample.status == Status::not_converged || !(sample.reached > 0 && sample.reached <= 1) ||
+        whole != (sample.reached == 1))
+      fail(
+          "column 'reached' must be 1 where a sample converged, between 0 and 1 or empty at a limit, and empty where "
+          "it did not converge");
+    return true;
+  }
+
+  void read_values(WorkspaceSample& sample) {
+    sample.markers.resize(static_cast<Index>(columns_.markers.size() / 3), 3);
+    for (Index i = 0; i < sample.markers.size(); ++i) sample.markers.data()[i] = real(columns_.markers[i]);
+    sample.multipliers.setZero(sample.actuation.size());
+    for (std::size_t i = 0; i < columns_.loads.size(); ++i)
+      sample.multipliers[columns_.loaded[i]] = real(columns_.loads[i]);
+  }
+
+  Origin origin_;
+  const WorkspaceColumns& columns_;
+  std::string_view line_;
+  std::size_t cursor_ = 0;  // in the line
+  bool ended_ = false;
+};
+
 class SampleReader {
  public:
   SampleReader(const std::filesystem::path& path, const WorkspaceColumns& columns)
@@ -44,7 +138,7 @@ class SampleReader {
     read_head();
     std::set<Index> seen;
     while (next_line()) {
-      const WorkspaceSample sample = read_row();
+      const WorkspaceSample sample = RowReader({file_, number_}, columns_, line_).read();
       if (!seen.insert(sample.number).second) fail("sample " + std::to_string(sample.number) + " stands twice");
       table_.samples.push_back(sample);
       table_.rows.push_back(std::string(line_) + "\n");
@@ -80,93 +174,12 @@ class SampleReader {
     fail("the columns are those of another robot: " + excerpt(line_) + " instead of " + excerpt(column_line(columns_)));
   }
 
-  std::string_view cell() {
-    if (ended_) fail("the row has fewer cells than the header has columns");
-    const std::size_t comma = line_.find(',', cursor_);
-    const std::string_view text = line_.substr(cursor_, comma - cursor_);
-    ended_ = comma == std::string_view::npos;
-    cursor_ = comma + 1;
-    return text;
-  }
-
-  Index integer(const char* column) {
-    const std::string_view text = cell();
-    std::int64_t value = 0;
-    if (!parse_integer(text, value) || value < 0 || value > std::numeric_limits<Index>::max())
-      fail(std::string("column '") + column + "' must hold a whole number, not " + excerpt(text));
-    return value;
-  }
-
-  double real(const std::string& column) { return real(cell(), column); }
-
-  double real(std::string_view text, const std::string& column) const {
-    double value = 0;
-    if (!parse_real(text, value))
-      fail("column " + excerpt(column) + " must hold a finite number, not " + excerpt(text));
-    return value;
-  }
-
-  Status status() {
-    const std::string_view text = cell();
-    for (const Status each : statuses)
-      if (text == workspace_status(each)) return each;
-    fail("column 'status' must hold converged, not_converged or limit, not " + excerpt(text));
-  }
-
-  /// Cells of markers and loads stand before the status that tells whether they are empty.
-  WorkspaceSample read_row() {
-    cursor_ = 0;
-    ended_ = false;
-    WorkspaceSample sample;
-    sample.number = integer("sample");
-    sample.actuation.resize(columns_.actuators.size());
-    for (Index a = 0; a < sample.actuation.size(); ++a) sample.actuation[a] = real(columns_.actuators[a]);
-    const std::size_t values = cursor_;
-    for (std::size_t i = 0; i < columns_.markers.size() + columns_.loads.size(); ++i) (void)cell();
-    sample.status = status();
-    const bool has_values = read_reached(sample);
-    sample.iterations = integer("iterations");
-    if (!ended_) fail("the row has more cells than the header has columns");
-    cursor_ = values;
-    ended_ = false;
-    if (has_values)
-      read_values(sample);
-    else
-      for (std::size_t i = 0; i < columns_.markers.size() + columns_.loads.size(); ++i)
-        if (!cell().empty()) fail("a sample without an equilibrium has values of markers or loads");
-    return sample;
-  }
-
-  /// Has the sample a shape?
-  bool read_reached(WorkspaceSample& sample) {
-    const std::string_view text = cell();
-    if (sample.status != Status::converged && text.empty()) return false;
-    sample.reached = real(text, "reached");
-    const bool whole = sample.status == Status::converged;
-    if (sample.status == Status::not_converged || !(sample.reached > 0 && sample.reached <= 1) ||
-        whole != (sample.reached == 1))
-      fail(
-          "column 'reached' must be 1 where a sample converged, between 0 and 1 or empty at a limit, and empty where "
-          "it did not converge");
-    return true;
-  }
-
-  void read_values(WorkspaceSample& sample) {
-    sample.markers.resize(static_cast<Index>(columns_.markers.size() / 3), 3);
-    for (Index i = 0; i < sample.markers.size(); ++i) sample.markers.data()[i] = real(columns_.markers[i]);
-    sample.multipliers.setZero(sample.actuation.size());
-    for (std::size_t i = 0; i < columns_.loads.size(); ++i)
-      sample.multipliers[columns_.loaded[i]] = real(columns_.loads[i]);
-  }
-
   std::string file_;
   const WorkspaceColumns& columns_;
   std::string content_;
   WorkspaceTable table_;
   std::size_t at_ = 0, number_ = 0;  // bytes and lines read
   std::string_view line_;
-  std::size_t cursor_ = 0;  // in the line
-  bool ended_ = false;
 };
 
 }  // namespace
@@ -203,6 +216,11 @@ std::string workspace_row(const WorkspaceSample& sample, const WorkspaceColumns&
   line += std::string(",") + workspace_status(sample.status) + ",";
   if (has_values) add_number(line, sample.reached);
   return line + "," + std::to_string(sample.iterations) + "\n";
+}
+
+WorkspaceSample read_workspace_row(std::string_view row, const WorkspaceColumns& columns, const std::string& source) {
+  const std::string_view line = row.ends_with('\n') ? row.substr(0, row.size() - 1) : row;
+  return RowReader({source}, columns, line).read();
 }
 
 const char* workspace_status(Status status) {

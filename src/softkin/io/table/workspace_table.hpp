@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <softkin/model/equilibrium.hpp>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -34,6 +35,13 @@ struct WorkspaceTable {
 /// A line of the file, its end included. Numbers are the shortest texts that read back as they were. Without
 /// markers their cells, those of loads and that of reached are empty.
 [[nodiscard]] std::string workspace_row(const WorkspaceSample& sample, const WorkspaceColumns& columns);
+
+/// The sample of a line of workspace_row, with its end or without.
+///
+/// source  what names the row in errors, such as a file or a process
+/// throws  InvalidInput naming source and column where the line is not a row of these columns
+[[nodiscard]] WorkspaceSample read_workspace_row(std::string_view row, const WorkspaceColumns& columns,
+                                                 const std::string& source);
 
 /// "converged", "not_converged" or "limit".
 [[nodiscard]] const char* workspace_status(Status status);
