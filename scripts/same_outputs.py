@@ -25,7 +25,7 @@ import time
 sys.dont_write_bytecode = True
 from output_cases import all_cases
 from output_cases.between import compared
-from output_cases.normal import normal_text, rounded_vtu
+from output_cases.normal import normal_text, vtu_text
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 SECONDS = 300  # a command that takes longer is killed, which is a difference
@@ -88,8 +88,8 @@ def run_case(program, case, folder, target=None):
 def comparable(name, content, case, digits):
     """What has to be the same of an output: a text, or the bytes where there is nothing to be passed over."""
     suffix = pathlib.Path(name).suffix.lower()
-    if suffix == ".vtu" and digits:
-        return rounded_vtu(content, digits)
+    if suffix == ".vtu":
+        return vtu_text(content, digits)
     if suffix in TEXTS or " > " in name:
         try:
             return normal_text(content.decode(), case.clock, digits)

@@ -1,5 +1,6 @@
 """Outputs without what a clock gives, and with fewer digits where that is asked for."""
 
+import base64
 import re
 import struct
 import zlib
@@ -42,31 +43,54 @@ def normal_text(text, clock=True, digits=None):
     return text
 
 
-def inflated(data, offset):
-    """An array of the appended data of a .vtu, compressed in blocks, as bytes."""
-    blocks = struct.unpack_from("<Q", data, offset)[0]
-    sizes = struct.unpack_from(f"<{blocks}Q", data, offset + 24)
-    at, parts = offset + 24 + 8 * blocks, []
-    for size in sizes:
+def inflated(data, words):
+    """The blocks of an array of a .vtu as bytes. data: compressed; words: its header, of which sizes begin at the fourth."""
+    at, parts = 0, []
+    for size in words[3:]:
         parts.append(zlib.decompress(data[at:at + size]))
         at += size
     return b"".join(parts)
 
 
-def rounded_vtu(content, digits):
-    """The arrays of a .vtu of softkin as text; other files as they are."""
-    head, mark, data = content.partition(b'<AppendedData encoding="raw">\n_')
-    if not mark:
+def inline_array(text):
+    """An array in base64: its header, which is a text of its own, and its blocks."""
+    blocks = struct.unpack_from("<Q", base64.b64decode(text[:12]))[0]
+    end = -(-8 * (3 + blocks) // 3) * 4  # of the header's characters
+    return inflated(base64.b64decode(text[end:]), struct.unpack(f"<{3 + blocks}Q", base64.b64decode(text[:end])))
+
+
+def appended_array(data, offset):
+    """An array of raw appended data, as softkin wrote them before."""
+    blocks = struct.unpack_from("<Q", data, offset)[0]
+    return inflated(data[offset + 8 * (3 + blocks):], struct.unpack_from(f"<{3 + blocks}Q", data, offset))
+
+
+def values_text(kind, array, digits):
+    if not digits or kind not in (b"Float64", b"Float32"):
+        return [array.hex()]
+    form, size = ("d", 8) if kind == b"Float64" else ("f", 4)
+    values = struct.unpack(f"<{len(array) // size}{form}", array)
+    scale = max((abs(v) for v in values if v == v), default=0)  # zeros of an array are not exact
+    return [f"{round(v / scale, digits) + 0.0 if scale and v == v else v:.{digits}g}" for v in values]
+
+
+def vtu_text(content, digits=None):
+    """A .vtu of softkin as text, the same however its arrays are encoded; other files as they are.
+
+    digits: how many significant ones stay of real numbers; None: all
+    """
+    head, _, data = content.partition(b'<AppendedData encoding="raw">\n_')
+    binary = rb'<DataArray ([^>]*?) format="(?:binary">\s*([^<]*?)\s*</DataArray>|appended" offset="(\d+)"/>|ascii">\s*</DataArray>)'
+    if not re.search(binary, head):
         return content
-    lines = [re.sub(r' offset="\d+"', "", head.decode())]
-    for kind, name, offset in re.findall(rb'<DataArray type="(\w+)" Name="([^"]*)"[^>]* offset="(\d+)"', head):
-        array = inflated(data, int(offset))
-        if kind in (b"Float64", b"Float32"):
-            form, size = ("d", 8) if kind == b"Float64" else ("f", 4)
-            values = struct.unpack(f"<{len(array) // size}{form}", array)
-            scale = max((abs(v) for v in values if v == v), default=0)  # zeros of an array are not exact
-            lines += [name.decode()] + [f"{round(v / scale, digits) + 0.0 if scale and v == v else v:.{digits}g}"
-                                        for v in values]
-        else:
-            lines += [name.decode(), array.hex()]
-    return "\n".join(lines)
+    arrays = []
+
+    def taken_out(match):
+        attributes, text, offset = match.groups()
+        kind, name = re.search(rb'type="(\w+)" Name="([^"]*)"', attributes).groups()
+        array = inline_array(text) if text else appended_array(data, int(offset)) if offset else b""
+        arrays.extend([name.decode(), *values_text(kind, array, digits)])
+        return b"<DataArray " + attributes + b"/>"
+
+    head = re.sub(binary, taken_out, head).decode()
+    return "\n".join([re.sub(r"</UnstructuredGrid>.*", "", head, flags=re.S), *arrays])

@@ -1,6 +1,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <softkin/io/base64.hpp>
 #include <softkin/io/mesh/vtk.hpp>
 
 #include "io/vtk_files.hpp"
@@ -49,30 +50,48 @@ TEST(VtkWriter, ReaderFindsNoRegionWhereNoCellIsInOne) {
   }
 }
 
-/// The array's bytes, taken from the file by hand.
+/// The array's bytes, taken from the file by hand: a text of base64 with the header, then one with the blocks.
 std::string stored(const std::string& file, const std::string& name) {
-  const std::size_t offset_at = file.find("offset=\"", file.find("Name=\"" + name + "\"")) + 8;
-  std::size_t at = file.find("\n_") + 2 + std::stoul(file.substr(offset_at));
-  const auto word = [&] {
-    std::uint64_t value = 0;
-    std::memcpy(&value, file.data() + at, 8);
-    at += 8;
-    return value;
+  const std::string before = "format=\"binary\">\n";
+  const std::size_t begin = file.find(before, file.find("Name=\"" + name + "\"")) + before.size();
+  const std::string text = file.substr(begin, file.find("\n</DataArray>", begin) - begin);
+  const auto words = [](const std::string& bytes) {
+    std::vector<std::uint64_t> values(bytes.size() / 8);
+    std::memcpy(values.data(), bytes.data(), 8 * values.size());
+    return values;
   };
-  const std::uint64_t blocks = word(), size = word(), partial = word();
-  std::vector<std::uint64_t> lengths(blocks);
-  for (std::uint64_t& length : lengths) length = word();
+  const std::uint64_t blocks = words(from_base64(text.substr(0, 12)))[0];
+  const std::size_t header_end = (8 * (3 + blocks) + 2) / 3 * 4;
+  const std::vector<std::uint64_t> header = words(from_base64(text.substr(0, header_end)));
+  const std::string compressed = from_base64(text.substr(header_end));
   std::string data;
+  std::size_t at = 0;
   for (std::size_t i = 0; i < blocks; ++i) {
-    uLongf bytes = i + 1 < blocks || partial == 0 ? size : partial;
+    uLongf bytes = i + 1 < blocks || header[2] == 0 ? header[1] : header[2];
     std::string block(bytes, '\0');
     EXPECT_EQ(uncompress(reinterpret_cast<Bytef*>(block.data()), &bytes,
-                         reinterpret_cast<const Bytef*>(file.data() + at), lengths[i]),
+                         reinterpret_cast<const Bytef*>(compressed.data() + at), header[3 + i]),
               Z_OK);
-    at += lengths[i];
+    at += header[3 + i];
     data += block;
   }
+  EXPECT_EQ(at, compressed.size());
   return data;
+}
+
+/// meshio cannot read a compressed array of no blocks.
+TEST(VtkWriter, ArraysWithoutValuesAreEmptyTexts) {
+  const TempFolder folder;
+  VtuContent content = sample_content();
+  content.arrays = {{"anchors", 1, {}}, {"others", 1, {0.5}}};
+  write_vtu(folder.file("a.vtu"), content);
+  EXPECT_NE(slurp(folder.file("a.vtu"))
+                .find("Name=\"anchors\" NumberOfComponents=\"1\" NumberOfTuples=\"0\" "
+                      "format=\"ascii\">\n</DataArray>"),
+            std::string::npos);
+  const auto arrays = read_vtu_arrays(folder.file("a.vtu"));
+  EXPECT_TRUE(arrays.at("anchors").empty());
+  EXPECT_EQ(arrays.at("others"), std::vector<double>{0.5});
 }
 
 TEST(VtkWriter, StoresWhatTheFormatAsksFor) {

@@ -1,7 +1,9 @@
 #include <zlib.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
+#include <cstdint>
 #include <softkin/io/mesh/vtu_bytes.hpp>
 #include <utility>
 #include <vector>
@@ -17,12 +19,18 @@ bool is_xml_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\n';
 }
 
+/// Per byte its value as a base64 digit; -1: it is none.
+constexpr std::array<std::int8_t, 256> base64_digits = [] {
+  std::array<std::int8_t, 256> values{};
+  values.fill(-1);
+  constexpr std::string_view digits = "ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789+/";
+  for (std::size_t i = 0; i < digits.size(); ++i)
+    values[static_cast<unsigned char>(digits[i])] = static_cast<std::int8_t>(i);
+  return values;
+}();
+
 int base64_digit(char c) {
-  if (c >= 'A' && c <= 'Z') return c - 'A';
-  if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-  if (c >= '0' && c <= '9') return c - '0' + 52;
-  if (c == '+') return 62;
-  return c == '/' ? 63 : -1;
+  return base64_digits[static_cast<unsigned char>(c)];
 }
 
 /// The bytes of one array; errors name it and its place.
@@ -45,6 +53,8 @@ class VtuBytes {
     bytes.reserve(count);
     if (pending_begin_ == pending_end_) padded_ = false;
     while (bytes.size() < count) {
+      if (pending_begin_ == pending_end_ && !padded_) append_whole_quanta(bytes, count);
+      if (bytes.size() == count) break;
       if (pending_begin_ == pending_end_) {
         if (padded_) fail("base64 padding within " + what);
         next_quantum(what);
@@ -81,6 +91,19 @@ class VtuBytes {
     skip_blanks();
     if (cursor_ == place_.end) fail("the base64 text ends within " + what);
     return content_[cursor_];
+  }
+
+  /// Three bytes at a time while four digits follow one another, up to count bytes.
+  void append_whole_quanta(std::string& bytes, std::uint64_t count) {
+    for (; bytes.size() + 3 <= count && cursor_ + 4 <= place_.end; cursor_ += 4) {
+      const char* text = content_.data() + cursor_;
+      const int a = base64_digit(text[0]), b = base64_digit(text[1]), c = base64_digit(text[2]),
+                d = base64_digit(text[3]);
+      if ((a | b | c | d) < 0) return;
+      const std::array<char, 3> three{static_cast<char>(a << 2 | b >> 4), static_cast<char>(b << 4 | c >> 2),
+                                      static_cast<char>(c << 6 | d)};
+      bytes.append(three.data(), three.size());
+    }
   }
 
   void next_quantum(const std::string& what) {

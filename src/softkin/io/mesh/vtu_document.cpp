@@ -264,6 +264,7 @@ std::vector<Value> VtuDocument::values(pugi::xml_node array, NumberType type,
       scanner.fail(name + " ends after " + std::to_string(result.size()) + " of " + std::to_string(*count) + " values");
   };
   if (is_ascii(array)) {
+    if (count == 0u && !array.first_child()) return result;  // blanks alone
     const Range range = inline_text(array);
     TextScanner scanner(file_, content_, range.begin, range.end);
     read(scanner, false);

@@ -10,6 +10,7 @@
 #include <set>
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
+#include <softkin/io/base64.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/mesh/vtk.hpp>
 #include <softkin/io/own_file.hpp>
@@ -46,7 +47,8 @@ constexpr const char* type_name() {
   if constexpr (std::is_same_v<T, std::uint8_t>) return "UInt8";
 }
 
-/// Builds the two halves of the file side by side: XML, and the appended data that it points into.
+/// Builds the file, whose arrays stand in their elements as base64 text. Appended data would be found by offsets, which
+/// meshio replaces one by one as it reads raw data, and finds a new one where it looks for an old one.
 class VtuWriter {
  public:
   VtuWriter(std::string file, const VtuContent& content)
@@ -70,8 +72,8 @@ class VtuWriter {
     write_array<double>("Points", 3, content_.points.data(), points_ * 3);
     xml_ += "</Points>\n";
     write_cells();
-    xml_ += "</Piece>\n</UnstructuredGrid>\n<AppendedData encoding=\"raw\">\n_";
-    return xml_ + appended_ + "\n</AppendedData>\n</VTKFile>\n";
+    xml_ += "</Piece>\n</UnstructuredGrid>\n</VTKFile>\n";
+    return std::move(xml_);
   }
 
  private:
@@ -219,12 +221,17 @@ class VtuWriter {
   void write_array(const std::string& name, int components, const T* values, std::size_t count,
                    const std::string& attributes = "") {
     xml_ += std::string("<DataArray type=\"") + type_name<T>() + "\" Name=\"" + xml_escaped(name) +
-            "\" NumberOfComponents=\"" + std::to_string(components) + "\"" + attributes +
-            " format=\"appended\" offset=\"" + std::to_string(appended_.size()) + "\"/>\n";
+            "\" NumberOfComponents=\"" + std::to_string(components) + "\"" + attributes;
+    if (count == 0) {  // meshio cannot read the header of no blocks
+      xml_ += " format=\"ascii\">\n</DataArray>\n";
+      return;
+    }
     std::string bytes;
     bytes.reserve(count * sizeof(T));
     for (std::size_t i = 0; i < count; ++i) append_little_endian(bytes, values[i]);
+    xml_ += " format=\"binary\">\n";
     append_compressed(bytes);
+    xml_ += "\n</DataArray>\n";
   }
 
   void append_compressed(const std::string& bytes) {
@@ -241,14 +248,16 @@ class VtuWriter {
       header.push_back(length);
       data.append(block, 0, length);
     }
-    for (const std::uint64_t word : header) append_little_endian(appended_, word);
-    appended_ += data;
+    std::string words;
+    for (const std::uint64_t word : header) append_little_endian(words, word);
+    xml_ += to_base64(words);  // two texts, as VTK reads them
+    xml_ += to_base64(data);
   }
 
   std::string file_;
   const VtuContent& content_;
   std::size_t points_, cells_;
-  std::string xml_, appended_;
+  std::string xml_;
 };
 
 }  // namespace
