@@ -2,6 +2,7 @@
 #include <limits>
 #include <softkin/core/error.hpp>
 #include <softkin/kinematics/map_robot.hpp>
+#include <softkin/kinematics/maps/output_correction.hpp>
 #include <softkin/model/names.hpp>
 #include <utility>
 
@@ -174,7 +175,7 @@ class MarkersOfMap : public OfMap {
 
 class ShapesOfMap : public OfMap {
  public:
-  ShapesOfMap(const Model& model, const KinematicMap& map) : OfMap(model, map) {
+  ShapesOfMap(const Model& model, const KinematicMap& map) : OfMap(model, map), correction_(model, map.data()) {
     if (!map.data().shape) throw InvalidInput("the map was made without the robot's shape, which is asked for");
     if (map.data().shape->mean.size() != model.rest.size()) throw InvalidInput("the map is of another mesh");
   }
@@ -183,40 +184,19 @@ class ShapesOfMap : public OfMap {
   [[nodiscard]] Points positions(const Eigen::VectorXd& values, const Eigen::VectorXd& commands,
                                  const KinematicMap::Place& place) const override {
     Points positions = map_.shape(commands.data(), place);
-    lead_markers(values, positions, nullptr);
+    correction_.move_to(values, positions);
     return positions;
   }
 
   void add_moves(const maps::RowMatrix& slopes, const Eigen::VectorXd& commands, const KinematicMap::Place& place,
                  Sensitivity& found) const override {
     std::vector<Points> moves = map_.shape_slopes(commands.data(), place);
-    const Points at = map_.shape(commands.data(), place);
-    for (Index i = 0; i < map_.inputs(); ++i) {
-      Points& move = moves[i];
-      lead_markers(slopes.row(i), move, &at);
-      found.positions[map_.data().inputs[i].actuator] = std::move(move);
-    }
+    const Points shape = map_.shape(commands.data(), place);
+    correction_.move_at(slopes, shape, moves);
+    for (Index i = 0; i < map_.inputs(); ++i) found.positions[map_.data().inputs[i].actuator] = std::move(moves[i]);
   }
 
-  /// The least move of the vertices of each marker that brings it to where it is; what carries a stem moves as a whole.
-  /// Of positions, or of their slopes at a shape.
-  void lead_markers(const Eigen::VectorXd& values, Points& positions, const Points* slopes_at) const {
-    Index next = 0;
-    for (const Marker& marker : model_.markers) {
-      const EmbeddedPoint& point = marker.point;
-      const Vec3 there = slopes_at ? marker.velocity(*slopes_at, positions) : marker.at(positions);
-      const Vec3 missing = values.segment<3>(next) - there;
-      next += 3;
-      if (!marker.arms.empty()) {
-        for (const Index v : point.vertices) positions.row(v) += missing.transpose();
-        continue;
-      }
-      double squares = 0;
-      for (const double weight : point.weights) squares += weight * weight;
-      for (std::size_t k = 0; k < point.vertices.size(); ++k)
-        positions.row(point.vertices[k]) += (point.weights[k] / squares * missing).transpose();
-    }
-  }
+  maps::OutputCorrection correction_;
 };
 
 }  // namespace
