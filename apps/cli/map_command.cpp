@@ -54,11 +54,16 @@ class MapRun {
     std::optional<MapResult> result;
     {
       ProgressLine line;
-      result = build_map(model_, options_, &*journal_, [&](const MapProgress& at) {
-        told_ = at;
-        line.show(-1, progress_text(at) + ", " + duration(seconds_now() - start));
-        return !interrupted();
-      });
+      try {
+        result = build_map(model_, options_, &*journal_, [&](const MapProgress& at) {
+          told_ = at;
+          line.show(-1, progress_text(at) + ", " + duration(seconds_now() - start));
+          return !interrupted();
+        });
+      } catch (const InvalidInput&) {
+        journal_->remove();  // no later run could go on with it
+        throw;
+      }
     }
     if (!result) return stopped();
     runs::write_map(asked_.output, result->data);

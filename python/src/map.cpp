@@ -45,11 +45,16 @@ std::tuple<MapPtr, std::string> make_map(const RobotPtr& robot, const MapOptions
   MapProgress last;
   std::optional<MapResult> result;
   const auto work = [&] {
-    result = build_map(model, options, journal ? &*journal : nullptr, [&](const MapProgress& at) {
-      const std::lock_guard lock(mutex);
-      last = at;
-      return watch.go_on();
-    });
+    try {
+      result = build_map(model, options, journal ? &*journal : nullptr, [&](const MapProgress& at) {
+        const std::lock_guard lock(mutex);
+        last = at;
+        return watch.go_on();
+      });
+    } catch (const InvalidInput&) {
+      if (journal) journal->remove();  // no later call could go on with it
+      throw;
+    }
   };
   watch.watch(work, [&] {
     if (!progress) return;

@@ -126,5 +126,15 @@ TEST(MapFile, Base64IsThatOfTheStandard) {  // RFC 4648, section 10
   for (const char* wrong : {"Zg=", "Z===", "Zm9?", "Zg==Zg=="}) EXPECT_THROW((void)from_base64(wrong), InvalidInput);
 }
 
+TEST(MapFile, TextOfAMapThatWasNotCheckedClaimsNoErrors) {
+  MapData data = a_map();
+  EXPECT_NE(map_text(data).find("checked at 5 points, largest errors: markers "), std::string::npos);
+  data.check.points = 0;
+  data.check.outside = 10;
+  data.check.largest.setZero();
+  EXPECT_EQ(map_text(data).find("largest errors"), std::string::npos) << map_text(data);
+  EXPECT_NE(map_text(data).find("none of 10 random actuations is inside the map"), std::string::npos);
+}
+
 }  // namespace
 }  // namespace softkin::runs

@@ -5,6 +5,7 @@
 #include <softkin/kinematics/map_build.hpp>
 #include <softkin/kinematics/maps/map_check.hpp>
 #include <softkin/kinematics/maps/piece_fit.hpp>
+#include <softkin/kinematics/maps/range_probe.hpp>
 #include <softkin/kinematics/maps/shape_modes.hpp>
 #include <utility>
 
@@ -19,6 +20,10 @@ using maps::Sample;
 /// Of what was wanted, where a check was not met.
 constexpr double stricter = 0.3;
 constexpr int most_rounds = 4;
+/// After so many equilibria that were sought for each input, of which at most this fraction exists while no part of the
+/// map is accurate yet, a map is given up.
+constexpr Index samples_per_input = 30;
+constexpr double min_good_fraction = 0.67;
 /// Points at which a map is asked which cables hang slack.
 constexpr Index looks = 4000;
 
@@ -47,7 +52,11 @@ std::vector<Index> spread_vertices(const Model& model, Index count) {
 class Builder {
  public:
   Builder(const Model& model, const MapOptions& options, MapDesk* desk, const MapCallback& progress)
-      : model_(model), options_(options), crew_(options.threads, desk, progress), statics_(model) {
+      : model_(model),
+        options_(options),
+        crew_(options.threads, desk, progress),
+        statics_(model),
+        probe_(statics_, result_.data, options, crew_) {
     result_.data = maps::outline_of(model);
     wanted_.accuracy.resize(data().outputs.size());
     wanted_.probes = spread_vertices(model, 24);
@@ -108,8 +117,11 @@ class Builder {
       if (commands.rows() == 0) break;
       std::vector<Sample> found;
       if (!solve(piece, commands, found)) return false;
+      const bool good = std::all_of(found.begin(), found.end(), [](const Sample& sample) { return sample.is_good(); });
+      if (!good && !check_ranges(found.front())) return false;
       if (wanted_of_ != strictness_) want(piece, found.front());
       piece.fit->take(std::move(found));
+      if (!good && piece.made.cells.empty() && !check_samples(*piece.fit)) return false;
     }
     gave_up_ = gave_up_ || piece.fit->gave_up();
     data().shape.reset();
@@ -118,6 +130,37 @@ class Builder {
     data().equilibria = equilibria_;
     return true;
   }
+
+  /// After an equilibrium was not found for the first time: have the inputs ranges that can be mapped?
+  ///
+  /// first   the first one of the batch, which is in the middle of all ranges if it is the first of all
+  /// throws  InvalidInput naming the inputs whose ranges are too large
+  /// returns false where it was stopped
+  bool check_ranges(const Sample& first) {
+    if (probe_.inputs().empty()) {
+      if (!probe_.probe_inputs()) return false;
+      if (const std::string wrong = probe_.wrong_inputs(); !wrong.empty()) throw InvalidInput(wrong);
+    }
+    if (wanted_of_ == strictness_ || first.is_good()) return true;
+    if (!probe_.probe_corners()) return false;
+    throw InvalidInput("the robot has no equilibrium in the middle of its ranges, so that nothing can be mapped" +
+                       after(probe_.wrong_corner()));
+  }
+
+  /// The same of what has been found so far.
+  bool check_samples(const PieceFit& fit) {
+    const std::vector<Sample>& samples = fit.samples();
+    const auto good =
+        std::count_if(samples.begin(), samples.end(), [](const Sample& sample) { return sample.is_good(); });
+    const Index enough = samples_per_input * std::ssize(data().inputs);
+    const double fraction = static_cast<double>(good) / static_cast<double>(samples.size());
+    if (std::ssize(samples) < enough || fraction > min_good_fraction) return true;
+    if (!probe_.probe_corners()) return false;
+    throw InvalidInput("of " + std::to_string(samples.size()) + " equilibria that were sought in the ranges only " +
+                       std::to_string(good) + " exist" + after(probe_.wrong_corner()));
+  }
+
+  static std::string after(const std::string& why) { return why.empty() ? "" : ": " + why; }
 
   /// Accuracies, of which those of loads are chosen by what the first equilibrium tells.
   void want(const Piece& piece, const Sample& first) {
@@ -243,6 +286,7 @@ class Builder {
   const MapOptions& options_;
   maps::Crew crew_;
   Statics statics_;
+  maps::RangeProbe probe_;
   maps::Wanted wanted_;
   double strictness_ = 1, wanted_of_ = 0;
   std::vector<std::unique_ptr<Piece>> pieces_;

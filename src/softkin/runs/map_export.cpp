@@ -140,10 +140,14 @@ std::vector<std::string> error_lines(const MapData& data) {
   const auto error = [](double largest, double mean, const std::string& unit) {
     return "within " + number(largest, 2) + (unit.empty() ? "" : " " + unit) + ", on average " + number(mean, 2);
   };
-  std::vector<std::string> lines{
-      "made of " + counted(static_cast<std::size_t>(data.equilibria), "equilibrium", "equilibria") +
-      " of the finite-element robot; checked at " + counted(static_cast<std::size_t>(check.points), "point") +
-      " that it was not made of (not a bound):"};
+  const std::string made = "made of " +
+                           counted(static_cast<std::size_t>(data.equilibria), "equilibrium", "equilibria") +
+                           " of the finite-element robot; ";
+  if (check.points == 0)
+    return {made + "not checked, so its errors are unknown: none of " + std::to_string(check.outside) +
+            " random actuations is inside the map and has an equilibrium"};
+  std::vector<std::string> lines{made + "checked at " + counted(static_cast<std::size_t>(check.points), "point") +
+                                 " that it was not made of (not a bound):"};
   for (std::size_t q = 0; q < data.outputs.size(); ++q)
     lines.push_back("  " + data.outputs[q].name + " " + error(check.largest[q], check.mean[q], data.outputs[q].unit));
   if (data.shape) lines.push_back("  every vertex " + error(check.shape_largest_mm, check.shape_mean_mm, "mm"));

@@ -264,8 +264,11 @@ void check_robot(const MapData& data, const Model& model, const std::string& fil
 
 std::string map_text(const MapData& data) {
   const MapCheck& check = data.check;
-  std::string text = counted(static_cast<std::size_t>(data.equilibria), "equilibrium", "equilibria") + "; checked at " +
-                     counted(static_cast<std::size_t>(check.points), "point") + ", largest errors:";
+  std::string text = counted(static_cast<std::size_t>(data.equilibria), "equilibrium", "equilibria") + "; ";
+  if (check.points == 0)
+    return text + "not checked, so its errors are unknown: none of " + std::to_string(check.outside) +
+           " random actuations is inside the map and has an equilibrium";
+  text += "checked at " + counted(static_cast<std::size_t>(check.points), "point") + ", largest errors:";
   const auto add = [&](const std::string& unit, const char* of, double shape) {
     double largest = shape;
     for (std::size_t q = 0; q < data.outputs.size(); ++q)

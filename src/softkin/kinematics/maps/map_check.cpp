@@ -99,6 +99,9 @@ MapCheck summed_up(const std::vector<Compared>& all, std::size_t outputs) {
 
 /// What was asked for and is not so; empty: all is.
 std::string verdict(const MapData& data, const MapOptions& options, const std::vector<Compared>& all) {
+  if (data.check.points == 0)
+    return "nothing was checked, as none of " + std::to_string(all.size()) +
+           " random actuations is inside the map and has an equilibrium";
   for (std::size_t q = 0; q < data.outputs.size(); ++q) {
     const MapOutput& output = data.outputs[q];
     const double largest = data.check.largest[q];
@@ -112,7 +115,7 @@ std::string verdict(const MapData& data, const MapOptions& options, const std::v
   const auto lost =
       std::count_if(all.begin(), all.end(), [](const Compared& each) { return !each.refused && !each.solved; });
   if (lost > 0) return "at " + std::to_string(lost) + " checks inside the map the robot has no equilibrium";
-  return data.check.points == 0 ? "no check was inside the map" : "";
+  return "";
 }
 
 }  // namespace
