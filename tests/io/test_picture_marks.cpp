@@ -112,6 +112,41 @@ TEST_F(PictureTest, ColourBarRunsFromLowToHigh) {
   EXPECT_TRUE(rows_of(drawn({layer}, options), map_high).empty()) << "no values, no bar";
 }
 
+TEST_F(PictureTest, TicksOfTheColourBarAreRoundNumbers) {
+  PictureLayer layer = square(0);
+  layer.values = {0, 9.1, 9.1, 0};
+  const Picture picture = drawn({layer}, from_above(640, 400));
+  int right = 0;
+  for (int x = 500; x < picture.width; ++x)
+    if (picture.at(x, 343) == map_low) right = x;
+  std::vector<double> rows;  // middles of the ticks beside the bar
+  for (int y = 0, begin = -1; y < picture.height; ++y) {
+    const bool inked = picture.at(right + 3, y)[0] < 200;
+    if (inked && begin < 0) begin = y;
+    if (!inked && begin >= 0) rows.push_back((begin + y) / 2.0);
+    if (!inked) begin = -1;
+  }
+  ASSERT_EQ(rows.size(), 5u) << "0, 2, 4, 6, 8; found " << ::testing::PrintToString(rows);
+  for (int k = 0; k < 5; ++k) EXPECT_NEAR(rows[4 - k], 344 - (344 - 20) * 2 * k / 9.1, 1.5);
+}
+
+TEST_F(PictureTest, ATitleThatIsTooLongIsContinuedBelow) {
+  PictureOptions options = from_above(640, 400);
+  const auto inked_rows = [](const Picture& picture) {
+    int count = 0;
+    for (int y = 0; y < 60; ++y) {
+      bool any = false;
+      for (int x = 0; x < picture.width; ++x) any = any || picture.at(x, y)[2] < 128;  // of the ink, not of the square
+      count += any ? 1 : 0;
+    }
+    return count;
+  };
+  options.title = "tendon1 = 0.8";
+  const int one = inked_rows(drawn({square(-1)}, options));
+  for (int i = 2; i < 12; ++i) options.title += ", tendon" + std::to_string(i) + " = 0.8";
+  EXPECT_GT(inked_rows(drawn({square(-1)}, options)), 1.8 * one);
+}
+
 TEST_F(PictureTest, TitleStandsAboveAndIsCutToFit) {
   PictureOptions options = from_above(640, 400);
   const auto ink_columns = [](const Picture& picture) {

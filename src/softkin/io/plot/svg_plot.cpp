@@ -4,13 +4,14 @@
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/plot/svg_panel.hpp>
 #include <softkin/io/plot/svg_plot.hpp>
+#include <softkin/io/wrapped_lines.hpp>
 
 namespace softkin {
 
 namespace {
 
-constexpr double plot_margin = 14, gap = 18, heading_size = 15, heading_height = 26;  // [pixel]
-constexpr double largest_extent = 1e300;                                              // beyond it extents overflow
+constexpr double plot_margin = 14, gap = 18, heading_size = 15, heading_height = 26, heading_step = 19;  // [pixel]
+constexpr double largest_extent = 1e300;  // beyond it extents overflow
 
 [[noreturn]] void refuse(const std::string& where, const std::string& why) {
   throw InvalidInput("plot: " + where + ": " + why);
@@ -87,26 +88,38 @@ PanelRow row_of(const Plot& plot, const std::vector<PlotPanel>& panels) {
   return row;
 }
 
+constexpr std::size_t max_heading_lines = 4;
+
+/// Of the heading; none without a title.
+std::vector<std::string> heading_lines(const Plot& plot) {
+  if (plot.title.empty()) return {};
+  return wrapped_lines(plot.title, max_heading_lines, [&](const std::string& line) {
+    return svg_text_width(line, heading_size * svg_bold) <= plot.width - 2 * plot_margin;
+  });
+}
+
 }  // namespace
 
 std::string svg_text(const Plot& plot) {
   check_plot(plot);
+  const std::vector<std::string> heading = heading_lines(plot);
   std::vector<PanelRow> rows;
-  double height = plot_margin + (plot.title.empty() ? 0 : heading_height);
+  const double heading_room =
+      heading.empty() ? 0 : heading_height + heading_step * static_cast<double>(heading.size() - 1);
+  double height = plot_margin + heading_room;
   for (const auto& panels : plot.rows) {
     rows.push_back(row_of(plot, panels));
     height += rows.back().height + gap;
   }
   SvgCanvas canvas(plot.width, height - gap + plot_margin, plot.title);
   double y = plot_margin;
-  if (!plot.title.empty()) {
-    canvas.text({{plot.width / 2, y + heading_size},
-                 svg_fitted(plot.title, heading_size * svg_bold, plot.width - 2 * plot_margin),
+  for (std::size_t i = 0; i < heading.size(); ++i)
+    canvas.text({{plot.width / 2, y + heading_size + heading_step * static_cast<double>(i)},
+                 svg_fitted(heading[i], heading_size * svg_bold, plot.width - 2 * plot_margin),
                  heading_size,
                  SvgAnchor::middle,
                  true});
-    y += heading_height;
-  }
+  y += heading_room;
   int number = 0;
   for (PanelRow& row : rows) {
     double x = plot_margin;
