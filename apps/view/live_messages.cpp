@@ -169,14 +169,16 @@ std::string message_text(const Json& json) {
 }
 
 std::string head_text(const LiveShape& shape, RequestId id) {
-  Json commands = Json::array(), loads = Json::array();
+  Json commands = Json::array(), loads = Json::array(), measures = Json::array();
   for (const double command : shape.commands) commands.push_back(finite_or_null(command));
   for (const auto& load : shape.loads) loads.push_back(load ? finite_or_null(*load) : Json());
+  for (const auto& measure : shape.measures) measures.push_back(measure ? finite_or_null(*measure) : Json());
   std::string text = message_text({{"id", id},
                                    {"status", shape.status},
                                    {"remark", shape.remark},
                                    {"commands", std::move(commands)},
                                    {"loads", std::move(loads)},
+                                   {"measures", std::move(measures)},
                                    {"markers", points_of(shape.markers)},
                                    {"iterations", shape.iterations},
                                    {"seconds", finite_or_null(shape.seconds)},

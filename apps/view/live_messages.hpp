@@ -96,7 +96,8 @@ struct LiveShape {
   std::string status, remark;
   Actuation commands;                        // m, of the shape
   std::vector<std::optional<double>> loads;  // m: tension [N] or gauge pressure [kPa]; none: it has none
-  std::vector<Vec3> markers;                 // [mm]
+  std::vector<std::optional<double>> measures{};  // m: over that at rest [-]; none where a page shows none
+  std::vector<Vec3> markers;                      // [mm]
   int iterations = 0;
   double seconds = 0;
   std::optional<TargetAnswer> target;

@@ -32,6 +32,15 @@ std::vector<std::optional<double>> loads_of(const Model& model, const State& sta
   return loads;
 }
 
+std::vector<std::optional<double>> measures_of(const Model& model, const State& state) {
+  std::vector<std::optional<double>> measures;
+  for (const Actuator& actuator : model.actuators)
+    measures.push_back(runs::page_measure_unit(model, actuator).empty()
+                           ? std::nullopt
+                           : std::optional(achieved_ratio(model, actuator, state.positions)));
+  return measures;
+}
+
 /// How a shape that stays stands to a target that was asked for.
 TargetAnswer target_answer(const Model& model, const TargetRequest& request, const Points& positions) {
   const Vec3 place = model.markers[request.marker].at(positions);
@@ -49,6 +58,7 @@ std::optional<LiveShape> live_shape(const Statics& statics, const runs::PageDocu
   shape.remark = found.report.remark;
   shape.commands = found.actuation;
   shape.loads = loads_of(model, found.state);
+  shape.measures = measures_of(model, found.state);
   for (const Marker& marker : model.markers) shape.markers.push_back(marker.at(positions));
   shape.iterations = found.report.iterations;
   shape.seconds = found.report.seconds;

@@ -28,13 +28,13 @@ async function typeRow(page, row) {
     await page.locator('#readings input').nth(c).fill(value);
     await page.keyboard.press('Tab');
   }
-  await until(page, 'state', /^Told from 12 readings: converged/);
+  await until(page, 'state', /^Estimated from 12 readings: converged/);
 }
 
 /** From one typed number to the next the estimate goes on: it ends within a tenth of what it does not know. */
 async function checkTyped(page) {
   await until(page, 'live-words', /^You control/);
-  assert.match(await text(page, 'told'), /Nothing was read yet/);
+  assert.match(await text(page, 'told'), /There are no readings yet/);
   assert.ok(await page.locator('#target-section').isHidden());
   await typeRow(page, rows[0]);
   const wanted = await estimated(rows[0]), told = await page.locator('#told td').allTextContents();
@@ -63,10 +63,10 @@ async function checkChanged(page) {
   assert.equal(await text(page, 'told'), told);
   assert.equal(await field.getAttribute('aria-invalid'), 'true');
   await page.locator('#undo').click();
-  await until(page, 'state', /^Told from 12 readings: converged/);
+  await until(page, 'state', /^Estimated from 12 readings: converged/);
   assert.doesNotMatch(await text(page, 'readings'), /m1 x mm/);
-  await page.getByText('Nothing was read', {exact: true}).click();
-  await until(page, 'state', /^Told from 0 readings: converged/);
+  await page.getByText('Clear the readings', {exact: true}).click();
+  await until(page, 'state', /^Estimated from 0 readings: converged/);
   assert.match(await text(page, 'told'), /touch_fz is told to 1 N only/);
 }
 
@@ -112,7 +112,7 @@ async function checkLooks(browser, server) {
     assert.ok(await page.evaluate(() => document.querySelector('#panel').scrollWidth <=
       document.querySelector('#panel').clientWidth), 'the panel is wider than it shows');
     await page.screenshot({path: out(`estimate_${width}_${scheme}.png`)});
-    await page.getByLabel('what pushes', {exact: true}).uncheck();
+    await page.getByLabel('estimated forces', {exact: true}).uncheck();
     await frames(page);
     assert.ok(await page.locator('#labels .force').isHidden());
     assert.deepEqual(watch.errors, []);

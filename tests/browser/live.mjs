@@ -56,8 +56,8 @@ async function checkFiles(page, withMap) {
     assert.match(await page.locator('#path .bad').textContent(), /Without a map .* need x_mm, y_mm and z_mm/);
     await dropFile(page, 'point.csv', 'x_mm,y_mm,z_mm\n110,0,45\n');
   }
-  await until(page, 'path', /: [1-9]\d* of \d+ waypoints sought\. Farthest .*line \d+\), 0\.\d\d mm/);
-  await page.getByText('Put it away').click();
+  await until(page, 'path', /: [1-9]\d* of \d+ waypoints solved\. Farthest .*line \d+\), 0\.\d\d mm/);
+  await page.getByText('Close the file').click();
   await answered(page);
 }
 
@@ -91,7 +91,7 @@ async function checkHandOver(browser, page, url) {
 
 async function checkReconnection(page, server, more) {
   await server.stop();
-  await until(page, 'live-words', /does not answer: trying again/);
+  await until(page, 'live-words', /does not respond: trying again/);
   assert.ok(await off(page));
   await page.screenshot({path: out('live_away.png')});
   const again = await serve(example(name), server.port, ...more);
@@ -134,7 +134,7 @@ async function checkMapMadeMeanwhile(browser) {
   await until(page, 'origin', /What is shown at once, .* is a closed formula made of \d+ solved shapes/, whileOthersWork);
   await until(page, 'live-words', /^You control/);
   await dropFile(page, 'circle.csv', readFileSync(example(name, 'circle.csv'), 'utf8'));  // which needs a map
-  await until(page, 'path', /waypoints sought/);
+  await until(page, 'path', /waypoints solved/);
   assert.deepEqual(watch.errors, []);
   await page.context().close();
   await server.stop();

@@ -74,7 +74,7 @@ async function checkFiles(page) {
   const last = (await forward(example(name), actuators, [[1, 0.8, 0.6]]))[0].markers.tip;
   assert.ok(far(await tip(page), last) < 0.05, 'the last row leads elsewhere');
   await dropFile(page, 'circle.csv', readFileSync(example(name, 'circle.csv'), 'utf8'));
-  await page.waitForFunction(() => /(\d+) of \1 waypoints sought/.test(document.querySelector('#path').textContent));
+  await page.waitForFunction(() => /(\d+) of \1 waypoints solved/.test(document.querySelector('#path').textContent));
   await page.waitForFunction(() => Number(document.querySelector('#step').value) > 2);
   await page.locator('#play').click();
   await page.locator('#step').fill('5');
@@ -84,7 +84,7 @@ async function checkFiles(page) {
   assert.ok(Math.hypot(x - line[1], z - line[2]) < 0.05, 'the waypoint is missed');
   await page.locator('#path svg').scrollIntoViewIfNeeded();
   await page.screenshot({path: out('report_waypoints.png')});
-  await page.getByText('Put it away').click();
+  await page.getByText('Close the file').click();
   assert.match(await text(page, 'step-text'), /8 computed steps/);
 }
 

@@ -7,6 +7,7 @@ import {estimateTests} from './estimate.mjs';
 import {fieldTests, liveFieldTests} from './field.mjs';
 import {liveTests} from './live.mjs';
 import {reportTests} from './report.mjs';
+import {outputTests} from './outputs.mjs';
 import {liveShownTests, shownTests} from './shown.mjs';
 import {hasView, stopAll} from './softkin.mjs';
 import {timeTests} from './times.mjs';
@@ -30,6 +31,7 @@ async function test(name, act) {
 try {
   if (process.argv[4] === 'files') {
     await reportTests(browser, test);
+    await outputTests(browser, test);
     await shownTests(browser, test);
     await fieldTests(browser, test);
     await timeTests(browser, test);

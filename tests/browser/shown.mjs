@@ -39,7 +39,7 @@ async function checkBase(browser, url) {
   for (const scheme of ['light', 'dark']) {
     const {page, context} = await open(browser, url, {scheme});
     await page.getByLabel('grid', {exact: true}).uncheck();
-    await page.getByLabel('see through', {exact: true}).uncheck();
+    await page.getByLabel('transparent', {exact: true}).uncheck();
     await frames(page, 3);
     const [side, ground] = await coloursAt(page, [[265, 500], [60, 300]]);
     assert.ok(contrast(side, ground) > 2, `${scheme}: the base is ${side} on ${ground}`);
@@ -54,7 +54,7 @@ async function checkTyped(page) {
   await page.keyboard.press('Enter');
   const said = page.locator('.slider .bad').first();
   assert.equal(await said.textContent(),
-    'tendon1: 0.4 is outside its range, 0.5 to 1 × rest length. The robot stays as it is.');
+    'tendon1: 0.4 is outside its range, 0.5 to 1 × rest length. The command is unchanged.');
   assert.equal(await field.getAttribute('aria-invalid'), 'true');
   assert.deepEqual(await tipText(page), before);
   await page.screenshot({path: out('shown_typed.png')});
@@ -93,10 +93,10 @@ export async function shownTests(browser, test) {
   const map = await mapOf(name), file = out('shown.html'), url = pathToFileURL(resolve(file)).href;
   await softkin('fk', example(name), '--path', example(name, 'path.csv'), '--map', map, '--html', file);
   const {page, watch, context} = await open(browser, url);
-  await test('shown: a page opens at rest', async () => {
+  await test('shown: a page opens at the rest commands', async () => {
     assert.deepEqual(await tipText(page), ['120.00', '0.00', '25.00']);
     for (const a of [0, 1, 2]) assert.equal(await page.locator(`#actuator-${a}`).inputValue(), '1');
-    assert.equal(await text(page, 'state'), 'At rest');
+    assert.equal(await text(page, 'state'), 'Equilibrium at the rest commands, from the map');
   });
   await test('shown: a number outside its range is not taken, and told', () => checkTyped(page));
   await test('shown: no errors, no requests', () => assert.deepEqual([...watch.errors, ...watch.requests], []));

@@ -118,6 +118,7 @@ TEST(LiveMessages, FramesReadBack) {
   shape.remark = "beyond \"this\"\xff";
   shape.commands = Eigen::Vector2d(1.25, 1.0 / 3);
   shape.loads = {2.5, std::nullopt, std::numeric_limits<double>::quiet_NaN()};
+  shape.measures = {std::nullopt, 0.75};
   shape.markers = {{1, 2, 3}, {4, 5, std::numeric_limits<double>::infinity()}};
   shape.iterations = 9;
   shape.seconds = 0.125;
@@ -131,7 +132,7 @@ TEST(LiveMessages, FramesReadBack) {
     EXPECT_EQ(bytes.size() % 4, 0u);
     EXPECT_EQ(frame.numbers, shape.numbers);
     MessageJson wanted = MessageJson::parse(
-        R"({"status":"limit","commands":[1.25,0.3333333333333333],"loads":[2.5,null,null],
+        R"({"status":"limit","commands":[1.25,0.3333333333333333],"loads":[2.5,null,null],"measures":[null,0.75],
             "markers":[[1.0,2.0,3.0],[4.0,5.0,null]],"iterations":9,"seconds":0.125,"arrays":["strain"],"vertices":2,
             "target":{"marker":1,"at":[7.0,8.0,9.0],"error_mm":0.5,"reached":false,"why":"why not"}})");
     wanted["id"] = id;

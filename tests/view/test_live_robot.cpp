@@ -80,6 +80,8 @@ TEST(LiveRobot, CommandsGiveTheEquilibriaOfStatics) {
     EXPECT_EQ(shape.commands, Eigen::Vector2d(air, tendon));
     EXPECT_LT(distance(kept.document, shape.numbers, wanted.state.positions), 2e-6);
     for (std::size_t a = 0; a < 2; ++a) EXPECT_NEAR(shape.loads.at(a).value(), wanted.state.multipliers[a], 1e-4);
+    EXPECT_FALSE(shape.measures.at(0).has_value());  // a volume that is commanded
+    EXPECT_NEAR(shape.measures.at(1).value(), achieved_ratio(model, model.actuators[1], wanted.state.positions), 1e-9);
     EXPECT_LT((shape.markers.at(1) - model.markers[1].point.at(wanted.state.positions)).norm(), 1e-6);
     // the fields are those of a page that is written
     ASSERT_EQ(shape.arrays, (std::vector<std::string>{"strain", "volume_ratio"}));

@@ -6,6 +6,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/core/version.hpp>
 #include <softkin/io/base64.hpp>
+#include <softkin/kinematics/maps/piece_solver.hpp>
 #include <softkin/model/layer.hpp>
 #include <softkin/model/magnetic_field.hpp>
 #include <softkin/model/mesh/borders.hpp>
@@ -89,7 +90,8 @@ Json page_actuator(const Model& model, const Actuator& actuator) {
             {"low", actuator.low},
             {"high", actuator.high},
             {"rest", actuator.rest},
-            {"load_unit", load_unit(model, actuator)}};
+            {"load_unit", load_unit(model, actuator)},
+            {"measure_unit", page_measure_unit(model, actuator)}};
   if (const auto flux_density = uniform_flux_density(model, actuator)) json["flux_density"] = json_of(*flux_density);
   return json;
 }
@@ -185,6 +187,12 @@ std::vector<Index> body_vertices(const Model& model) {
 
 }  // namespace
 
+std::string page_measure_unit(const Model& model, const Actuator& actuator) {
+  const bool is_load = model.formulation == Formulation::physical && shows_measure(actuator);
+  if (is_load || !maps::answers_with_ratio(model, actuator)) return "";
+  return flat_at_rest(actuator) ? "mL" : "× rest";
+}
+
 PageDocument::PageDocument(const Model& model, std::string command)
     : model_(model),
       command_(std::move(command)),
@@ -247,16 +255,18 @@ void PageDocument::add(const StepRecord& record, const Points& positions, const 
   last_ = positions;
   Json fields = Json::object();
   for (const VertexField& field : this->fields(deformation)) fields[field.name] = rounded_array(field.values, 1);
-  Json loads = Json::array(), markers = Json::array(), commands = Json::array();
+  Json loads = Json::array(), measures = Json::array(), markers = Json::array(), commands = Json::array();
   for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
     commands.push_back(known(record.actuation[a]));
     const bool answers = !load_unit(model_, model_.actuators[a]).empty();
     const ActuatorRecord& of = record.actuators[a];
     loads.push_back(answers ? known(shows_measure(model_.actuators[a]) ? of.achieved : of.multiplier) : Json());
+    measures.push_back(page_measure_unit(model_, model_.actuators[a]).empty() ? Json() : known(of.achieved));
   }
   for (const Vec3& marker : record.markers) markers.push_back(json_of(marker));
   steps_.push_back(line_of({{"commands", commands},
                             {"loads", loads},
+                            {"measures", measures},
                             {"markers", markers},
                             {"status", name_of(record.status)},
                             {"remark", record.remark},

@@ -16,6 +16,10 @@ struct VertexField {
   std::vector<float> values;
 };
 
+/// The unit of an actuator's length, area or volume where that is a result besides its load and its command: "× rest" or
+/// "mL"; else "".
+[[nodiscard]] std::string page_measure_unit(const Model& model, const Actuator& actuator);
+
 /// What the page (apps/view/web) shows of a robot, its steps and its map, as JSON. Arrays of numbers are
 /// {"f32": base64}, little-endian; also "u16" and "u32". Those of steps are rounded, to 1/131,070 of the span of each
 /// component: {"u16": base64, "low": [...], "step": [...]} stands for low + step u16. Vertices are numbered in the

@@ -21,17 +21,17 @@ function tableOf(caption: string, [titles, ...rows]: string[][]): HTMLElement {
 export function showComparison({softkin, command, comparison: {notes, tables, plot}}: ComparisonDocument): void {
   document.title = 'Comparison – softkin';
   byId('robot').textContent = 'Comparison';
-  byId('about-robot').textContent = 'Results beside each other; lengths are in mm.';
+  byId('about-robot').textContent = 'Results next to each other; lengths are in mm.';
   for (const id of ['undo', 'reset', 'snapshot']) byId(id).hidden = true;
   const main = document.querySelector('main');
   main?.classList.add('comparison');
   main?.replaceChildren(
     element('section', {}, ...notes.map((note) => element('p', {}, note))),
     element('section', {}, element('img', {
-      src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(plot)}`, alt: 'Plot of what the tables below hold',
+      src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(plot)}`, alt: 'Plot of the values in the tables below',
     })),
     ...tables.map(({caption, rows}) => tableOf(caption, rows)),
-    element('section', {id: 'origin'}, element('h2', {}, 'Where this comes from'),
-            element('p', {}, `Computed by softkin ${softkin}, a finite-element program for soft robots, with`),
+    element('section', {id: 'origin'}, element('h2', {}, 'How this was computed'),
+            element('p', {}, `Computed by softkin ${softkin}, a finite-element program for soft robots, by the command`),
             element('code', {}, command)));
 }

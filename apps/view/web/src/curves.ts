@@ -27,26 +27,30 @@ export function makeCurves(box: HTMLElement, robot: Robot): () => void {
   });
   return () => actuators.forEach((actuator, i) => {
     if (!actuator.load_unit) return;
-    const {commands, loads, step} = robot.pose;
-    const none = actuator.load_unit === measured ? 1 : 0, now: [number, number] = [commands[i], loads[i] ?? none];
+    const {commands, loads, step} = robot.pose, load = loads[i];
+    const now: [number, number][] = load === null ? [] : [[commands[i], load]];
     const trail = trails[i], last = trail.at(-1);
-    if (step < 0 && (robot.map || robot.link) && (!last || last[0] !== now[0] || last[1] !== now[1])) trail.push(now);
+    if (step < 0 && (robot.map || robot.link))
+      trail.push(...now.filter(([command, value]) => !last || last[0] !== command || last[1] !== value));
     if (trail.length > trailPoints) trail.shift();
-    const ran = steps.map((one): [number, number] => [one.commands[i], one.loads[i] ?? none]);
+    const ran = steps.flatMap((one): [number, number][] => {
+      const value = one.loads[i];
+      return value === null ? [] : [[one.commands[i], value]];
+    });
     const sweep: [number, number][] = [];
     for (let k = 0; robot.map && k < sweepPoints; ++k) {
       const command = actuator.low + k / (sweepPoints - 1) * (actuator.high - actuator.low);
-      const load = robot.ask(commands.map((c, j) => j === i ? command : c))?.loads[i];
-      if (load !== undefined && load !== null) sweep.push([command, load]);
+      const value = robot.ask(commands.map((c, j) => j === i ? command : c))?.loads[i];
+      if (value !== undefined && value !== null) sweep.push([command, value]);
     }
     plot(svgs[i], actuator, {ran, sweep, trail, now});
   });
 }
 
-interface Lists { ran: [number, number][]; sweep: [number, number][]; trail: [number, number][]; now: [number, number] }
+interface Lists { ran: [number, number][]; sweep: [number, number][]; trail: [number, number][]; now: [number, number][] }
 
 function plot(svg: SVGElement, actuator: Actuator, {ran, sweep, trail, now}: Lists): void {
-  const values = [...ran, ...sweep, ...trail, now].map(([, load]) => load);
+  const values = [...ran, ...sweep, ...trail, ...now].map(([, load]) => load);
   const zero = actuator.load_unit === measured ? 1 : 0;  // of a ratio nothing happens at 1
   const low = Math.min(zero, ...values), high = Math.max(...values, low + 1e-9);
   const x = (c: number) => left + (c - actuator.low) / (actuator.high - actuator.low) * (width - left - right);
@@ -65,5 +69,5 @@ function plot(svg: SVGElement, actuator: Actuator, {ran, sweep, trail, now}: Lis
     drawn('text', {x: (left + width - right) / 2, y: base + 26, 'text-anchor': 'middle'},
           `command [${commandWords(actuator)}]`),
     ...dots(trail, 'trail', 1.2), drawn('polyline', {class: 'sweep', points: line(sweep)}),
-    drawn('polyline', {class: 'steps', points: line(ran)}), ...dots(ran, 'step', 3), ...dots([now], 'now', 5));
+    drawn('polyline', {class: 'steps', points: line(ran)}), ...dots(ran, 'step', 3), ...dots(now, 'now', 5));
 }

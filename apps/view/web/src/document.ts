@@ -3,11 +3,12 @@ import type {EstimateDocument} from './estimate';
 import type {MapDocument} from './map';
 
 export type Kind = 'cable' | 'dea' | 'pneumatic' | 'magnetic' | 'growth' | 'motion' | 'force' | 'hold' | 'turn';
-/** control: what is commanded; "length", "area" and "volume" are ratios to those at rest. flux_density: of a uniform
-    magnetic field alone, what one mT of its command adds to it [mT]. */
+/** control: what is commanded; "length", "area" and "volume" are ratios to those at rest. load_unit: of the main
+    quantity that the actuator results in, measure_unit: of its length, area or volume besides that, each empty where
+    there is none. flux_density: of a uniform magnetic field alone, what one mT of its command adds to it [mT]. */
 export interface Actuator {
   name: string; kind: Kind; control: string; unit: string; low: number; high: number; rest: number; load_unit: string;
-  flux_density?: number[];
+  measure_unit: string; flux_density?: number[];
 }
 /** body: it is the center of a rigid body. */
 export interface Marker { name: string; at: number[]; body?: boolean }
@@ -17,7 +18,8 @@ export interface Cable { actuator: number; points: CablePoint[] }
 /** What the program says of a shape beside its numbers. */
 export interface Told { status: string; remark: string; iterations: number; seconds: number }
 interface PackedStep extends Told {
-  commands: (number | null)[]; loads: (number | null)[]; markers: (number | null)[][]; time_s: number | null;
+  commands: (number | null)[]; loads: (number | null)[]; measures: (number | null)[];
+  markers: (number | null)[][]; time_s: number | null;
   positions: Packed; fields: Record<string, Packed>;
 }
 /** estimate: where it tells from readings. */
@@ -35,8 +37,8 @@ interface PackedDocument {
 
 /** Numbers that the program does not know are NaN. */
 export interface Step extends Told {
-  commands: number[]; loads: (number | null)[]; markers: number[][]; time: number | null; positions: Float32Array;
-  fields: Record<string, Float32Array>;
+  commands: number[]; loads: (number | null)[]; measures: (number | null)[]; markers: number[][];
+  time: number | null; positions: Float32Array; fields: Record<string, Float32Array>;
 }
 export interface Obstacle { positions: Float32Array; triangles: Uint32Array }
 /** colour: a number for each point; null: none. */
@@ -68,7 +70,7 @@ function readStep(step: PackedStep, vertices: number): Step {
     if (fields[name].length !== vertices) throw new RangeError(`a step's ${name} has another number of vertices`);
   }
   return {status: step.status, remark: step.remark, iterations: step.iterations, seconds: step.seconds,
-          loads: step.loads, time: step.time_s, commands: step.commands.map(known),
+          loads: step.loads, measures: step.measures, time: step.time_s, commands: step.commands.map(known),
           markers: step.markers.map((marker) => marker.map(known)), positions, fields};
 }
 

@@ -4,7 +4,8 @@ import type {Estimate} from './estimate';
 /** What the server says of where a marker was to go. */
 export interface FrameTarget { marker: number; at: number[]; error_mm: number | null; reached: boolean; why: string }
 interface Head extends Told {
-  id: number; commands: (number | null)[]; loads: (number | null)[]; markers: (number | null)[][];
+  id: number; commands: (number | null)[]; loads: (number | null)[]; measures: (number | null)[];
+  markers: (number | null)[][];
   target: FrameTarget | null; arrays: string[]; vertices: number; estimate?: Estimate;
 }
 /** Numbers that the program does not know are NaN. */

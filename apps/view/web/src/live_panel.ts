@@ -4,10 +4,10 @@ import {byId} from './text';
 /** Who controls, in words; away: it was connected before. */
 export function liveWords(state: LiveState, before: boolean): string {
   const {connected, secret, control, free, streamed, watchers} = state;
-  if (!connected) return before ? 'softkin does not answer: trying again …' : 'Connecting to softkin …';
+  if (!connected) return before ? 'softkin does not respond: trying again …' : 'Connecting to softkin …';
   const others = watchers > 0 ? ` ${watchers} window${watchers > 1 ? 's' : ''} watch${watchers > 1 ? '' : 'es'}.` : '';
   if (control) return `You control the robot.${others}`;
-  if (streamed) return `Readings are streamed to softkin, and this window watches.`;
+  if (streamed) return `Another program streams readings to softkin; this window watches.`;
   const who = free ? 'Nobody controls the robot.' : 'Another window controls the robot; this one watches.';
   return secret ? who : `${who} To control it, open the whole address that softkin printed.`;
 }
@@ -15,8 +15,8 @@ export function liveWords(state: LiveState, before: boolean): string {
 /** Why the sliders are off; empty: they are on. */
 export function whyOff({connected, control, secret, free, streamed}: LiveState): string {
   if (control) return '';
-  if (!connected) return 'Off: softkin does not answer.';
-  if (streamed) return 'Off: readings are streamed.';
+  if (!connected) return 'Off: softkin does not respond.';
+  if (streamed) return 'Off: another program streams readings.';
   if (!secret) return 'Off: this window only watches.';
   return free ? 'Off: press "Take control" first.' : 'Off: another window has control. "Take control" takes it away.';
 }

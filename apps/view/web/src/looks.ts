@@ -1,18 +1,19 @@
 import {colourAt, regionColour, type Scale, scaleOf} from './colours';
 import type {Robot} from './robot';
 import type {Part, RobotScene} from './scene';
-import {byId, digits, element, plain} from './text';
+import {byId, element, plain} from './text';
+import {labelledTicks} from './ticks';
 
 interface Field { name: string; words: string; unit: string; about: number | null; fromZero: boolean }
 
 /** Fields that the program writes; others are shown by their names. */
 const known: Record<string, Omit<Field, 'name'>> = {
-  strain: {words: 'Greatest principal strain', unit: '%', about: null, fromZero: false},
-  volume_ratio: {words: 'Volume over that at rest', unit: '×', about: 1, fromZero: false},
+  strain: {words: 'Largest principal strain', unit: '%', about: null, fromZero: false},
+  volume_ratio: {words: 'Volume ratio', unit: '× rest', about: 1, fromZero: false},
   contact_pressure: {words: 'Contact pressure', unit: 'kPa', about: null, fromZero: true},
 };
 
-const moved: Field = {name: 'displacement', words: 'Moved from rest', unit: 'mm', about: null, fromZero: true};
+const moved: Field = {name: 'displacement', words: 'Displacement from the reference shape', unit: 'mm', about: null, fromZero: true};
 
 export function displacement(positions: Float32Array, rest: Float32Array): Float32Array {
   const far = new Float32Array(rest.length / 3);
@@ -60,13 +61,13 @@ function makeLegend(regions: string[]): HTMLElement {
 
 function makeSwitches(robot: Robot, scene: RobotScene): HTMLElement[] {
   const {cables, workspace, obstacles, bodies, markers} = robot.document, {field} = scene;
-  const around = obstacles.length + bodies.length > 0, who = markers[workspace?.marker ?? 0]?.name ?? 'it';
+  const around = obstacles.length + bodies.length > 0, who = markers[workspace?.marker ?? 0]?.name ?? 'the marker';
   const switches: [Part, string, boolean, boolean][] = [
-    ['ghost', 'shape at rest', true, true], ['traces', 'ways of markers', true, robot.steps.length > 1],
-    ['markers', 'markers', true, true], ['workspace', `where ${plain(who)} can go`, true, workspace !== null],
-    ['around', 'what is around', true, around], ['field', 'magnetic field', true, field !== null],
-    ['forces', 'what pushes', true, robot.tells],
-    ['grid', 'grid', true, true], ['clear', 'see through', cables.length > 0, true],
+    ['ghost', 'reference shape (unloaded)', true, true], ['traces', 'marker trajectories', true, robot.steps.length > 1],
+    ['markers', 'markers', true, true], ['workspace', `workspace of ${plain(who)}`, true, workspace !== null],
+    ['around', 'obstacles and bodies', true, around], ['field', 'magnetic field', true, field !== null],
+    ['forces', 'estimated forces', true, robot.tells],
+    ['grid', 'grid', true, true], ['clear', 'transparent', cables.length > 0, true],
   ];
   return switches.filter(([, , , is]) => is).map(([part, words, on]) => {
     const check = element('input', {type: 'checkbox'});
@@ -85,9 +86,9 @@ export function makeLooks(robot: Robot, scene: RobotScene, shapes: Float32Array[
     ({name, ...(known[name] ?? {words: plain(name), unit: '', about: null, fromZero: false})}));
   const colours = new Colours(robot, shapes);
   const choose = element('select', {id: 'colour'},
-    element('option', {value: moved.name}, 'how far it moved'),
+    element('option', {value: moved.name}, 'displacement'),
     ...fields.map(({name, words}) => element('option', {value: name}, words)),
-    element('option', {value: 'region'}, 'parts'));
+    element('option', {value: 'region'}, 'regions'));
   const legend = makeLegend(regions), note = element('p', {class: 'explain'});
   box.append(element('div', {class: 'choose'}, element('label', {for: 'colour'}, 'Colour'), choose), legend, note,
              ...makeSwitches(robot, scene));
@@ -96,7 +97,7 @@ export function makeLooks(robot: Robot, scene: RobotScene, shapes: Float32Array[
     const values = field ? colours.values(field) : null, bar = byId('colour-bar');
     legend.hidden = field !== undefined;
     note.textContent = field && !values
-      ? `${field.words} is known at the computed steps alone: play them below the picture.` : '';
+      ? `${field.words} is available at the computed steps only: play them below the picture.` : '';
     bar.hidden = !field || !values;
     if (!field || !values) return scene.setColours(null, null);
     const scale = colours.scale(field);
@@ -113,9 +114,11 @@ function drawBar({low, high, about}: Scale, {words, unit}: Field): void {
     context.fillStyle = `rgb(${colourAt(i / (canvas.width - 1), about).join()})`;
     context.fillRect(i, 0, 1, 1);
   }
-  const shown = (value: number) => digits(unit === '%' ? 100 * value : value, 3);
+  const factor = unit === '%' ? 100 : 1, [from, to] = [factor * low, factor * high];
   byId('bar-title').textContent = unit ? `${words} [${unit}]` : words;
-  byId('bar-low').textContent = shown(low);
-  byId('bar-middle').textContent = shown((low + high) / 2);
-  byId('bar-high').textContent = shown(high);
+  byId('bar-ticks').replaceChildren(...labelledTicks(from, to).map(({value, label}) => {
+    const tick = element('span', {}, label);
+    tick.style.left = `${(100 * (value - from) / (to - from)).toFixed(2)}%`;
+    return tick;
+  }));
 }

@@ -10,7 +10,7 @@ import {Live} from './live';
 import {makeLivePanel} from './live_panel';
 import {makeLooks} from './looks';
 import {eventTime, Meter} from './meter';
-import {makeTable, stateWords, tellOrigin} from './numbers';
+import {makeOutputs, makeTable, stateWords, tellOrigin} from './numbers';
 import {makePathPanel} from './path_panel';
 import {makePlayer} from './player';
 import {makeReadings} from './readings';
@@ -92,7 +92,7 @@ function start(): void {
   const undo = byId<HTMLButtonElement>('undo'), reset = byId<HTMLButtonElement>('reset'), state = byId('state');
   const parts = [makePathPanel(robot, scene, player), makeSliders(byId('sliders'), robot), makeTarget(robot),
                  makeLooks(robot, scene, shapes), makeTensions(robot, scene, byId('looks'), corners),
-                 makeCurves(byId('curves'), robot), makeTable(robot), makeSave(robot), player.update,
+                 makeCurves(byId('curves'), robot), makeTable(robot), makeOutputs(robot), makeSave(robot), player.update,
                  makeReadings(robot, () => scene.forces.mmPerNewton), ...(live ? [makeLivePanel(live)] : [])];
   const labels = makeLabels(robot, scene), record = makeRecorder(canvas, robot, player);
   byId('curves-section').hidden = !read.actuators.some((actuator) => actuator.load_unit);

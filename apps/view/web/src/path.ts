@@ -33,7 +33,7 @@ export class FileTrack implements Track {
   /** Why this page cannot play the file; empty: it can. */
   static refusal(robot: Robot, file: PathFile | null = null): string {
     const {link, map, document: {live}} = robot;
-    if (robot.tells) return 'What pushes the robot is told here: type what was read, or stream it.';
+    if (robot.tells) return 'This page estimates forces: type the readings, or stream them.';
     if (!map && !live) return 'This page has no map (softkin fk --map), so it cannot move the robot.';
     if (live && !link?.state.control) return 'Take control first: this window only watches.';
     if (!file || file.kind === 'commands' || map) return '';

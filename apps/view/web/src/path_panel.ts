@@ -34,7 +34,7 @@ function wordsOf(track: FileTrack): string {
   if (!known.length) return `${fileName}: ${count} waypoints. Play them below the picture.`;
   const most = Math.max(...known), row = errors.indexOf(most);
   const mean = known.reduce((sum, error) => sum + error, 0) / known.length;
-  return `${fileName}: ${known.length} of ${count} waypoints sought. Farthest from its waypoint: row ${row + 1} ` +
+  return `${fileName}: ${known.length} of ${count} waypoints solved. Farthest from its waypoint: row ${row + 1} ` +
     `(line ${file.lines[row]}), ${mm(most)} mm; on average ${mm(mean)} mm.`;
 }
 
@@ -46,7 +46,7 @@ export function makePathPanel(robot: Robot, scene: RobotScene, player: Player): 
   const choose = element('input', {type: 'file', accept: '.csv,.yaml,.yml,text/csv', class: 'away', tabindex: -1,
                                    'aria-hidden': 'true'});
   const open = element('button', {type: 'button'}, 'Open a file …');
-  const close = element('button', {type: 'button'}, 'Put it away');
+  const close = element('button', {type: 'button'}, 'Close the file');
   const told = element('p', {role: 'status'}), wrong = element('p', {role: 'alert', class: 'bad message'});
   const svg = drawn('svg', {viewBox: `0 0 ${width} ${height}`, role: 'img',
                             'aria-label': 'Distance from the waypoints'});

@@ -16,7 +16,7 @@ const largest = 1e9;
 export function whyNoReading(text: string, {name}: ReadingColumn): string {
   const value = Number(text);
   if (text.trim() === '') return '';
-  if (!Number.isFinite(value)) return `${plain(name)}: type a number, or nothing where it was not read.`;
+  if (!Number.isFinite(value)) return `${plain(name)}: type a number, or leave the field empty if there is no reading.`;
   return Math.abs(value) <= largest ? '' : `${plain(name)}: a number up to ${largest} is needed.`;
 }
 
@@ -68,7 +68,7 @@ function makeFields(robot: Robot, columns: ReadingColumn[], box: HTMLElement): (
     return element('tr', {}, name, ...cells, element('td', {}, `± ${digits(deviation, 2)} ${unit}`));
   });
   const head = [element('td'), ...['x', 'y', 'z', 'deviation'].map((word) => element('th', {scope: 'col'}, word))];
-  const clear = element('button', {type: 'button'}, 'Nothing was read');
+  const clear = element('button', {type: 'button'}, 'Clear the readings');
   clear.addEventListener('click', () => robot.read(columns.map(() => null)));
   box.append(element('table', {}, element('thead', {}, element('tr', {}, ...head)), element('tbody', {}, ...rows)),
              wrong, element('div', {class: 'buttons'}, clear));
@@ -93,9 +93,9 @@ const sentence = (words: string): string =>
 const meaning = (mmPerNewton: number, places: boolean): string =>
   `Arrow: the force, from where it acts; ${digits(mmPerNewton, 2)} mm are 1 N. Cone: its rim is the ellipse that ` +
   'holds the arrow\'s tip, across the arrow, with a probability of 90 %: 2.15 standard deviations (2-D factor), or ' +
-  '1.64 where one component alone is told across it. ' +
-  (places ? 'Ellipse at its foot: it acts inside, in the surface, with 90 % (2.15 standard deviations). ' : '') +
-  'As if all errors were normal.';
+  '1.64 where only one component across it is estimated. ' +
+  (places ? 'Ellipse at its foot: the force acts inside it, on the surface, with a probability of 90 % (2.15 standard deviations). ' : '') +
+  'This assumes normally distributed errors.';
 
 /** Of a ratio in words: "× rest length". */
 export const unitOf = ({name, unit}: ToldNumber, actuators: Actuator[]): string =>
@@ -107,10 +107,10 @@ function tell(estimate: Estimate, actuators: Actuator[], box: HTMLElement, mmPer
     element('td', {}, plusMinus(told.value, told.deviation, unitOf(told, actuators)))));
   box.replaceChildren(
     ...forces.map((force) => element('p', {class: 'force'}, forceText(force))),
-    ...places.map((place) => element('p', {}, `${plain(place.force)} acts, at rest, at ${placeText(place)}`)),
+    ...places.map((place) => element('p', {}, `${plain(place.force)} acts, in the reference shape, at ${placeText(place)}`)),
     ...(rows.length ? [element('table', {}, element('tbody', {}, ...rows))] : []),
     ...(status === 'converged' ? [element('p', {}, fitText(estimate))]
-      : [element('p', {class: 'bad message'}, `Nothing is told: ${status}${remark && ` – ${remark}`}.`)]),
+      : [element('p', {class: 'bad message'}, `There is no estimate: ${status}${remark && ` – ${remark}`}.`)]),
     ...words.map((word) => element('p', {class: `${/^left out|do not fit/.test(word) ? 'bad ' : ''}message`},
                                    sentence(word))),
     ...(forces.length ? [element('p', {class: 'explain'}, meaning(mmPerNewton, places.length > 0))] : []));
@@ -121,7 +121,7 @@ export function makeReadings(robot: Robot, mmPerNewton: () => number): () => voi
   const of = robot.document.live?.estimate, box = byId('told');
   if (!of) return () => {};
   byId('readings-section').hidden = byId('told-section').hidden = false;
-  byId('explain-readings').textContent = 'Type what was read; what is empty was not. Each change is told anew.';
+  byId('explain-readings').textContent = 'Type the readings; leave a field empty where there is none. Each change gives a new estimate.';
   const fields = makeFields(robot, of.columns, byId('readings'));
   let last: Estimate | null | undefined;
   return () => {
@@ -129,6 +129,6 @@ export function makeReadings(robot: Robot, mmPerNewton: () => number): () => voi
     if (last === robot.estimate) return;
     last = robot.estimate;
     if (last) tell(last, robot.document.actuators, box, mmPerNewton());
-    else box.replaceChildren(element('p', {class: 'explain'}, 'Nothing was read yet.'));
+    else box.replaceChildren(element('p', {class: 'explain'}, 'There are no readings yet.'));
   };
 }

@@ -4,11 +4,12 @@ import type {Frame} from './frame';
 import type {Goal} from './inverse';
 import type {Ask} from './live';
 import {KinematicMap, type MapDocument} from './map';
+import {measured} from './words';
 
 /** What is shown: a step of the run (step: its number, else -1), an answer of the map or of the running program. */
 export interface Pose {
-  commands: number[]; loads: (number | null)[]; markers: number[][]; positions: Float32Array;
-  fields: Record<string, Float32Array>; step: number; from: 'rest' | 'step' | 'map' | 'live'; told: Told | null;
+  commands: number[]; loads: (number | null)[]; measures: (number | null)[]; markers: number[][];
+  positions: Float32Array; fields: Record<string, Float32Array>; step: number; from: 'rest' | 'step' | 'map' | 'live'; told: Told | null;
 }
 /** errorMm: null while it is sought; why: of the running program, else empty. */
 export interface Target { marker: number; at: number[]; errorMm: number | null; reached: boolean; why: string }
@@ -39,7 +40,8 @@ export class Robot {
   estimate: Estimate | null = null;
   onChange: () => void = () => {};
   private past: Memory[] = [];
-  private loadOutputs: number[] = [];
+  private loadOutputs: number[] = [];     // of each actuator, or -1
+  private measureOutputs: number[] = [];  // the same
   private order: number[] = [];  // of each input of the map: its actuator
   private markerOutputs: number[] = [];
 
@@ -49,7 +51,8 @@ export class Robot {
     this.steps = document.live ? [] : document.steps;
     this.commands = actuators.map((a) => a.rest);
     this.values = document.live?.estimate?.columns.map(() => null) ?? [];
-    this.pose = {commands: this.commands, loads: actuators.map(() => null), markers: markers.map((m) => m.at),
+    const unknown = actuators.map(() => null);
+    this.pose = {commands: this.commands, loads: unknown, measures: unknown, markers: markers.map((m) => m.at),
                  positions: rest, fields: {}, step: -1, from: 'rest', told: null};
     const first = document.live ? document.steps[0] : undefined;
     if (first) this.pose = {...first, step: -1, from: 'live', told: first};
@@ -64,11 +67,13 @@ export class Robot {
     this.map = fits ? map : null;
     this.order = known;
     this.markerOutputs = markers.map(({name}) => this.map?.markers.indexOf(name) ?? -1);
-    this.loadOutputs = actuators.map(({name}) => this.map?.outputs.findIndex((output) =>
-      /^(kPa|N)$/.test(output.unit) && output.name.startsWith(`${name}_`)) ?? -1);
+    const output = (...names: string[]) => this.map?.outputs.findIndex(({name}) => names.includes(name)) ?? -1;
+    this.loadOutputs = actuators.map(({name, load_unit: unit}) => unit === '' ? -1
+      : unit === measured || unit === 'mL' ? output(`${name}_ratio`) : output(`${name}_pressure`, `${name}_tension`));
+    this.measureOutputs = actuators.map(({name, measure_unit: unit}) => unit === '' ? -1 : output(`${name}_ratio`));
   }
 
-  /** As the page opens; the map knows what weight does at rest. */
+  /** As the page opens; the map has the equilibrium at rest under the loads of the scene. */
   rest(): void {
     const at = this.document.actuators.map((a) => Math.min(Math.max(a.rest, a.low), a.high));
     if (!this.link && this.map && this.ask(at)) this.command(at);
@@ -85,8 +90,16 @@ export class Robot {
     const {outputs} = found;
     const markers = this.markerOutputs.map((m, i) =>
       m < 0 ? this.document.markers[i].at : outputs.slice(3 * m, 3 * m + 3));
-    return {commands, markers, loads: this.loadOutputs.map((q) => q < 0 ? null : outputs[q]), fields: {}, step: -1,
-            from: 'map', told: null};
+    const values = (of: number[]) => of.map((q) => q < 0 ? null : outputs[q]);
+    const loads = values(this.loadOutputs).map((load, a) => load ?? this.commandedLoad(a, commands));
+    return {commands, markers, loads, measures: values(this.measureOutputs), fields: {}, step: -1, from: 'map',
+            told: null};
+  }
+
+  /** A tension or pressure that is commanded is none of the map's outputs. */
+  private commandedLoad(actuator: number, commands: number[]): number | null {
+    const {unit, load_unit: load} = this.document.actuators[actuator];
+    return unit !== '' && unit === load ? commands[actuator] : null;
   }
 
   shapeAt(commands: number[]): Float32Array | null {
@@ -159,8 +172,8 @@ export class Robot {
     this.target = null;
     this.row = -1;
     this.commands = of.commands;
-    this.pose = {commands: of.commands, loads: of.loads, markers: of.markers, positions: of.positions,
-                 fields: of.fields, step, from: 'step', told: of};
+    this.pose = {commands: of.commands, loads: of.loads, measures: of.measures, markers: of.markers,
+                 positions: of.positions, fields: of.fields, step, from: 'step', told: of};
     this.onChange();
   }
 
@@ -195,8 +208,8 @@ export class Robot {
   answered(frame: Frame, mine: boolean, newest: boolean): void {
     const last = newest || this.link?.busy !== true;
     if (!last && !(mine && !this.map)) return;
-    const {commands, loads, markers, positions, fields, target} = frame;
-    this.pose = {commands, loads, markers, positions, fields, step: -1, from: 'live', told: frame};
+    const {commands, loads, measures, markers, positions, fields, target} = frame;
+    this.pose = {commands, loads, measures, markers, positions, fields, step: -1, from: 'live', told: frame};
     if (last) {
       this.commands = commands;
       this.outside = false;

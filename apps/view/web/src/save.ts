@@ -22,7 +22,7 @@ function shapeFile(robot: Robot): string {
 
 /** Buttons that save what is shown; returns what brings the line up to date. */
 export function makeSave(robot: Robot): () => void {
-  const box = byId('save'), line = element('textarea', {readonly: '', rows: 3, 'aria-label': 'Line for a terminal',
+  const box = byId('save'), line = element('textarea', {readonly: '', rows: 3, 'aria-label': 'Command for a terminal',
                                                         spellcheck: 'false'});
   const button = (words: string, act: () => void) => {
     const made = element('button', {type: 'button'}, words);
@@ -36,18 +36,18 @@ export function makeSave(robot: Robot): () => void {
       await navigator.clipboard.writeText(line.value);
       told.textContent = 'Copied.';
     } catch {
-      told.textContent = 'Press Ctrl+C: the line is selected.';
+      told.textContent = 'Press Ctrl+C: the command is selected.';
     }
   };
   box.append(
-    element('p', {class: 'explain'}, 'What is shown now, to go on with:'),
+    element('p', {class: 'explain'}, 'Save the shown state:'),
     element('div', {class: 'buttons'},
       robot.tells
         ? button('Readings (CSV)', () => download('readings.csv', new Blob([readingsCsv(robot)], {type: 'text/csv'})))
         : button('State (YAML)', () => download(`${name}.state.yaml`, new Blob([yamlOf(robot)], {type: 'text/yaml'}))),
       button('Shape (VTU)', () => download(`${name}.vtu`, new Blob([shapeFile(robot)], {type: 'application/xml'})))),
-    element('p', {class: 'explain'}, 'The same by a line for a terminal:'), line,
-    element('div', {class: 'buttons'}, button('Copy the line', () => void copy()), told));
+    element('p', {class: 'explain'}, 'The command that computes it again:'), line,
+    element('div', {class: 'buttons'}, button('Copy the command', () => void copy()), told));
   return () => {
     const text = lineOf(robot.document, robot.pose.commands);
     if (line.value === text) return;

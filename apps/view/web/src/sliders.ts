@@ -21,7 +21,7 @@ export function whyNotTaken(text: string, {name, low, high, unit, control}: Actu
   if (value >= low && value <= high) return '';
   const words = commandWords({unit, control});
   return `${plain(name)}: ${typed(value)} is outside its range, ` +
-    `${withUnit(`${typed(low)} to ${typed(high)}`, words)}. The robot stays as it is.`;
+    `${withUnit(`${typed(low)} to ${typed(high)}`, words)}. The command is unchanged.`;
 }
 
 function makeRow(actuator: Actuator, i: number, isTold: boolean): Row & {whole: HTMLElement} {
@@ -33,7 +33,7 @@ function makeRow(actuator: Actuator, i: number, isTold: boolean): Row & {whole: 
   const load = element('span', {class: 'load'}), wrong = element('p', {class: 'bad message', role: 'alert'});
   const whole = element('div', {class: 'slider'},
     element('div', {class: 'row'}, element('label', {for: id}, name),
-            element('span', {class: 'kind'}, kindWords[actuator.kind] + (isTold ? ', told' : '')), load),
+            element('span', {class: 'kind'}, kindWords[actuator.kind] + (isTold ? ', estimated' : '')), load),
     slider,
     element('div', {class: 'ends'}, element('span', {}, digits(low, 3)), element('span', {class: 'typed'}, field, unit),
             element('span', {}, digits(high, 3))),
@@ -43,7 +43,7 @@ function makeRow(actuator: Actuator, i: number, isTold: boolean): Row & {whole: 
 
 /** One slider for each actuator; returns what brings them up to date. */
 export function makeSliders(box: HTMLElement, robot: Robot): () => void {
-  const around = element('details', {}, element('summary', {}, 'What is done to the things around it'));
+  const around = element('details', {}, element('summary', {}, 'Commands of obstacles, bodies and supports'));
   const told = robot.document.live?.estimate?.told ?? [];
   const rows = robot.document.actuators.map((actuator, i) => {
     const row = makeRow(actuator, i, told.includes(i)), {slider, field, wrong, whole} = row;

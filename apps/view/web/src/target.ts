@@ -19,16 +19,16 @@ function whyNot(robot: Robot): string {
   const count = robot.document.actuators.filter(drives).length, limits = atLimits(robot);
   if (robot.target?.why) return ` ${robot.target.why}`;
   if (limits) return limits;
-  if (count >= 3) return ' No small change of the actuators brings it nearer.';
+  if (count >= 3) return ' No small change of the commands brings it nearer.';
   const [s, way] = count > 1 ? ['s', 'surface'] : ['', 'curve'];
-  return ` With ${count} actuator${s} it moves on a ${way} and cannot leave it.`;
+  return ` With ${count} actuator${s} it can only move on a ${way}.`;
 }
 
 export function targetWords(robot: Robot): {text: string; bad: boolean} {
   const {target, document} = robot;
   if (!target) return {text: '', bad: false};
   const name = plain(document.markers[target.marker].name), {errorMm} = target;
-  if (errorMm === null) return {text: `softkin is seeking what brings ${name} there …`, bad: false};
+  if (errorMm === null) return {text: `softkin is searching for commands that bring ${name} there …`, bad: false};
   if (target.why.startsWith('not reached')) return {text: `${name} ${target.why}.`, bad: true};
   if (!target.reached && errorMm > nearMm)
     return {text: `Out of reach: ${name} is ${mm(errorMm)} mm from its target.${whyNot(robot)}`, bad: true};
@@ -45,7 +45,7 @@ export function makeTarget(robot: Robot): () => void {
   robot.selected = able[0];
   byId('target-section').hidden = false;
   byId('explain-target').textContent = 'Drag the round marker or one of its arrows in the picture, or type a place ' +
-    `in mm: ${live ? 'softkin' : 'the page'} finds the actuators that lead there.`;
+    `in mm: ${live ? 'softkin' : 'the page'} finds the commands that lead there.`;
   const choose = element('select', {'aria-label': 'Marker'},
     ...able.map((i) => element('option', {value: i}, plain(markers[i].name))));
   const fields = ['x', 'y', 'z'].map((axis) =>

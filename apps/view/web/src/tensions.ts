@@ -14,7 +14,7 @@ export function makeTensions(robot: Robot, scene: RobotScene, box: HTMLElement, 
   for (const step of robot.steps) grow(step.loads);
   for (const commands of somePoses) grow(robot.ask(commands)?.loads ?? []);
   const bar = element('canvas', {width: 100, height: 1, 'aria-hidden': 'true'}), most = element('span');
-  const legend = element('p', {class: 'tension'}, 'Cables by tension: 0', bar, most);
+  const legend = element('p', {class: 'tension'}, 'Tension of the cables: 0', bar, most);
   const context = bar.getContext('2d');
   box.append(legend);
   return () => {

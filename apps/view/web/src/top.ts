@@ -30,12 +30,12 @@ export function tellAtTop(robot: Robot): void {
   const marked = led ? [`the round marker${field ? ', its arrows' : ' or its arrows'}`] : [];
   const drag = [...marked, ...(field ? ['the tip of the field'] : [])].join(' or ');
   byId('hint').textContent = robot.tells
-    ? 'Type what was read: softkin tells what pushes, and the shape follows. Drag here to look from elsewhere. ' +
-      'Pale: the shape at rest.'
+    ? 'Type the readings: softkin estimates the forces, and the shape follows. Drag the picture to turn the view. ' +
+      'Pale: the unloaded reference shape.'
     : movable
     ? `Move a slider${drag && `, or drag ${drag}`}: the robot follows. ` +
-      'Drag beside it to look from elsewhere. Pale: the shape at rest.'
-    : 'Play the steps, or drag here to look from elsewhere. Pale: the shape at rest.';
+      'Drag the background to turn the view. Pale: the unloaded reference shape.'
+    : 'Play the steps, or drag the picture to turn the view. Pale: the unloaded reference shape.';
 }
 
 /** What the sliders do now; live: null where no program runs. */
@@ -43,9 +43,9 @@ export function tellAtSliders(robot: Robot, live: LiveState | null): void {
   const {actuators, map} = {actuators: robot.document.actuators, map: robot.map}, box = byId('explain-actuators');
   const off = live ? whyOff(live) : '', a = actuators.length > 1 ? 'a' : 'the';
   const each = actuators.length > 1 ? 'each' : 'the';
-  const text = off || (robot.tells ? `What ${each} actuator was commanded when this was read.`
-    : map || live ? `Drag ${a} slider or type a number: the robot bends.`
-    : 'What each actuator does at this step. Play the steps below the picture.');
+  const text = off || (robot.tells ? `The command of ${each} actuator when the readings were taken.`
+    : map || live ? `Drag ${a} slider or type a number: the robot follows.`
+    : 'The command of each actuator at this step. Play the steps below the picture.');
   if (box.textContent === text) return;
   box.textContent = text;
   box.classList.toggle('off', off !== '');

@@ -2,7 +2,7 @@ import type {Actuator, Kind} from './document';
 
 export const kindWords: Record<Kind, string> = {
   cable: 'cable', pneumatic: 'air chamber', dea: 'dielectric elastomer', magnetic: 'magnetic field', growth: 'growth',
-  motion: 'moved obstacle', force: 'force', hold: 'hold on a body', turn: 'turned support',
+  motion: 'obstacle motion', force: 'force', hold: 'held body', turn: 'rotated support',
 };
 
 /** Not done to what is around the robot, such as a force on a body that it holds. */
@@ -14,11 +14,15 @@ export function commandWords({unit, control}: Pick<Actuator, 'unit' | 'control'>
   return unit || (/^(length|area|volume)$/.test(control) ? `× rest ${control}` : '');
 }
 
-/** Of what is commanded by its load, the volume or area that comes of it. */
+/** The unit of a length, area or volume as a ratio. */
 export const measured = '× rest';
 
+/** What an actuator has besides its load. */
+export function measureWords({kind}: Pick<Actuator, 'kind'>): string {
+  return {cable: 'length', dea: 'area'}[kind as string] ?? 'volume';
+}
+
 export function loadWords({kind, load_unit: unit}: Actuator): string {
-  if (unit === measured) return kind === 'dea' ? 'area' : 'volume';
-  if (unit === 'mL') return 'volume';  // of a chamber that is flat at rest
+  if (unit === measured || unit === 'mL') return measureWords({kind});  // mL: of a chamber that is flat at rest
   return {cable: 'tension', dea: 'voltage'}[kind as string] ?? 'pressure';
 }

@@ -4,7 +4,7 @@ import {PathError, readPath} from '../src/csv';
 import type {Actuator, Marker} from '../src/document';
 
 const actuator = (name: string, unit: string, low: number, high: number, rest: number): Actuator =>
-  ({name, unit, low, high, rest, kind: 'pneumatic', control: unit ? 'pressure' : 'volume', load_unit: 'kPa'});
+  ({name, unit, low, high, rest, kind: 'pneumatic', control: unit ? 'pressure' : 'volume', load_unit: 'kPa', measure_unit: ''});
 const actuators = [actuator('air', '', 1, 2, 1), actuator('left.air', 'kPa', 0, 50, 0)];
 const tip: Marker = {name: 'tip', at: [0, 0, 0]}, side: Marker = {name: 'side_x', at: [0, 0, 0]};
 const read = (text: string, markers = [tip]) => readPath(text, actuators, markers);

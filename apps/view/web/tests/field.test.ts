@@ -4,10 +4,10 @@ import type {Actuator} from '../src/document';
 import {draggedField, fieldOf, largestField} from '../src/field';
 
 const along = (direction: number[], low = -10, high = 10): Actuator =>
-  ({name: 'field', kind: 'magnetic', control: 'flux density', unit: 'mT', low, high, rest: 0, load_unit: '',
+  ({name: 'field', kind: 'magnetic', control: 'flux density', unit: 'mT', low, high, rest: 0, load_unit: '', measure_unit: '',
     flux_density: direction});
 const cable: Actuator =
-  {name: 'tendon', kind: 'cable', control: 'length', unit: '', low: 0.5, high: 1, rest: 1, load_unit: 'N'};
+  {name: 'tendon', kind: 'cable', control: 'length', unit: '', low: 0.5, high: 1, rest: 1, load_unit: 'N', measure_unit: ''};
 const [x, y, z] = [[1, 0, 0], [0, 1, 0], [0, 0, 1]];
 const near = (found: number[], wanted: number[]) =>
   assert.ok(found.every((value, k) => Math.abs(value - wanted[k]) < 1e-9), `${found} is not ${wanted}`);

@@ -36,17 +36,17 @@ bool answers_with_load(const Model& model, const Actuator& actuator) {
   return model.formulation == Formulation::physical && softkin::answers_with_load(actuator);
 }
 
-bool answers_with_ratio(const Model& model, const Actuator& actuator) {
-  return has_measure(actuator) &&
-         (answers_with_measure(actuator) || !answers_with_load(model, actuator) || is_cable(model, actuator));
-}
-
 /// Loads on the robot are commands of its maps, too.
 bool is_input(const Actuator& actuator) {
   return varies(actuator) || (loads_robot(actuator) && actuator.low < actuator.high);
 }
 
 }  // namespace
+
+bool answers_with_ratio(const Model& model, const Actuator& actuator) {
+  return has_measure(actuator) &&
+         (answers_with_measure(actuator) || !answers_with_load(model, actuator) || is_cable(model, actuator));
+}
 
 MapData outline_of(const Model& model) {
   if (model.markers.empty())

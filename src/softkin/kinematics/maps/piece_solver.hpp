@@ -42,6 +42,10 @@ class PieceSolver {
 /// The outputs of a map in an equilibrium of its robot, or of a piece's.
 [[nodiscard]] Eigen::VectorXd outputs_of(const Model& model, const MapData& data, const State& state);
 
+/// Is the length, area or volume of the actuator over that at rest an output of the robot's maps: where it follows from
+/// what is commanded, or may differ from it?
+[[nodiscard]] bool answers_with_ratio(const Model& model, const Actuator& actuator);
+
 /// What a map of the robot takes and gives; without pieces.
 ///
 /// throws  InvalidInput on a robot with nothing that varies or with too much, without markers, or with friction, whose
