@@ -33,6 +33,15 @@ std::string actuators_text(const std::vector<ExampleActuator>& actuators) {
   return text.empty() ? "none" : text + last;
 }
 
+/// What has to be made or fetched before an example runs, a line for each file.
+std::string missing_text(const Example& example) {
+  std::string text;
+  for (const MissingFile& each : example.missing)
+    text += example.name + " needs " + each.file + ", which does not come with softkin" +
+            (each.source.empty() ? "" : ": " + each.source) + "\n";
+  return text;
+}
+
 int run_list(const ExamplesOptions& options) {
   const std::vector<Example> examples = all_examples(examples_folder());
   if (options.json) {
@@ -42,8 +51,10 @@ int run_list(const ExamplesOptions& options) {
   const auto column = [](const char* key) { return Column{.key = key, .left = true}; };
   Table table{{column("name"), column("short"), column("what it is"), column("actuators")}};
   for (const Example& each : examples)
-    table.rows.push_back({each.name, each.short_name, each.title, actuators_text(each.actuators)});
+    table.rows.push_back({each.name, each.short_name, each.title,
+                          each.missing.empty() ? actuators_text(each.actuators) : "not known yet: see below"});
   print(table_text(table));
+  for (const Example& each : examples) print(missing_text(each));
   return done;
 }
 
@@ -55,7 +66,7 @@ int run_copy(const ExamplesOptions& options) {
   }
   const auto place = std::filesystem::path(options.folder) / copied.example.name;
   print(copied.example.title + ": " + counted(copied.files.size(), "file") + ", " + place.lexically_normal().string() +
-        "\nnext:\n  " + runs::command_line(copied.example.command) + "\n");
+        "\n" + missing_text(copied.example) + "next:\n  " + runs::command_line(copied.example.command) + "\n");
   return done;
 }
 

@@ -3,9 +3,9 @@
 #include <nanobind/stl/vector.h>
 
 #include <softkin/core/text.hpp>
-#include <softkin/io/file.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/scene/changes.hpp>
+#include <softkin/io/scene/scene_file.hpp>
 
 #include "bindings.hpp"
 #include "convert.hpp"
@@ -110,7 +110,7 @@ void bind_source(nb::module_& module) {
           "of_scene",
           [](const std::string& path, const std::string& formulation, const std::vector<std::string>& forces,
              const std::vector<std::string>& changes) {
-            auto tree = scene::parse_yaml(read_file(path), path);
+            auto tree = scene::parse_yaml(read_scene_file(path), path);
             for (const std::string& each : changes) tree = scene::changed(tree, "changes", each, "");
             return Source{path, tree, formulation, forces};
           },

@@ -42,8 +42,10 @@ std::set<std::string> files_below(const fs::path& folder) {
 
 TEST(ExamplesList, HasEveryFolderOfTheSources) {
   std::set<std::string> expected, found;
-  for (const auto& entry : fs::directory_iterator(source_examples))
-    if (fs::exists(entry.path() / "README.md")) expected.insert(entry.path().filename());
+  for (const auto& entry : fs::recursive_directory_iterator(source_examples)) {
+    const fs::path name = entry.path().parent_path().lexically_relative(source_examples);
+    if (entry.path().filename() == "README.md" && name != "." && name != "python") expected.insert(name.string());
+  }
   for (const json& each : listed()) {
     SCOPED_TRACE(each["name"]);
     found.insert(each["name"]);
@@ -68,6 +70,24 @@ TEST(ExamplesList, TellsWhatIsCommanded) {
   for (const char* part :
        {"air1, air2, air3: 1 to 1.6\n", "none\n", "pneumatic_finger             finger         Pneumatic finger"})
     EXPECT_NE(text.find(part), std::string::npos) << text;
+}
+
+/// Robots whose meshes or measurements do not come with softkin.
+TEST(ExamplesList, TellsWhatIsMadeOrFetchedFirst) {
+  json of;
+  for (const json& each : listed()) of[each["name"]] = each["missing"];
+  const bool made = fs::exists(source_examples / "real/beam/beam.mesh");
+  if (!made)
+    EXPECT_EQ(of["real/beam"][0], json::parse(R"({"file": "real/beam/beam.mesh",
+      "source": "'python3 real/beam/make_beam.py' makes it"})"));
+  EXPECT_EQ(of["paper/published_robot"][0]["file"], "paper/published_robot/soro_body.tet");
+  EXPECT_EQ(of["paper/published_robot"][0]["source"], "paper/published_robot/README.md says where it comes from");
+  EXPECT_EQ(of["pneumatic_finger"], json::array());
+  const std::string text = run_program({"examples", "list"}).output;
+  EXPECT_NE(text.find("paper/published_robot needs paper/published_robot/soro_body.tet, which does not come with "
+                      "softkin: paper/published_robot/README.md says where it comes from\n"),
+            std::string::npos)
+      << text;
 }
 
 TEST(ExamplesCopy, KnowsEveryNameAndShortName) {

@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <map>
@@ -142,7 +143,23 @@ TEST(SceneRobots, Refusals) {
       {"robots:\n  - {name: a, scene: plain.yaml}\n  - {name: a, scene: plain.yaml}\n",
        "4: the name 'a' is taken; it is given in line 3"},
       {"robots: [{name: a, scene: plain.yaml, place: {move: [0, 0, 1]}}]\n",
-       "2: unknown key 'move' in 'place'; known: rotate, translate"},
+       "2: unknown key 'move' in 'place'; known: rotate, quaternion, translate"},
+      {"robots: [{name: a, scene: plain.yaml, place: {quaternion: [1, 0, 0]}}]\n",
+       "2: 'quaternion' must be a list of 4, not of 3"},
+      {"robots: [{name: a, scene: plain.yaml, place: {quaternion: [90, 0, 0, 1]}}]\n",
+       "2: 'quaternion' must be a unit quaternion [w, x, y, z], but its norm is 90.01: divide its numbers by that, or "
+       "give 'axis' and 'degrees'"},
+      {"robots: [{name: a, scene: plain.yaml, place: {quaternion: [0, 0, 0, 0]}}]\n",
+       "2: 'quaternion' must be a unit quaternion [w, x, y, z], but its norm is 0: divide its numbers by that, or give "
+       "'axis' and 'degrees'"},
+      {"robots: [{name: a, scene: plain.yaml, place: {quaternion: [1, 0, 0, 0], rotate: {axis: [0, 0, 1], degrees: "
+       "9}}}]\n",
+       "2: 'place' has both 'quaternion' and 'rotate'; give only one of them"},
+      {"robots: [{name: a, scene: plain.yaml, place: {rotate: []}}]\n",
+       "2: 'rotate' is an empty list: give at least one rotation, or leave it out"},
+      {"robots: [{name: a, scene: plain.yaml, place: {rotate: [{axis: [0, 0, 1], degrees: 9, quaternion: [1, 0, 0, "
+       "0]}]}}]\n",
+       "2: 'axis' and 'quaternion' exclude each other: give one of the two"},
       {"robots: [{name: a, scene: plain.yaml, place: {rotate: {axis: [0, 0, 0], degrees: 9}}}]\n",
        "2: 'axis' has no direction"},
       {"robots: [{name: a, scene: plain.yaml, place: {rotate: {axis: [0, 0, 1]}}}]\n",
@@ -178,6 +195,39 @@ TEST(SceneRobots, Refusals) {
        "2: robot 'b': as it stands, its gravity is (0, 0, -9.81) m/s^2 (robots/heavy.yaml:3), but that of the whole is "
        "(0, 0, -1) m/s^2 (robots/pair.yaml:3): leave 'gravity' out of the robots' scenes and give it in this one"}};
   for (const auto& [text, message] : cases) EXPECT_EQ(robots_refusal(text), place + message) << text;
+}
+
+/// Of the last vertex, (10, 0, 0) mm turned and moved, by the formulas of rotations about an axis.
+TEST(SceneRobots, RotationsOneAfterTheOtherAndQuaternions) {
+  const auto placed = [](const std::string& place) -> Points {
+    return scene_of_robots("robots: [{name: a, scene: plain.yaml, place: " + place + "}]\n").mesh.vertices;
+  };
+  const Points rest = placed("{}");
+  const double half = std::sqrt(0.5);
+  const auto turned = [&rest](const auto& formula) {
+    Points expected(rest.rows(), 3);
+    for (Index v = 0; v < rest.rows(); ++v) expected.row(v) = formula(Vec3(rest.row(v).transpose())).transpose();
+    return expected;
+  };
+  const auto about_z_then_x = [](const Vec3& p) { return Vec3(-p.y(), -p.z(), p.x()); };  // a quarter turn each
+  const auto expect_same = [](const Points& found, const Points& expected) {
+    EXPECT_LT((found - expected).cwiseAbs().maxCoeff(), 1e-12) << found;
+  };
+  expect_same(placed("{rotate: [{axis: [0, 0, 1], degrees: 90}, {axis: [1, 0, 0], degrees: 90}]}"),
+              turned(about_z_then_x));
+  expect_same(placed("{rotate: [{axis: [1, 0, 0], degrees: 90}, {axis: [0, 0, 1], degrees: 90}]}"),
+              turned([](const Vec3& p) { return Vec3(p.z(), p.x(), p.y()); }));
+  expect_same(placed("{quaternion: [0.7071, 0, 0, 0.7071]}"),
+              turned([](const Vec3& p) { return Vec3(-p.y(), p.x(), p.z()); }));
+  expect_same(placed("{rotate: {quaternion: [0.5, 0.5, 0.5, 0.5]}}"),
+              turned([](const Vec3& p) { return Vec3(p.z(), p.x(), p.y()); }));
+  expect_same(placed("{rotate: [{quaternion: [0.70710678, 0, 0, 0.70710678]}, {axis: [1, 0, 0], degrees: 90}], "
+                     "translate: [1, 2, 3]}"),
+              turned([&](const Vec3& p) { return Vec3(about_z_then_x(p) + Vec3(1, 2, 3)); }));
+  expect_same(placed("{rotate: {axis: [0, 0, 1], degrees: 45}}"),
+              turned([half](const Vec3& p) { return Vec3(half * (p.x() - p.y()), half * (p.x() + p.y()), p.z()); }));
+  expect_same(placed("{rotate: {axis: [0, 0, 1], degrees: 180, about: [5, 0, 0]}}"),
+              turned([](const Vec3& p) { return Vec3(10 - p.x(), -p.y(), p.z()); }));
 }
 
 /// A command's outputs must not replace any of them.

@@ -118,7 +118,7 @@ NumberedRobot::NumberedRobot(const AskedScene& asked, const std::vector<FittedNu
                              std::vector<std::filesystem::path>& inputs, const std::vector<GivenNumber>& given)
     : file_(asked.scene), asked_(asked), numbers_(numbers), given_(given), files_(std::make_shared<FileContents>()) {
   check_names();
-  root_ = scene::parse_yaml(read_file(asked.scene), asked.scene);
+  root_ = scene::parse_yaml(read_scene_file(asked.scene), asked.scene);
   for (const std::string& material : asked.materials)
     root_ = scene::changed(root_, "--material", material, "materials");
   for (const std::string& each : asked.changes) root_ = scene::changed(root_, "--change", each, "");

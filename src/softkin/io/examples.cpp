@@ -5,8 +5,10 @@
 #include <softkin/io/examples.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/io/json_text.hpp>
+#include <softkin/io/missing_file.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/scene/scene.hpp>
+#include <softkin/io/scene/tree.hpp>
 #include <softkin/model/names.hpp>
 #include <sstream>
 #include <utility>
@@ -48,12 +50,46 @@ std::string beside_copy(const std::string& text) {
   return replaced(replaced(text, "build/softkin ", "softkin "), " examples/", " ");
 }
 
+/// Folders with a README, and those within folders without one: "real/beam".
 std::vector<std::string> names_of(const fs::path& folder) {
   std::vector<std::string> names;
-  for (const auto& entry : fs::directory_iterator(folder))
-    if (fs::exists(entry.path() / readme)) names.push_back(entry.path().filename().string());
+  for (const auto& entry : fs::directory_iterator(folder)) {
+    const std::string name = entry.path().filename().string();
+    if (!entry.is_directory()) continue;
+    if (fs::exists(entry.path() / readme)) {
+      names.push_back(name);
+      continue;
+    }
+    for (const auto& inner : fs::directory_iterator(entry.path()))
+      if (fs::exists(inner.path() / readme)) names.push_back(name + "/" + inner.path().filename().string());
+  }
   std::sort(names.begin(), names.end());
   return names;
+}
+
+/// Values of the keys `file` in a tree.
+void add_files(const scene::Node& node, std::vector<std::string>& files) {
+  for (const auto& item : node.items) add_files(*item, files);
+  for (const scene::Node::Entry& entry : node.entries) {
+    if (entry.key == "file" && entry.value->kind == scene::Node::Kind::scalar) files.push_back(entry.value->text);
+    add_files(*entry.value, files);
+  }
+}
+
+/// Files that a scene names and that are not there. folder: of all examples
+std::vector<MissingFile> missing_files(const fs::path& folder, const std::string& scene) {
+  std::vector<std::string> files;
+  add_files(*scene::parse_yaml(read_file(folder / scene), scene), files);
+  std::sort(files.begin(), files.end());
+  files.erase(std::unique(files.begin(), files.end()), files.end());
+  std::vector<MissingFile> missing;
+  const fs::path place = (folder / scene).parent_path(), shown = fs::path(scene).parent_path();
+  for (const std::string& file : files) {
+    if (fs::exists(place / file)) continue;
+    missing.push_back({(shown / file).string(),
+                       replaced(source_of_missing(place, place / file), place.string() + "/", shown.string() + "/")});
+  }
+  return missing;
 }
 
 Example read_example(const fs::path& folder, const std::string& name) {
@@ -67,12 +103,20 @@ Example read_example(const fs::path& folder, const std::string& name) {
     std::istringstream words(line);
     std::string word;
     if (!(words >> word) || word != "softkin") continue;
-    do example.command.push_back(word);
-    while (words >> word);
+    do {
+      do
+        if (word != "\\") example.command.push_back(word);
+      while (words >> word);
+      words.clear();  // a command goes on after a line that ends with a backslash
+    } while (word == "\\" && std::getline(lines, line) && (words.str(line), words >> word));
     break;
   }
   for (const std::string& word : example.command)
     if (word.ends_with(".yaml") && example.scene.empty()) example.scene = word;
+  if (!example.scene.empty()) example.missing = missing_files(folder, example.scene);
+  for (const std::string& word : example.command)  // measurements
+    if (word.starts_with(name + "/") && word.ends_with(".csv") && !fs::exists(folder / word))
+      example.missing.push_back({word, name + "/" + readme + " says where it comes from"});
   return example;
 }
 
@@ -113,8 +157,11 @@ Json json_of_example(const Example& example) {
   for (const ExampleActuator& each : example.actuators)
     actuators.push_back(
         {{"name", each.name}, {"kind", each.kind}, {"unit", each.unit}, {"range", Json::array({each.low, each.high})}});
+  Json missing = Json::array();
+  for (const MissingFile& each : example.missing) missing.push_back({{"file", each.file}, {"source", each.source}});
   return {{"name", example.name},   {"short_name", example.short_name}, {"title", example.title},
-          {"scene", example.scene}, {"actuators", actuators},           {"command", example.command}};
+          {"scene", example.scene}, {"actuators", actuators},           {"command", example.command},
+          {"missing", missing}};
 }
 
 }  // namespace
@@ -133,8 +180,8 @@ std::vector<Example> all_examples(const fs::path& folder) {
   std::vector<Example> examples;
   for (const std::string& name : names_of(folder)) {
     examples.push_back(read_example(folder, name));
-    if (const std::string& scene = examples.back().scene; !scene.empty())
-      examples.back().actuators = actuators_of(folder / scene);
+    if (Example& example = examples.back(); !example.scene.empty() && example.missing.empty())
+      example.actuators = actuators_of(folder / example.scene);
   }
   return examples;
 }
@@ -188,8 +235,11 @@ CopiedExample copy_example(const fs::path& folder, const std::string& name, cons
   check_outputs(outputs, {}, true);
   const OutputFolders folders(outputs);
   for (const auto& [file, content] : missing) write_file(file, content);
+  const std::string inside = copied.example.name + "/", copy = (to / inside).lexically_normal().string();
   for (std::string& word : copied.example.command)
-    if (word.starts_with(copied.example.name + "/")) word = (to / word).lexically_normal().string();
+    if (word.starts_with(inside)) word = (to / word).lexically_normal().string();
+  for (MissingFile& each : copied.example.missing)
+    each = {(to / each.file).lexically_normal().string(), replaced(each.source, inside, copy)};
   return copied;
 }
 

@@ -12,15 +12,22 @@ struct ExampleActuator {
   double low = 0, high = 0;      // its range
 };
 
+/// A file of an example that does not come with softkin.
+struct MissingFile {
+  std::string file;    // relative to the folder of all examples: "real/beam/beam.mesh"
+  std::string source;  // "'python3 real/beam/make_beam.py' makes it"; empty: not known
+};
+
 /// A robot that comes with softkin, or measurements to try it with: a folder.
 struct Example {
-  std::string name;        // of the folder
+  std::string name;        // of the folder, from that of all examples: "pneumatic_finger", "real/beam"
   std::string short_name;  // that does as well; may be empty
   std::string title;       // the heading of its README
   std::vector<std::string>
       command;        // the first of its README, to be typed in the folder above; softkin is its first word
   std::string scene;  // that the command solves: "NAME/SCENE.yaml"; empty: none
-  std::vector<ExampleActuator> actuators;  // of the scene: those of the robot
+  std::vector<ExampleActuator> actuators;  // of the scene: those of the robot; none where files are missing
+  std::vector<MissingFile> missing{};      // that do not come with softkin
 };
 
 /// The folder of all examples: share/softkin/examples in one of the folders above this program or library.

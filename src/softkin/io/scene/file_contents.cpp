@@ -13,10 +13,10 @@ SceneFiles FileContents::kept(bool read) {
       return known.emplace(path.string(), reader(path)).first->second;
     };
   };
-  return {of(meshes, read_mesh),      of(surfaces, read_surface),
-          of(sidecars, read_sidecar), of(curves, read_actuator_curve),
-          of(scenes, read_file),      of(samples, read_field_samples),
-          of(ways, read_way),         of(directions, read_directions)};
+  return {of(meshes, read_mesh),       of(surfaces, read_surface),
+          of(sidecars, read_sidecar),  of(curves, read_actuator_curve),
+          of(scenes, read_scene_file), of(samples, read_field_samples),
+          of(ways, read_way),          of(directions, read_directions)};
 }
 
 std::vector<std::filesystem::path> FileContents::paths() const {

@@ -1,5 +1,3 @@
-#include <Eigen/Geometry>
-#include <numbers>
 #include <softkin/core/error.hpp>
 #include <softkin/io/scene/parts.hpp>
 #include <softkin/model/mesh/mesh_joining.hpp>
@@ -22,10 +20,8 @@ struct MeshFile {
 };
 
 void rotate(const Context& context, const Node& node, Points& vertices) {
-  const Map map(node, {"axis", "degrees", "about"});
-  const Mat3 matrix = read_turn(map);
-  const Vec3 about = map.find("about") ? read_position(context, map.at("about")) : Vec3::Zero();
-  vertices = ((vertices.rowwise() - about.transpose()) * matrix.transpose()).rowwise() + about.transpose();
+  const RigidMotion motion = read_rotations(context, node);
+  vertices = (vertices * motion.rotation.transpose()).rowwise() + motion.translation.transpose();
 }
 
 MeshFile read_file_of(const Context& context, const Map& map) {
@@ -76,15 +72,6 @@ void add_curve(std::optional<CurveSpec>& all, std::optional<CurveSpec>& next) {
 }
 
 }  // namespace
-
-Mat3 read_turn(const Map& map) {
-  const Vec3 axis = read_vector(map.at("axis"));
-  if (!(axis.stableNorm() > 0)) fail(map.at("axis"), "'axis' has no direction");
-  const Eigen::AngleAxisd turn(number(map.at("degrees")) * std::numbers::pi / 180, axis.stableNormalized());
-  const Mat3 matrix = turn.toRotationMatrix();
-  const Mat3 whole = matrix.array().round();
-  return (matrix - whole).cwiseAbs().maxCoeff() < 1e-12 ? whole : matrix;
-}
 
 void read_mesh_of(const Context& context, const Map& scene, RobotSpec& spec) {
   const Node* several = scene.find("meshes");

@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <map>
+#include <softkin/io/missing_file.hpp>
 #include <softkin/io/scene/scene.hpp>
 #include <softkin/io/scene/tree.hpp>
 #include <softkin/model/direction.hpp>
@@ -28,14 +29,18 @@ class Names {
   std::map<std::string, Origin> origins_;
 };
 
-/// What load(path) returns, path being named by a node; its InvalidInput gains the scene's line.
+/// What load(path) returns, path being named by a node; its InvalidInput gains the scene's line, and of a file that is
+/// not there what makes it.
 template <class Load>
 auto load_file(const Context& context, const Node& node, const Load& load) {
   const std::filesystem::path path = context.folder / text(node);
   try {
     return load(path);
   } catch (const InvalidInput& error) {
-    throw InvalidInput(node.origin, error.what());
+    std::error_code failure;
+    const std::string source =
+        std::filesystem::exists(path, failure) ? std::string() : source_of_missing(context.folder, path);
+    throw InvalidInput(node.origin, error.what() + (source.empty() ? source : ": " + source));
   }
 }
 
@@ -58,6 +63,16 @@ auto load_file(const Context& context, const Node& node, const Load& load) {
 
 /// A turn by the keys `axis` and `degrees`; exact where it takes axes to axes.
 [[nodiscard]] Mat3 read_turn(const Map& map);
+/// A rotation by a unit quaternion [w, x, y, z]; one whose norm is off by up to 0.01 is normalised.
+[[nodiscard]] Mat3 read_quaternion(const Node& node);
+/// A motion of points: they are rotated about the origin, then translated.
+struct RigidMotion {
+  Mat3 rotation = Mat3::Identity();
+  Vec3 translation = Vec3::Zero();  // [mm]
+};
+/// The value of a key `rotate`: `{axis, degrees}` or `{quaternion: [w, x, y, z]}`, each with `about` if it is not about
+/// the origin, or a list of these, which are applied in their order.
+[[nodiscard]] RigidMotion read_rotations(const Context& context, const Node& node);
 [[nodiscard]] Formulation read_formulation(const Node& node);
 [[nodiscard]] ElementWeights read_weights(const Node& node);
 

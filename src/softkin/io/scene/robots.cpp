@@ -18,10 +18,15 @@ const std::string& read_robot_name(const Node& node, Names& names) {
 }
 
 Placement read_placement(const Context& context, const Node& node) {
-  const Map map(node, {"rotate", "translate"});
+  const Map map(node, {"rotate", "quaternion", "translate"});
   Placement place;
-  if (const Node* turn = map.find("rotate")) place.rotation = read_turn(Map(*turn, {"axis", "degrees"}));
-  if (const Node* move = map.find("translate")) place.translation = read_position(context, *move);
+  if (map.find("rotate") != nullptr && map.find("quaternion") != nullptr) (void)map.one_of({"rotate", "quaternion"});
+  if (const Node* rotate = map.find("rotate")) {
+    const RigidMotion motion = read_rotations(context, *rotate);
+    place = {motion.rotation, motion.translation};
+  }
+  if (const Node* quaternion = map.find("quaternion")) place.rotation = read_quaternion(*quaternion);
+  if (const Node* move = map.find("translate")) place.translation += read_position(context, *move);
   return place;
 }
 

@@ -254,7 +254,7 @@ RobotSpec parse_scene(const scene::Node& root, const std::string& file_name, con
 }
 
 RobotSpec read_scene(const std::filesystem::path& path) {
-  return parse_scene(read_file(path), path.string(), {read_mesh, read_surface, read_sidecar});
+  return parse_scene(read_scene_file(path), path.string(), {read_mesh, read_surface, read_sidecar});
 }
 
 namespace fs = std::filesystem;
@@ -268,12 +268,12 @@ RobotSpec read_scene_and(std::vector<fs::path>& inputs, const AskedScene& asked)
       return read(path);
     };
   };
-  auto root = scene::parse_yaml(read_file(asked.scene), asked.scene);
+  auto root = scene::parse_yaml(read_scene_file(asked.scene), asked.scene);
   for (const std::string& material : asked.materials) root = scene::changed(root, "--material", material, "materials");
   for (const std::string& each : asked.changes) root = scene::changed(root, "--change", each, "");
   return parse_scene(*root, asked.scene,
                      {noting(read_mesh), noting(read_surface), noting(read_sidecar), noting(read_actuator_curve),
-                      noting(read_file), noting(read_field_samples), noting(read_way), noting(read_directions)});
+                      noting(read_scene_file), noting(read_field_samples), noting(read_way), noting(read_directions)});
 }
 
 bool parse_vector(const std::string& text, Vec3& vector) {

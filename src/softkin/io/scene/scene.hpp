@@ -4,6 +4,7 @@
 #include <functional>
 #include <softkin/io/file.hpp>
 #include <softkin/io/mesh/mesh_io.hpp>
+#include <softkin/io/scene/scene_file.hpp>
 #include <softkin/io/table/actuator_curve_file.hpp>
 #include <softkin/io/table/field_samples.hpp>
 #include <softkin/io/table/way.hpp>
@@ -27,7 +28,7 @@ struct SceneFiles {
   std::function<TriangleSurface(const std::filesystem::path&)> surface;  // of chambers, obstacles and other surfaces
   std::function<Sidecar(const std::filesystem::path&)> sidecar;          // of regions beside a mesh
   std::function<ActuatorCurve(const std::filesystem::path&)> curve = read_actuator_curve;  // of actuators
-  std::function<std::string(const std::filesystem::path&)> scene = read_file;  // the text of one of `robots`
+  std::function<std::string(const std::filesystem::path&)> scene = read_scene_file;  // the text of one of `robots`
   std::function<FieldSamples(const std::filesystem::path&)> samples = read_field_samples;  // of fields
   std::function<Points(const std::filesystem::path&)> way = read_way;                      // corners [mm]
   std::function<FieldSamples(const std::filesystem::path&)> directions = read_directions;  // of fibres and growths
