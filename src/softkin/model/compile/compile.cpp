@@ -140,6 +140,7 @@ Model compile(const RobotSpec& spec) {
   c.model.formulation = spec.formulation;
   if (spec.formulation == Formulation::target_shape) c.model.weights = spec.weights;
   if (spec.mesh.no_sidecars) c.model.warnings = spec.mesh.missing;
+  refuse_too_large(c);
   check_contact(c);
   compile_elements(c);
   refuse_mesh_errors(c);
@@ -161,6 +162,7 @@ Model compile(const RobotSpec& spec) {
   check_anchoring(c.model, c.origin);
   check_hinges(c.model, c.origin);
   doubt_units(c);
+  doubt_places(c);
   doubt_linear_tetrahedra(c);
   doubt_straight_edges(c);
   add_turn_commands(c);
