@@ -2,6 +2,7 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/tuple.h>
 
+#include <softkin/core/memory.hpp>
 #include <softkin/io/mesh/mesh_report.hpp>
 #include <tuple>
 
@@ -12,6 +13,8 @@ namespace softkin::python {
 namespace nb = nanobind;
 
 void bind_mesh_files(nb::module_& module) {
+  module.def("free_memory_bytes", &free_memory_bytes);
+  module.def("memory_text", &memory_text, nb::arg("bytes"));
   module.def(
       "mesh_info", [](const std::string& file, const std::string& unit) { return to_json(mesh_info(file, unit)); },
       nb::arg("file"), nb::arg("unit"), nb::call_guard<nb::gil_scoped_release>());

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from .child import ProgressFunction
 from .elements import boundary_faces, check_name
 from .errors import InvalidInput, MeshWarning
 from .face_regions import choose_faces
@@ -21,19 +22,20 @@ from .surface import MM_PER_UNIT
 from .volume_mesh import VolumeMesh
 
 WIDTH = 100
+BETWEEN_LINES_S = 10.0
 EPILOG = """\
 Lengths on the command line are in mm; --unit is that of the surfaces. Faces for --region:
   "plane z=0"   "plane 0 0 1 = 0"   "box 0 0 0 10 10 1"   "sphere 0 0 0 5"
 each followed by " within 0.1" if you like: how far corners may be off [mm].
-Exit code: 0 done, 2 bad usage or bad input.
+Exit code: 0 done, 1 interrupted, 2 bad usage or bad input.
 Example:
   python -m softkin mesh generate --body finger.stl --chamber air=cavity.stl --edge-length 2 \\
       --region "base=plane x=0" -o finger.msh --scene finger.yaml"""
 
 
 def main(argv: Sequence[str]) -> int:
-    """Runs `generate ...`; argv without the name of the program. Returns the exit code: 0, or 2 after one line on the
-    standard error."""
+    """Runs `generate ...`; argv without the name of the program. Returns the exit code: 0, or after one line on the
+    standard error 1 where it was interrupted, 2 where something is wrong."""
     try:
         arguments = _parser().parse_args(list(argv))
     except SystemExit as leaving:
@@ -41,19 +43,49 @@ def main(argv: Sequence[str]) -> int:
     with warnings.catch_warnings():
         warnings.simplefilter("always", MeshWarning)
         warnings.showwarning = _show
+        line = ProgressLine()
         try:
-            print(_generate(arguments))
+            told = _generate(arguments, line.show)
         except (InvalidInput, ImportError) as error:
+            line.clear()
             print(f"error: {error}", file=sys.stderr)
             return 2
+        except KeyboardInterrupt:
+            line.clear()
+            print("interrupted: nothing was written", file=sys.stderr)
+            return 1
+        line.clear()
+        print(told)
     return 0
+
+
+class ProgressLine:
+    """What is being done, on the terminal; elsewhere a line every ten seconds."""
+
+    def __init__(self) -> None:
+        self._terminal = sys.stderr.isatty()
+        self._shown = False
+        self._next = 0.0 if self._terminal else BETWEEN_LINES_S
+
+    def show(self, what: str, seconds: float) -> None:
+        if self._terminal:
+            print(f"\r\033[K{what}: {seconds:.0f} s; Ctrl-C stops", end="", file=sys.stderr, flush=True)
+            self._shown = True
+        elif seconds >= self._next:
+            print(f"{what}: {seconds:.0f} s", file=sys.stderr, flush=True)
+            self._next = seconds + BETWEEN_LINES_S
+
+    def clear(self) -> None:
+        if self._shown:
+            print("\r\033[K", end="", file=sys.stderr, flush=True)
+        self._shown = False
 
 
 def _show(message: Any, category: Any, filename: str, lineno: int, file: Any = None, line: Any = None) -> None:
     print(f"warning: {message}", file=sys.stderr)
 
 
-def _generate(arguments: argparse.Namespace) -> str:
+def _generate(arguments: argparse.Namespace, progress: ProgressFunction) -> str:
     if Path(arguments.output).suffix.lower() != ".msh":
         raise InvalidInput(
             f"-o {arguments.output}: meshes are written as .msh; softkin mesh convert makes other forms of it"
@@ -63,13 +95,13 @@ def _generate(arguments: argparse.Namespace) -> str:
     parts, regions = _pairs("part", arguments.part), _pairs("region", arguments.region)
     form = Path(arguments.body).suffix.lower()
     if form == ".geo" or (form in CAD and not arguments.chamber and not parts):
-        mesh, driven = _from_geo(arguments, parts, regions), arguments.chamber
+        mesh, driven = _from_geo(arguments, parts, regions, progress), arguments.chamber
     else:
         chambers = _pairs("chamber", arguments.chamber)
         mesh = from_surfaces(
             arguments.body, chambers, parts, edge_length=arguments.edge_length, unit=arguments.unit, regions=regions,
             tolerance=arguments.tolerance, backend=arguments.backend, chambers_as=arguments.chambers_as,
-            open_chambers=arguments.open_chambers, coarsen=arguments.coarsen,
+            open_chambers=arguments.open_chambers, coarsen=arguments.coarsen, progress=progress,
         )  # fmt: skip
         driven = list(chambers)
     scene = ""
@@ -98,7 +130,9 @@ def _check_outputs(arguments: argparse.Namespace) -> None:
         raise InvalidInput(f"--scene {arguments.scene}: is there already, and may have been edited: {cure}")
 
 
-def _from_geo(arguments: argparse.Namespace, parts: dict[str, str], regions: dict[str, str]) -> VolumeMesh:
+def _from_geo(
+    arguments: argparse.Namespace, parts: dict[str, str], regions: dict[str, str], progress: ProgressFunction
+) -> VolumeMesh:
     if arguments.backend != "gmsh":
         raise InvalidInput(f"{arguments.body}: only --backend gmsh reads that")
     if parts:
@@ -106,7 +140,7 @@ def _from_geo(arguments: argparse.Namespace, parts: dict[str, str], regions: dic
             f"{arguments.body}: its physical groups are the regions; --part goes with .stl, .obj, .ply, .off or CAD models"
         )
     scale = MM_PER_UNIT[arguments.unit]
-    mesh = mesh_geo(Path(arguments.body), arguments.edge_length / scale)
+    mesh = mesh_geo(Path(arguments.body), arguments.edge_length / scale, progress)
     for name in arguments.chamber:
         if name not in mesh.regions:
             raise InvalidInput(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import warnings
 from collections.abc import Mapping
 from dataclasses import dataclass
@@ -11,9 +12,11 @@ import numpy as np
 
 from . import gmsh_program, tetwild
 from .arrays import Array
+from .child import ProgressFunction
 from .deviation import deviation
 from .elements import boundary_faces, check_name, compacted, face_pairs, positive, renumbering, signed_volumes
 from .errors import InvalidInput, MeshWarning
+from .estimate import check_size, counted
 from .face_regions import choose_faces
 from .labels import Labels, check_clear, label, place
 from .repair import repaired
@@ -50,6 +53,7 @@ def from_surfaces(
     chambers_as: str = "region",
     open_chambers: bool = False,
     coarsen: bool = False,
+    progress: ProgressFunction | None = None,
 ) -> VolumeMesh:
     """A volume mesh of a body with chambers and parts, each given by its surface.
 
@@ -68,6 +72,8 @@ def from_surfaces(
         NAME_wall. 'void': they are left empty, with their walls as face regions NAME.
     open_chambers: whether a chamber may reach the outside, where a plate or a plane of symmetry closes it.
     coarsen: tetwild: as few tetrahedra as their shapes allow, of any length.
+    progress: called with what is being done and for how long it has been [s], about ten times a second; what it raises,
+        and Ctrl-C, ends the work.
     Returns a `VolumeMesh`. Throws InvalidInput, ImportError (pytetwild), and warns with MeshWarning.
     """
     _check_choices(unit, backend, chambers_as, edge_length, tolerance)
@@ -79,10 +85,12 @@ def from_surfaces(
     for name, surface in given.all.items():
         check_clear(name, surface)
     surfaces = list(given.all.values())
+    expected = check_size(surfaces, edge_length, backend, coarsen)
+    what = f"meshing, about {counted(expected)} tetrahedra"
     if backend == "gmsh":
-        points, tetrahedra = gmsh_program.background(surfaces, edge_length)
+        points, tetrahedra = gmsh_program.background(surfaces, edge_length, what, progress)
     else:
-        points, tetrahedra = tetwild.background(surfaces, edge_length, tolerance, coarsen)
+        points, tetrahedra = tetwild.background(surfaces, edge_length, tolerance, coarsen, what, progress)
     tetrahedra = positive(points, tetrahedra)
     labels = label(points, tetrahedra, given.body, given.chambers, given.parts, tolerance)
     if backend == "tetwild":  # gmsh puts its vertices there
@@ -108,7 +116,7 @@ def _check_choices(unit: str, backend: str, chambers_as: str, edge_length: float
         if value not in choices:
             raise InvalidInput(f"{name}={value!r}: it is one of {', '.join(choices)}")
     for name, length in (("edge_length", edge_length), ("tolerance", tolerance)):
-        if length is not None and not (np.isfinite(length) and length > 0):
+        if length is not None and not (math.isfinite(length) and length > 0):
             raise InvalidInput(f"{name}={length!r}: give a length in mm, > 0")
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 import shutil
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -12,6 +11,7 @@ from pathlib import Path
 import numpy as np
 
 from .arrays import Array
+from .child import ProgressFunction, run
 from .errors import InvalidInput
 from .msh_read import read_msh
 from .repair import components, open_edges
@@ -56,9 +56,9 @@ def read_surface(given: SurfaceLike, name: str) -> Surface:
     return Surface(surface.vertices, surface.triangles, str(given))
 
 
-def mesh_geo(path: Path, edge_length: float) -> VolumeMesh:
+def mesh_geo(path: str | Path, edge_length: float, progress: ProgressFunction | None = None) -> VolumeMesh:
     """Meshes a .geo, whose physical groups become the regions, or a CAD model, all of which becomes region body.
-    edge_length: upper bound, in the unit of the file. Throws InvalidInput."""
+    edge_length: upper bound, in the unit of the file. progress: as of from_surfaces. Throws InvalidInput."""
     path = Path(path)
     if not path.is_file():
         raise InvalidInput(f"{path}: no such file")
@@ -66,7 +66,7 @@ def mesh_geo(path: Path, edge_length: float) -> VolumeMesh:
     heading = 'SetFactory("OpenCASCADE");\n' if path.suffix.lower() in CAD else ""
     bound = _size(0, edge_length) + "Mesh.MshFileVersion = 2.2;\nMesh.Binary = 0;\nMesh.ElementOrder = 1;\n"
     with tempfile.TemporaryDirectory() as folder:
-        mesh = _run(Path(folder), f'{heading}Merge "{path.resolve()}";\n{bound}', 3, str(path), "msh")
+        mesh = _run(Path(folder), f'{heading}Merge "{path.resolve()}";\n{bound}', 3, str(path), "msh", progress)
     if mesh is None or len(mesh.tetrahedra) == 0:
         raise InvalidInput(f"{path}: gmsh made no tetrahedra of it")
     if not mesh.volume_regions:
@@ -74,18 +74,21 @@ def mesh_geo(path: Path, edge_length: float) -> VolumeMesh:
     return mesh
 
 
-def background(surfaces: list[Surface], edge_length: float) -> tuple[Array, Array]:
+def background(
+    surfaces: list[Surface], edge_length: float, what: str, progress: ProgressFunction | None
+) -> tuple[Array, Array]:
     """Tetrahedra inside closed surfaces that neither touch nor cross, with faces along each. The surfaces are divided
-    into faces at edges of more than 15 degrees and triangulated anew. edge_length: mm. Returns (n, 3), (m, 4).
-    Throws InvalidInput, ImportError."""
+    into faces at edges of more than 15 degrees and triangulated anew. edge_length: mm. what: is done, for progress.
+    Returns (n, 3), (m, 4). Throws InvalidInput, ImportError."""
     shells = [shell for surface in surfaces for shell in _shells(surface)]
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        remeshed = [_remeshed(folder, shell, edge_length) for shell in shells]
+        remeshed = [_remeshed(folder, shell, edge_length, progress) for shell in shells]
         _write_shells(folder / "shells.msh", remeshed)
         script = 'Merge "shells.msh";\n' + "".join(f"Surface Loop({k}) = {{{k}}};\n" for k in range(1, len(shells) + 1))
         script += _volumes(remeshed) + _size(edge_length, edge_length) + "Mesh.Optimize = 1;\n"
-        mesh = _run(folder, script, 3, ", ".join(surface.name for surface in surfaces), "msh")
+        names = ", ".join(surface.name for surface in surfaces)
+        mesh = _run(folder, script, 3, names, "msh", progress, what)
     if mesh is None or len(mesh.tetrahedra) == 0:
         raise InvalidInput(
             f"gmsh made no tetrahedra of {', '.join(surface.name for surface in surfaces)}; backend='tetwild' bears bad"
@@ -104,13 +107,13 @@ def _shells(surface: Surface) -> list[Surface]:
     return [surface.with_triangles(surface.triangles[shell == number]).merged() for number in range(shell.max() + 1)]
 
 
-def _remeshed(folder: Path, shell: Surface, edge_length: float) -> Surface:
+def _remeshed(folder: Path, shell: Surface, edge_length: float, progress: ProgressFunction | None) -> Surface:
     _write_shells(folder / "one.msh", [shell])
     script = (
         f'Merge "one.msh";\nClassifySurfaces{{{math.radians(FEATURE_DEG)!r}, 1, 1, Pi}};\nCreateGeometry;\n'
         + _size(edge_length, edge_length)
     )
-    _run(folder, script, 2, shell.name, "stl")
+    _run(folder, script, 2, shell.name, "stl", progress)
     surface = as_surface(folder / "out.stl", shell.name)
     if len(open_edges(surface)):
         raise InvalidInput(f"{shell.name}: gmsh could not triangulate it anew; backend='tetwild' bears bad surfaces")
@@ -164,7 +167,15 @@ def _write_shells(path: Path, shells: list[Surface]) -> None:
     path.write_text("\n".join([*lines, "$EndElements", ""]))
 
 
-def _run(folder: Path, script: str, dimension: int, what: str, form: str) -> VolumeMesh | None:
+def _run(
+    folder: Path,
+    script: str,
+    dimension: int,
+    what: str,
+    form: str,
+    progress: ProgressFunction | None = None,
+    doing: str = "",
+) -> VolumeMesh | None:
     program = find_gmsh()
     if program is None:
         raise ImportError(INSTALL)
@@ -181,7 +192,7 @@ def _run(folder: Path, script: str, dimension: int, what: str, form: str) -> Vol
         "-v",
         "2",
     ]
-    done = subprocess.run([*program, *arguments], cwd=folder, capture_output=True, text=True, check=False)
+    done = run([*program, *arguments], folder, doing or f"gmsh at {what}", progress)
     said = [
         line.split(":", 1)[1].strip()
         for line in (done.stdout + done.stderr).splitlines()

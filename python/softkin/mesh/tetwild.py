@@ -5,7 +5,6 @@ from __future__ import annotations
 import importlib.util
 import json
 import os
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
@@ -14,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from .arrays import Array
+from .child import ProgressFunction, run
 from .errors import InvalidInput
 from .surface import Surface
 
@@ -32,10 +32,17 @@ numpy.savez("made.npz", points=points, cells=cells)
 """
 
 
-def background(surfaces: list[Surface], edge_length: float, tolerance: float, coarsen: bool) -> tuple[Array, Array]:
+def background(
+    surfaces: list[Surface],
+    edge_length: float,
+    tolerance: float,
+    coarsen: bool,
+    what: str,
+    progress: ProgressFunction | None,
+) -> tuple[Array, Array]:
     """Tetrahedra of the box around all surfaces, with faces along each of them.
 
-    edge_length, tolerance: mm. coarsen: as few tetrahedra as their shapes allow. Returns (n, 3), (m, 4) without order
+    edge_length, tolerance: mm. coarsen: as few tetrahedra as their shapes allow. what: is done, for progress. Returns (n, 3), (m, 4) without order
     of corners. Hu et al., Fast tetrahedral meshing in the wild, 2020. Throws InvalidInput, ImportError.
     """
     _check_installed()
@@ -52,7 +59,7 @@ def background(surfaces: list[Surface], edge_length: float, tolerance: float, co
     }
     with tempfile.TemporaryDirectory() as name:
         np.savez(Path(name) / "given.npz", vertices=vertices, triangles=triangles.astype(np.int32))
-        problem = _run(Path(name), options)
+        problem = _run(Path(name), options, what, progress)
         if not problem:
             with np.load(Path(name) / "made.npz") as made:
                 points, cells = made["points"].astype(np.float64), made["cells"].astype(np.int64)
@@ -72,11 +79,13 @@ def _check_installed() -> None:
         raise ImportError(f"softkin.mesh needs pytetwild, which is not installed: {INSTALL}")
 
 
-def _run(folder: Path, options: dict[str, Any]) -> str:
+def _run(
+    folder: Path, options: dict[str, Any], what: str = "meshing", progress: ProgressFunction | None = None
+) -> str:
     """What went wrong, or nothing."""
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join(path for path in sys.path if path)}
     command = [sys.executable, "-c", SCRIPT, json.dumps(options)]
-    done = subprocess.run(command, cwd=folder, env=environment, capture_output=True, text=True, check=False)
+    done = run(command, folder, what, progress, environment)
     if done.returncode < 0:
         return f"it was ended by signal {-done.returncode}"
     said = done.stderr.strip().splitlines() or [f"it ended with code {done.returncode}"]
