@@ -80,10 +80,13 @@ run: build
 	@echo "  out/pneumatic_finger.json, out/target_shape.json   markers, pressures, iterations, times"
 	@echo "  README.md, docs/formulations.md                    the five-minute tour; why the two differ"
 
+# a build takes minutes: pip passes on what CMake and Ninja say, [n/m] a file
+shows_build = --verbose --disable-pip-version-check
+
 python:
 	@PYTHON=$(PYTHON) $(SETUP) --python
 	$(PYTHON) -m venv build-python
-	build-python/bin/pip install --quiet .
+	build-python/bin/pip install $(shows_build) .
 	@echo "softkin is in build-python: build-python/bin/python examples/python/first_bend.py"
 
 # Each test is in one of these two.
@@ -145,7 +148,7 @@ define install_package
 	rm -rf build-wheel/test
 	$(PYTHON) -m venv build-wheel/venv
 	build-wheel/venv/bin/pip install --quiet $(build_requires)
-	build-wheel/venv/bin/pip wheel --quiet --no-deps --no-build-isolation --wheel-dir build-wheel/test \
+	build-wheel/venv/bin/pip wheel $(shows_build) --no-deps --no-build-isolation --wheel-dir build-wheel/test \
 	  --config-settings=build-dir=build --config-settings=cmake.define.SOFTKIN_TESTS=ON .
 	cmake --preset release
 	build-wheel/venv/bin/pip install --quiet --force-reinstall --no-deps build-wheel/test/*.whl
@@ -167,7 +170,7 @@ test-python-deep:
 docs: build
 	@PYTHON=$(PYTHON) $(SETUP) --python
 	[ -x build-docs/venv/bin/pip ] || $(PYTHON) -m venv build-docs/venv
-	build-docs/venv/bin/pip install --quiet ".[docs]"
+	build-docs/venv/bin/pip install $(shows_build) ".[docs]"
 	build-docs/venv/bin/python scripts/site.py build-docs/pages
 	build-docs/venv/bin/mkdocs build --quiet --strict
 	@echo "the site: build-docs/site/index.html"

@@ -78,12 +78,8 @@ std::string EquilibriumProgress::text(const Progress& p) {
 
 std::string findings_text(const Model& model, const StepRecord& step) {
   std::string text;
-  for (const runs::Finding& finding : runs::findings(model, step)) {
-    text += (text.empty() ? "" : "\n") + runs::finding_text(model, finding);
-    if (std::holds_alternative<runs::finding::Unstable>(finding))
-      text += "; --stable looks for the shape that it goes to";
-    if (std::holds_alternative<runs::finding::UnstableWay>(finding)) text += "; --stable looks for it";
-  }
+  for (const runs::FindingLine& line : runs::finding_lines(model, step, "--stable"))
+    text += (text.empty() ? "" : "\n") + line.text;
   return text;
 }
 

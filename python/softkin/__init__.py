@@ -3,8 +3,11 @@
 Lengths are in mm, pressures in kPa (gauge), forces in N, ratios without unit. docs/python.md
 """
 
+import sys as _sys
+
 from . import calibrate, compare, drive, measure
 from ._build import BuildInfo, build_info
+from ._checks import guard as _guard
 from ._core import ActuatorInfo
 from ._core import version as __version__
 from ._solving import Sensitivity
@@ -79,3 +82,7 @@ __all__ = [
     "load_map",
     "measure",
 ]
+
+_guard(__all__, _sys.modules[__name__], constructed=("Estimator", "Robot", "Session", "Solver"))
+for _module, _made in ((calibrate, ()), (compare, ()), (drive, ("Marlin",)), (measure, ("Board",))):
+    _guard(_module.__all__, _module, constructed=_made)

@@ -12,7 +12,9 @@ from numpy.typing import ArrayLike
 
 from . import _core, neighbours
 from ._arrays import Floats, Indices, floats
+from ._core import InvalidInput
 from ._description import Entries, add_region, mesh_of, plain
+from ._kinds import number_of, shown
 from ._warning import warn
 
 if TYPE_CHECKING:
@@ -35,22 +37,22 @@ class Compiled:
         *,
         regions: Mapping[str, Any] | None = None,
         materials: Entries,
-        fixed: Entries = (),
-        actuators: Entries = (),
-        markers: Entries | Mapping[str, Any] = (),
-        rigid: Sequence[str | Mapping[str, Any]] = (),
-        void: Sequence[str] = (),
+        fixed: Entries | None = (),
+        actuators: Entries | None = (),
+        markers: Entries | Mapping[str, Any] | None = (),
+        rigid: Sequence[str | Mapping[str, Any]] | None = (),
+        void: Sequence[str | Mapping[str, Any]] | None = (),
         gravity: Sequence[float] | None = None,
-        forces: Entries = (),
-        tractions: Entries = (),
-        fibres: Entries = (),
-        layers: Entries = (),
+        forces: Entries | None = (),
+        tractions: Entries | None = (),
+        fibres: Entries | None = (),
+        layers: Entries | None = (),
         submerged: Mapping[str, Any] | None = None,
-        sensors: Entries = (),
-        feet: Entries = (),
+        sensors: Entries | None = (),
+        feet: Entries | None = (),
         contact: Mapping[str, Any] | None = None,
-        obstacles: Entries = (),
-        bodies: Entries = (),
+        obstacles: Entries | None = (),
+        bodies: Entries | None = (),
         formulation: str | None = None,
         weights: str | None = None,
         units: str = "mm",
@@ -96,16 +98,16 @@ class Compiled:
             "actuators": actuators,
             "gravity": gravity,
             "forces": forces,
-            "tractions": tractions if len(tractions) else None,
-            "fibres": fibres if len(fibres) else None,
-            "layers": layers if len(layers) else None,
+            "tractions": tractions or None,
+            "fibres": fibres or None,
+            "layers": layers or None,
             "submerged": submerged,
-            "sensors": sensors if len(sensors) else None,
+            "sensors": sensors or None,
             "markers": markers,
-            "feet": feet if len(feet) else None,
+            "feet": feet or None,
             "contact": contact,
-            "obstacles": obstacles if len(obstacles) else None,
-            "bodies": bodies if len(bodies) else None,
+            "obstacles": obstacles or None,
+            "bodies": bodies or None,
         }
         source = _core.Source.of_mesh(name, mesh, plain(description, "description"), "", [])
         self._take(_core.Robot(source, True))
@@ -148,8 +150,12 @@ class Compiled:
             warn(warning)
 
     def _place(self, name: str) -> int:
-        place = self._places.get(name)
-        return self._core.actuator(name) if place is None else place
+        place = self._places.get(name) if isinstance(name, str) else None
+        if place is not None:
+            return place
+        if not isinstance(name, str):
+            raise InvalidInput(f"an actuator is named by a text, not by {shown(name)}")
+        return self._core.actuator(name)  # raises with the nearest name
 
     def _actuation(self, given: Commands | None, named: Mapping[str, Command]) -> Floats:
         """Commands in the order of the actuators; those that are not given rest."""
@@ -159,6 +165,21 @@ class Compiled:
             values = self._actuation(None, given)
         else:
             values = floats("actuation", given, (len(self._places),)).copy()
+        if given is not None and named:
+            self._refuse_twice(given, named)
+        return self._with(values, named)
+
+    def _refuse_twice(self, given: Commands, named: Mapping[str, Command]) -> None:
+        """A command is given by one of the two."""
+        if not isinstance(given, Mapping):
+            self._place(next(iter(named)))
+            raise InvalidInput(f"{next(iter(named))} is given twice: an array of commands has one for every actuator")
+        for name in named:
+            if name in given:
+                raise InvalidInput(f"{name} is given twice: among the commands by name and as a keyword")
+
+    def _with(self, values: Floats, named: Mapping[str, Command]) -> Floats:
+        """Commands with others in the place of some."""
         places = self._places
         for name, value in named.items():
             place = places.get(name)
@@ -169,10 +190,8 @@ class Compiled:
     def _number(self, name: str, value: Command) -> float:
         if isinstance(value, str):
             return self._core.parsed("command", name, value)
-        number = float(value)
-        if not math.isfinite(number):
-            raise ValueError(f"{name} must be a finite number, not {number}")
-        return number
+        self._place(name)
+        return number_of(name, value)
 
     def _blocks(self) -> list[tuple[str, Indices]]:
         """Of elements, named as meshio does: tetrahedra first."""
@@ -219,6 +238,13 @@ class Compiled:
     def prisms(self) -> Indices:
         """(k, 6): bottom triangle, top triangle."""
         return self._core.prisms
+
+    @property
+    def surface(self) -> Indices:
+        """(f, 3) vertices of the triangles of its surface, counterclockwise seen from outside: of the body, walls of
+        chambers too, and of sheets without elements. Faces of order 2 are four triangles each. `rest[surface]` and
+        `shape.positions[surface]` are the corners [mm]."""
+        return self._core.surface
 
     @property
     def element_regions(self) -> Indices:

@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
 import numpy as np
 
 from . import _core
 from ._arrays import Floats
-from ._files import PathLike
+from ._files import PathLike, write
 from ._of_robot import parsed
 from .table import Table
 
@@ -133,7 +132,7 @@ class _Measured:
 
     def save(self, path: PathLike) -> None:
         """The table: a .csv, which softkin.calibrate and softkin.compare read."""
-        Path(path).write_text(self.csv())
+        write(path, self.csv())
 
 
 class Pictures(_Measured, Sequence[Picture]):

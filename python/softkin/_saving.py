@@ -9,7 +9,8 @@ from typing import TypeVar
 from ._arrays import vector
 from ._core import Answer as CoreAnswer
 from ._core import Shape as CoreShape
-from ._files import PathLike
+from ._core import InvalidInput
+from ._files import PathLike, write
 from ._of_robot import Found
 
 View = tuple[float, float, float]
@@ -37,17 +38,17 @@ class Saving(Found[Core]):
         if ending == ".vtu":
             self._core_shape().save_vtu(str(file))
         elif ending == ".png":
-            file.write_bytes(self.png(view))
+            write(file, self.png(view))
         elif ending == ".json":
-            file.write_text(self._core.report())
+            write(file, self._core.report())
         else:
-            raise ValueError(f"path must end in .vtu, .png or .json, not {file.name!r}")
+            raise InvalidInput(f"path must end in .vtu, .png or .json, not {file.name!r}")
 
     def png(self, view: View | None = None) -> bytes:
         """A picture, coloured by displacement, with crosses at the targets of an answer: the content of a PNG file."""
         direction = [] if view is None else list(vector("view", view))
         if direction and not any(direction):
-            raise ValueError("view must be a direction, so not zero")
+            raise InvalidInput("view must be a direction, so not zero")
         return self._core.png(direction, self._title())
 
     def _repr_png_(self) -> bytes:

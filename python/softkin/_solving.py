@@ -13,10 +13,12 @@ from numpy.typing import ArrayLike
 from . import _core
 from ._arrays import Floats, floats
 from ._compiled import Command, Commands
+from ._core import InvalidInput
 from ._files import PathLike
-from .inverse import Answer, Target, goals_of, searched, start_of
+from ._kinds import named_file
+from .inverse import Answer, Target, goals_of, places_of, searched, start_of
 from .maps import KinematicMap, session_of
-from .shape import Shape
+from .shape import Shape, warn_of
 from .solver import OLD, OLD_OF_SEARCH, USUAL, ProgressFunction, Solver, options_of, telling, with_old
 
 if TYPE_CHECKING:
@@ -86,7 +88,9 @@ class Solving:
         by = session_of(robot, map, polish, options, self._session)
         asked = robot._actuation(actuation, commands)
         found = Shape(robot, _solved(robot._core, by, asked, self._last if start is None else start, options, progress))
-        if self._session is not None and found.converged:
+        if self._session is None and budget_s is None and found.status != "interrupted":
+            warn_of(found._findings)
+        elif self._session is not None and found.converged:
             self._last, self._answer = found, None
         return found
 
@@ -147,13 +151,15 @@ class Solving:
         robot = self._owner
         statics = options_of(solver, elapsed_s=elapsed_s, budget_s=budget_s)
         options = _core.InverseOptions(method, tolerance_mm, max_equilibria, descents, other_starts, statics)
-        places, tolerances = {**(targets or {}), **markers}, (options.tolerance_mm, tolerance_force_N)
+        places, tolerances = places_of(robot, targets, markers), (options.tolerance_mm, tolerance_force_N)
         goals = goals_of(robot, places, planes, directions, lever_mm, press, tolerances, weights)
         start = start_of(goals, start, workspace)
         begin, last = (self._last, self._answer) if start is None else (start, None)
         by = session_of(robot, map, polish, statics, self._session)
         found = Answer(robot, searched(robot, goals, begin, last, prefer, fix, by, options, progress))
-        if self._session is not None and found.shape.converged:
+        if self._session is None and budget_s is None and found._core.has_shape and found.status != "interrupted":
+            warn_of(found.shape._findings)
+        elif self._session is not None and found.shape.converged:
             self._last, self._answer = found.shape, found
         return found
 
@@ -168,7 +174,7 @@ class Solving:
         """
         robot = self._owner
         if shape.robot is not robot:
-            raise ValueError("shape is one of another robot")
+            raise InvalidInput("shape is one of another robot")
         names = robot.markers if markers is None else [markers] if isinstance(markers, str) else list(markers)
         return _core.jacobian(shape._core, self._session, [robot._core.marker(name) for name in names])
 
@@ -184,7 +190,7 @@ class Solving:
         """
         robot = self._owner
         if shape.robot is not robot:
-            raise ValueError("shape is one of another robot")
+            raise InvalidInput("shape is one of another robot")
         names = [numbers] if isinstance(numbers, str) else list(numbers)
         found = _core.sensitivity(shape._core, names)
         return {
@@ -220,7 +226,7 @@ class Solving:
         """
         robot = self._owner
         if shape.robot is not robot:
-            raise ValueError("shape is one of another robot")
+            raise InvalidInput("shape is one of another robot")
         names = [numbers] if isinstance(numbers, str) else list(numbers)
         count = len(robot.rest)
         by_positions = np.zeros((count, 3)) if positions is None else floats("positions", positions, (count, 3))
@@ -231,7 +237,7 @@ class Solving:
         by_loads = np.zeros(len(actuators))
         for name, load in (loads or {}).items():
             if name not in actuators:
-                raise ValueError(f"loads names {name!r}, which is no actuator; there are {', '.join(actuators)}")
+                raise InvalidInput(f"loads names {name!r}, which is no actuator; there are {', '.join(actuators)}")
             by_loads[actuators.index(name)] = load
         found = _core.gradient(shape._core, names, by_positions, by_markers, by_loads)
         return dict(zip(names, found.tolist()))
@@ -249,7 +255,7 @@ def _solved(
     if isinstance(start, Shape):
         begin = start._core
     elif isinstance(start, (str, os.PathLike)):
-        file = os.fspath(start)
+        file = named_file("start", start)
     elif start is not None:
         positions = floats("start", start, (len(robot.rest), 3))
     return _core.solve(

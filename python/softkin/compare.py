@@ -10,6 +10,7 @@ import numpy as np
 
 from . import _core
 from ._arrays import Floats
+from ._core import InvalidInput
 from ._files import PathLike, listed
 from ._of_robot import parsed
 from .table import Table
@@ -19,7 +20,7 @@ __all__ = ["PathComparison", "ReportComparison", "paths", "reports"]
 
 def _files(name: str, files: Sequence[PathLike], least: int = 2) -> list[str]:
     if isinstance(files, (str, os.PathLike)) or len(files) < least:
-        raise ValueError(f"{name} must be a list of {least} files or more")
+        raise InvalidInput(f"{name} must be a list of {least} files or more")
     return listed(files)
 
 
@@ -121,7 +122,7 @@ def reports(
     poses   with turn: the time until each of these turns is reached [degrees]
     """
     if len(poses) and turn is None:
-        raise ValueError("poses need turn, which says what turns")
+        raise InvalidInput("poses need turn, which says what turns")
     core = _core.compare_reports(_files("files", files), marker or "", list(turn or ()), list(poses))
     return ReportComparison(core)
 

@@ -14,7 +14,9 @@ from numpy.typing import ArrayLike
 from . import _core
 from ._arrays import floats
 from ._compiled import Compiled
+from ._core import InvalidInput
 from ._files import PathLike, optional
+from ._kinds import named_file
 from ._of_robot import parsed
 from .runs import FollowRun, times_of
 
@@ -138,7 +140,7 @@ class Marlin:
         progress  called with the lines that were acknowledged
         """
         if plan.lines == 0:
-            raise ValueError("plan has no moves of motors: there is no tendon and no syringe")
+            raise InvalidInput("plan has no moves of motors: there is no tendon and no syringe")
         return Sent(self._core.send(plan._core, optional(log), progress))
 
     @property
@@ -197,12 +199,13 @@ def plan(
     """
     board = Path(robot.name).with_suffix(".hardware.yaml") if hardware is None else Path(hardware)
     if hardware is None and not board.exists():
-        raise ValueError(f"hardware: there is no {board}; describe motors and regulators there (docs/drive.md)")
+        raise InvalidInput(f"hardware: there is no {board}; describe motors and regulators there (docs/drive.md)")
     if isinstance(commands, (str, os.PathLike)):
+        named_file("commands", commands)
         if times is not None:
-            raise ValueError("times: a file of commands has its own, in column t_s")
+            raise InvalidInput("times: a file of commands has its own, in column t_s")
         if isinstance(pressures, Mapping):
-            raise ValueError("pressures: of a file of commands they come from a report or a table")
+            raise InvalidInput("pressures: of a file of commands they come from a report or a table")
         core = _core.Plan.of_file(robot._core, os.fspath(commands), optional(pressures), os.fspath(board), return_home)
         return Plan(core)
     given: dict[str, Any] = {}
@@ -220,7 +223,7 @@ def plan(
     if isinstance(pressures, Mapping):
         given.update(pressures)
     elif pressures is not None:
-        raise ValueError("pressures: of an array of commands they are arrays by actuator")
+        raise InvalidInput("pressures: of an array of commands they are arrays by actuator")
     table = np.full(rows.shape, np.nan)
     for name, values in given.items():
         table[:, robot._place(name)] = floats(f"pressures: {name}", values, (len(rows),))

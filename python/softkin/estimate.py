@@ -14,6 +14,8 @@ import numpy as np
 from . import _core
 from ._arrays import Floats
 from ._compiled import Command, Commands
+from ._core import InvalidInput
+from ._kinds import reading_of, shown
 from .shape import Shape
 from .solver import USUAL, Solver, options_of
 
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
     from .robot import Robot
 
 __all__ = ["Estimate", "Estimator", "PlannedReading", "ToldNumber", "ToldPlace"]
+
+Readings = Mapping[str, float | None]
 
 _KINDS = ("marker_mm", "pressure_kPa", "tension_N", "length_mm", "volume_mm3", "force_N", "angle_deg", "direction")
 _PLANNED = ("marker_mm", "length_mm", "volume_mm3", "angle_deg", "direction")
@@ -176,7 +180,7 @@ class Estimator:
         solver: Solver | str = USUAL,
     ) -> None:
         if not (fade_s >= 0 and math.isfinite(fade_s)):
-            raise ValueError(f"fade_s must be a time of 0 s or more, not {fade_s}")
+            raise InvalidInput(f"fade_s must be a time of 0 s or more, not {fade_s}")
         self._robot = robot
         self._fades = fade_s > 0
         self._last: float | None = None
@@ -199,7 +203,7 @@ class Estimator:
 
     def update(
         self,
-        readings: Mapping[str, float],
+        readings: Readings,
         actuation: Commands | None = None,
         /,
         *,
@@ -212,12 +216,13 @@ class Estimator:
         actuation  measured commands, as solve's
         time_s     when it was read [s], not before the last time; None: now. Read where estimates fade
         """
+        if not isinstance(readings, Mapping):
+            raise InvalidInput(f"readings must be a dictionary, not {shown(readings)}")
         unknown = set(readings) - set(self.readings)
         if unknown:
-            raise ValueError(f"no deviation is known of {sorted(unknown)}; readings are {list(self.readings)}")
+            raise InvalidInput(f"no deviation is known of {sorted(map(str, unknown))}; readings are {list(self.readings)}")
         asked = self._robot._actuation(actuation, commands)
-        read = [readings.get(name) for name in self.readings]
-        values = np.array([math.nan if value is None else float(value) for value in read], dtype=np.float64)
+        values = np.array([reading_of(name, readings.get(name)) for name in self.readings], dtype=np.float64)
         elapsed = self._elapsed(time_s) if self._fades else 0.0
         return Estimate(self._robot, self._core.update(asked, values, elapsed))
 
@@ -233,9 +238,9 @@ class Estimator:
         """
         unknown = set(deviations) - set(_PLANNED)
         if unknown:
-            raise ValueError(f"a plan is of {list(_PLANNED)}, not of {sorted(unknown)}")
+            raise InvalidInput(f"a plan is of {list(_PLANNED)}, not of {sorted(unknown)}")
         if any(not (value > 0 and math.isfinite(value)) for value in deviations.values()):
-            raise ValueError("deviations must be above 0")
+            raise InvalidInput("deviations must be above 0")
         told = [estimates] if isinstance(estimates, Estimate) else list(estimates)
         values = np.array([float(deviations.get(kind, 0)) for kind in _KINDS], dtype=np.float64)
         numbers = [name for each in told[:1] for name in each.numbers]
@@ -256,7 +261,7 @@ class Estimator:
         now = time.monotonic() if time_s is None else float(time_s)
         elapsed = 0.0 if self._last is None else now - self._last
         if not elapsed >= 0:
-            raise ValueError(f"time_s must not go back: {now} s is {-elapsed:.3g} s before the last readings")
+            raise InvalidInput(f"time_s must not go back: {now} s is {-elapsed:.3g} s before the last readings")
         self._last = now
         return elapsed
 

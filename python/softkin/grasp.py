@@ -12,8 +12,9 @@ from typing import Any
 import numpy as np
 
 from . import _core
-from ._arrays import Floats, vector
+from ._arrays import Floats, dimensions, vector
 from ._compiled import Command, Commands, Compiled
+from ._core import InvalidInput
 from ._of_robot import Found
 from .runs import Steps, steps_of
 from .shape import NotConverged, Shape
@@ -123,7 +124,7 @@ def grasped(
     progress: ProgressFunction | None,
 ) -> _core.Grasp:
     if most_N is not None and not most_N > 0:
-        raise ValueError(f"most_N must be a force > 0 in N, not {most_N}")
+        raise InvalidInput(f"most_N must be a force > 0 in N, not {most_N}")
     texts = [_direction_text(each) for each in ([directions] if isinstance(directions, str) else directions)]
     steps = _closing(robot, closing, commands)
     return _core.grasp(
@@ -136,6 +137,6 @@ def _closing(robot: Compiled, closing: Steps | Commands | None, commands: Mappin
     given: Any = closing
     is_file = isinstance(given, (str, os.PathLike))
     named = isinstance(given, Sequence) and not is_file and len(given) > 0 and isinstance(given[0], Mapping)
-    if given is None or isinstance(given, Mapping) or not (is_file or named or np.ndim(given) != 1):
+    if given is None or isinstance(given, Mapping) or not (is_file or named or dimensions("closing", given) != 1):
         return steps_of(robot, "closing", [robot._actuation(given, commands)], None, {})
     return steps_of(robot, "closing", given, None, commands)

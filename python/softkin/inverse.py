@@ -7,12 +7,16 @@ from collections.abc import Mapping, Sequence
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from . import _core
-from ._arrays import Floats, vector
+from ._arrays import Floats, dimensions, vector
 from ._compiled import Command, Commands, Compiled
 from ._core import Answer as CoreAnswer
 from ._core import Shape as CoreShape
+from ._core import InvalidInput
 from ._files import PathLike
+from ._kinds import nearest, shown
 from ._of_robot import parsed
 from ._saving import Saving
 from ._warning import warn
@@ -109,7 +113,7 @@ class Answer(Saving[CoreAnswer]):
     def save_plot(self, path: str | os.PathLike[str]) -> None:
         """The error over the equilibria of the search: an .svg."""
         if not self._core.has_shape:
-            raise ValueError(f"there is nothing to plot: {self.reason}")
+            raise InvalidInput(f"there is nothing to plot: {self.reason}")
         self._core.save_plot(os.fspath(path))
 
     def require(self) -> Answer:
@@ -128,10 +132,33 @@ class Answer(Saving[CoreAnswer]):
         return f"<softkin.Answer {self.status}, {self._core.off} off: {commands}>"
 
 
+ARGUMENTS: tuple[str, ...] = ("planes", "directions", "lever_mm", "press", "weights", "start", "workspace", "prefer", "fix", "map")
+ARGUMENTS += ("polish", "method", "tolerance_mm", "tolerance_force_N", "max_equilibria", "descents", "other_starts")
+ARGUMENTS += ("solver", "elapsed_s", "budget_s", "progress")
+"""of inverse(), beside markers"""
+
+
+def places_of(
+    robot: Compiled, targets: Mapping[str, Target] | None, markers: Mapping[str, Target]
+) -> dict[str, Target]:
+    """Where markers are to be, given by name, as keywords, or some of them so and some so."""
+    for name in markers:
+        if targets is not None and name in targets:
+            raise InvalidInput(f"the target of {name!r} is given twice: among the targets and as a keyword")
+        if name not in robot._markers:
+            near = nearest(name, [*robot._markers, *ARGUMENTS])
+            if not any(argument in near for argument in ARGUMENTS):
+                robot._core.marker(name)  # raises with the nearest name
+            raise InvalidInput(f"inverse has no argument {name!r}, and the robot no marker of that name{near}")
+    return {**(targets or {}), **markers}
+
+
 def counted(what: str, of: str, target: Target) -> tuple[tuple[float, float, float], tuple[bool, bool, bool]]:
     """Three numbers, zero where one does not count, and which do."""
+    if not isinstance(target, (Sequence, np.ndarray)) or isinstance(target, (str, bytes)) or dimensions(what, target) == 0:
+        raise InvalidInput(f"{what} must be three {of}, not {shown(target)}")
     if len(target) != 3:
-        raise ValueError(f"{what} must be three {of}, not {len(target)}")
+        raise InvalidInput(f"{what} must be three {of}, not {len(target)}")
     axes = [value is not None for value in target]
     return vector(what, [0.0 if value is None else value for value in target]), (axes[0], axes[1], axes[2])
 
@@ -162,7 +189,7 @@ def goals_of(
         goals.press(name, force, axes, *tolerances, named[name])
         left.pop(name, None)
     if left:
-        raise ValueError(f"weights: nothing is asked of {next(iter(left))!r}")
+        raise InvalidInput(f"weights: nothing is asked of {next(iter(left))!r}")
     for doubt in goals.check():
         warn(doubt)
     return goals
@@ -172,7 +199,7 @@ def start_of(goals: _core.Goals, start: Shape | Commands | None, workspace: Path
     if workspace is None:
         return start
     if start is not None:
-        raise ValueError("workspace chooses the start: it does not go with start")
+        raise InvalidInput("workspace chooses the start: it does not go with start")
     return goals.nearest_sample(os.fspath(workspace))
 
 
@@ -193,11 +220,11 @@ def searched(
     for name in fixed:
         robot._place(name)
         if name in (prefer or {}):
-            raise ValueError(f"fix: {name!r} does not change, so it takes no prefer")
+            raise InvalidInput(f"fix: {name!r} does not change, so it takes no prefer")
     shape = start if isinstance(start, Shape) else None
     if shape is not None and values:
-        raise ValueError("fix: with start=shape an actuator stays as it is there; give names without values")
-    begin = None if shape is not None else robot._actuation(start, values)  # type: ignore[arg-type]
+        raise InvalidInput("fix: with start=shape an actuator stays as it is there; give names without values")
+    begin = None if shape is not None else robot._with(robot._actuation(start, {}), values)  # type: ignore[arg-type]
     preferred = None
     if prefer:
         preferred = (shape.actuation if shape is not None else begin).copy()  # type: ignore[union-attr]

@@ -133,7 +133,7 @@ class MapAnswer:
         raises  ValueError where jacobian=True was not said
         """
         if self.jacobians is None:
-            raise ValueError("the Jacobian was not asked for: solve(..., jacobian=True)")
+            raise InvalidInput("the Jacobian was not asked for: solve(..., jacobian=True)")
         if marker is None:
             return self.jacobians
         place = self._marker(marker)

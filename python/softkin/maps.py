@@ -16,10 +16,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from . import _core
-from ._arrays import Floats, floats
+from ._arrays import Floats, dimensions, floats
 from ._compiled import Compiled
 from ._core import InvalidInput
 from ._files import PathLike, ending
+from ._kinds import number_of, reading_of, shown
 from ._warning import warn
 from .map_answer import MapAnswer, MapCheck, MapEstimate, MapInput, MapOutput, MapProgress, markers_of
 from .solver import Solver, options_of
@@ -27,6 +28,7 @@ from .solver import Solver, options_of
 __all__ = ["KinematicMap", "load_map"]
 
 Numbers = ArrayLike | Mapping[str, float]
+Readings = Mapping[str, float | None]
 
 
 class KinematicMap:
@@ -94,18 +96,18 @@ class KinematicMap:
     def _commands(self, given: Numbers | None, named: Mapping[str, float]) -> Floats:
         if given is not None and not isinstance(given, Mapping):
             if named:
-                raise ValueError("commands: an array names every input")
-            many = (None,) if np.ndim(given) > 1 else ()
+                raise InvalidInput("commands: an array names every input")
+            many = (None,) if dimensions("commands", given) > 1 else ()
             return floats("commands", given, (*many, len(self._inputs)))
         found = self._rest.copy()
+        for name in named:
+            if given is not None and name in given:
+                raise InvalidInput(f"{name} is given twice: among the commands by name and as a keyword")
         for name, value in {**(given or {}), **named}.items():
             place = self._places.get(name)
             if place is None:
                 raise InvalidInput(f"the map has no input {name!r}, but {', '.join(map(repr, self._places))}")
-            number = float(value)
-            if not math.isfinite(number):
-                raise ValueError(f"{name} must be a finite number, not {number}")
-            found[place] = number
+            found[place] = number_of(name, value)
         return found
 
     def solve(
@@ -129,7 +131,7 @@ class KinematicMap:
         raises    InvalidInput naming the first row, and the command, outside the map
         """
         if outside not in ("raise", "leave out"):
-            raise ValueError(f"outside must be 'raise' or 'leave out', not {outside!r}")
+            raise InvalidInput(f"outside must be 'raise' or 'leave out', not {outside!r}")
         given = self._commands(commands, named)
         rows = given if given.ndim == 2 else given[None]
         outputs, sloped, flags = self._core.solve(rows, jacobian, threads)
@@ -153,7 +155,7 @@ class KinematicMap:
 
     def estimate(
         self,
-        readings: Mapping[str, float],
+        readings: Readings,
         deviations: Mapping[str, float] | float,
         unknowns: Mapping[str, tuple[float, float]],
         commands: Numbers | None = None,
@@ -169,19 +171,21 @@ class KinematicMap:
         commands    the others, as to `solve`; of the unknowns where the search begins, their means if they are not there
         raises      InvalidInput naming what is not there; where the search begins outside the map
         """
+        if not isinstance(readings, Mapping):
+            raise InvalidInput(f"readings must be a dictionary, not {shown(readings)}")
         columns = {each.column: q for q, each in enumerate(self._outputs)}
         values, off = np.full(len(columns), np.nan), np.ones(len(columns))
         for name, value in readings.items():
             if name not in columns:
                 raise InvalidInput(f"the map has no output {name!r}, but {', '.join(map(repr, columns))}")
-            values[columns[name]] = value
+            values[columns[name]] = reading_of(name, value)
             if isinstance(deviations, Mapping) and name not in deviations:
                 raise InvalidInput(f"the reading {name!r} needs a deviation")
             off[columns[name]] = deviations[name] if isinstance(deviations, Mapping) else deviations
         means = {name: mean for name, (mean, _) in unknowns.items()}
         given = self._commands(commands, named if commands is not None else {**means, **named})
         if given.ndim != 1:
-            raise ValueError(f"commands must have shape ({len(self._inputs)},), not {given.shape}: readings at a time")
+            raise InvalidInput(f"commands must have shape ({len(self._inputs)},), not {given.shape}: readings at a time")
         for name in unknowns:
             if name not in self._places:
                 raise InvalidInput(f"the map has no input {name!r}, but {', '.join(map(repr, self._places))}")
@@ -202,7 +206,7 @@ class KinematicMap:
         """
         given = self._commands(commands, named)
         if given.ndim != 1:
-            raise ValueError(f"commands must have shape ({len(self._inputs)},), not {given.shape}: a shape at a time")
+            raise InvalidInput(f"commands must have shape ({len(self._inputs)},), not {given.shape}: a shape at a time")
         return self._core.shape(given)
 
     def save(self, path: PathLike) -> None:
@@ -263,9 +267,9 @@ def _unpickled(state: bytes, name: str) -> KinematicMap:
 
 def check_map(map: KinematicMap | None, polish: bool, options: _core.SolveOptions) -> None:
     if map is None and polish:
-        raise ValueError("polish goes on from the answers of a map: it needs map")
+        raise InvalidInput("polish goes on from the answers of a map: it needs map")
     if map is not None and not polish and options.for_the_solver:
-        raise ValueError("a map answers without the solver: the solver's options need polish=True")
+        raise InvalidInput("a map answers without the solver: the solver's options need polish=True")
 
 
 def session_of(
@@ -290,7 +294,7 @@ def made(
 ) -> KinematicMap:
     for name, value in (("load_accuracy", load_accuracy), ("shape_accuracy_mm", shape_accuracy_mm)):
         if value is not None and not 0 < value < math.inf:
-            raise ValueError(f"{name} must be a number > 0, or None, not {value}")
+            raise InvalidInput(f"{name} must be a number > 0, or None, not {value}")
     accuracies = (accuracy_mm, load_accuracy or 0.0, shape_accuracy_mm or 0.0)
     statics = options_of(replace(solver, threads=1))
     options = _core.MapOptions(*accuracies, most, checks, seed, statics, solver.threads)

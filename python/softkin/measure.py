@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._arrays import Floats, floats
-from ._files import PathLike
+from ._core import InvalidInput
+from ._files import PathLike, write
 from ._measured import Angle, MarkerPlace, Outline, Picture, Pictures, Specimen, Stretch, Track
 
 if TYPE_CHECKING:
@@ -87,7 +88,7 @@ class Camera:
 
     def save(self, path: PathLike) -> None:
         """For `camera=` and `softkin measure --camera`: a .yaml."""
-        Path(path).write_text(self._core().text())
+        write(path, self._core().text())
 
     def _core(self) -> _vision.Camera:
         core: _vision.Camera = _loaded().Camera()
@@ -143,11 +144,11 @@ class Board:
         _check_dpi(dpi)
         file = Path(path)
         if file.suffix.lower() == ".svg":
-            file.write_text(self.svg())
+            write(file, self.svg())
         elif file.suffix.lower() == ".png":
-            file.write_bytes(self._core.png(dpi))
+            write(file, self._core.png(dpi))
         else:
-            raise ValueError(f"path must end in .svg or .png, not {file.name!r}")
+            raise InvalidInput(f"path must end in .svg or .png, not {file.name!r}")
 
     def __repr__(self) -> str:
         return f"<softkin.measure.Board {self.text}: {self.width_mm:g} x {self.height_mm:g} mm>"
@@ -155,7 +156,7 @@ class Board:
 
 def _check_dpi(dpi: float) -> None:
     if not 10 <= dpi <= 4800:
-        raise ValueError(f"dpi must be 10 to 4800 dots per inch, not {dpi}")
+        raise InvalidInput(f"dpi must be 10 to 4800 dots per inch, not {dpi}")
 
 
 def _named(name: str, given: str | Sequence[object] | Mapping[str, object] | None) -> str:
@@ -165,7 +166,7 @@ def _named(name: str, given: str | Sequence[object] | Mapping[str, object] | Non
     if isinstance(given, Mapping):
         return ",".join(f"{key}={value}" for key, value in given.items())
     if len(given) == 0:
-        raise ValueError(f"{name} is empty")
+        raise InvalidInput(f"{name} is empty")
     return ",".join(str(value) for value in given)
 
 
@@ -173,7 +174,7 @@ def _scale(given: str | tuple[Point, Point, float] | None) -> str:
     if given is None or isinstance(given, str):
         return given or ""
     if len(given) != 3:
-        raise ValueError(f"scale must be two markers or two pixels and their distance [mm], not {given!r}")
+        raise InvalidInput(f"scale must be two markers or two pixels and their distance [mm], not {given!r}")
     first, second, distance = given
     points = [
         point if isinstance(point, str) else ",".join(repr(value) for value in floats("scale", point, (2,)).tolist())
@@ -194,7 +195,7 @@ def _options(
     x_axis: str | tuple[str, str] | None,
 ) -> _vision.Options:
     if isinstance(angles, str):
-        raise ValueError(f"angles must be a list such as [('a', 'b')], not {angles!r}")
+        raise InvalidInput(f"angles must be a list such as [('a', 'b')], not {angles!r}")
     options: _vision.Options = _loaded().Options()
     options.dots = _named("dots", dots)
     options.tags = "true" if tags is True else "" if tags is False else _named("tags", tags)
@@ -213,7 +214,7 @@ def _options(
 
 def _check_threads(threads: int) -> None:
     if not 0 <= threads <= 1024:
-        raise ValueError(f"threads must be 0 (one a core) to 1024, not {threads}")
+        raise InvalidInput(f"threads must be 0 (one a core) to 1024, not {threads}")
 
 
 def _add(
@@ -222,7 +223,7 @@ def _add(
     progress: ProgressFunction | None,
 ) -> None:
     if isinstance(given, (str, os.PathLike)) or len(given) == 0:
-        raise ValueError("pictures must be a list of one or more: files, or arrays (h, w, 3) of bytes")
+        raise InvalidInput("pictures must be a list of one or more: files, or arrays (h, w, 3) of bytes")
     for number, picture in enumerate(given):
         if progress is not None:
             progress(number / len(given))
@@ -232,7 +233,7 @@ def _add(
         name = f"pictures[{number}]"
         array = np.asarray(picture)
         if array.dtype != np.uint8 or array.ndim != 3 or array.shape[2] != 3:
-            raise ValueError(f"{name} must be (h, w, 3) of uint8: red, green, blue; not {array.shape} of {array.dtype}")
+            raise InvalidInput(f"{name} must be (h, w, 3) of uint8: red, green, blue; not {array.shape} of {array.dtype}")
         series.add_array(np.ascontiguousarray(array), name)
     if progress is not None:
         progress(1.0)
@@ -311,12 +312,12 @@ def film(
     """
     _check_threads(threads)
     if fps is not None and not fps > 0:
-        raise ValueError(f"fps must be frames per second > 0, not {fps}")
+        raise InvalidInput(f"fps must be frames per second > 0, not {fps}")
     options = _options(dots, tags, dictionary, angles, scale_board, scale, camera, origin, x_axis)
     options.moving_camera = moving_camera
     names = [files] if isinstance(files, (str, os.PathLike)) else list(files)
     if not names:
-        raise ValueError("files is empty: give a video, a folder, or pictures")
+        raise InvalidInput("files is empty: give a video, a folder, or pictures")
     _loaded().prepare(threads)
     track: _vision.FilmTrack = _loaded().FilmTrack(options, [os.fspath(name) for name in names], fps)
     while track.advance():

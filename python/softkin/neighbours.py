@@ -5,12 +5,13 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ._core import InvalidInput
+from ._kinds import shown
 
 if TYPE_CHECKING:
     import meshio
@@ -25,7 +26,18 @@ PASSED_OVER = ("vertex", "line", "quad")
 Ints = NDArray[np.int64]
 Points = NDArray[np.float64]
 Blocks = Sequence[tuple[str, NDArray[np.int32]]]  # of elements, named as meshio does
-Fields = Mapping[str, NDArray[Any]]  # of vertices or of elements, by name
+Fields = Mapping[str, NDArray[Any]]  # by name
+
+
+class Content(NamedTuple):
+    """What a shape's .vtu holds beside points and cells."""
+
+    points: Fields
+    """of the vertices"""
+    cells: Fields
+    """of the cells, in their order"""
+    whole: Fields
+    """of the whole"""
 
 
 @dataclass(frozen=True)
@@ -59,30 +71,32 @@ def package(name: str) -> Any:
         raise ImportError(f"this needs {name}: pip install {name} ({error})") from None
 
 
-def to_meshio(positions: Points, blocks: Blocks, points: Fields, elements: Fields) -> meshio.Mesh:
+def to_meshio(positions: Points, blocks: Blocks, content: Content) -> meshio.Mesh:
+    """Without what is of the whole, for which meshio has no place."""
     ends = np.cumsum([len(cells) for _, cells in blocks])[:-1]
-    data = {name: np.split(values, ends) for name, values in elements.items()}
-    return package("meshio").Mesh(np.array(positions), blocks, point_data=points, cell_data=data)
+    data = {name: np.split(values, ends) for name, values in content.cells.items()}
+    return package("meshio").Mesh(positions, blocks, point_data=dict(content.points), cell_data=data)
 
 
-def to_pyvista(
-    positions: Points, blocks: Blocks, points: Fields, elements: Fields, regions: Sequence[str]
-) -> pyvista.UnstructuredGrid:
+def to_pyvista(positions: Points, blocks: Blocks, content: Content) -> pyvista.UnstructuredGrid:
     """Field data region_NAME: the number of region NAME, as in the .vtu that `save` writes."""
     cells = {VTK_NUMBERS[name]: block for name, block in blocks}
-    grid = package("pyvista").UnstructuredGrid(cells, np.array(positions))
-    for name, values in points.items():
-        grid.point_data[name] = values
-    for name, values in elements.items():
-        grid.cell_data[name] = values
-    for number, name in enumerate(regions):
-        grid.field_data[f"region_{name}"] = np.array([number], dtype=np.int32)
+    grid = package("pyvista").UnstructuredGrid(cells, positions)
+    for data, fields in (
+        (grid.point_data, content.points),
+        (grid.cell_data, content.cells),
+        (grid.field_data, content.whole),
+    ):
+        for name, values in fields.items():
+            data[name] = values
     return grid
 
 
 def from_meshio(mesh: meshio.Mesh) -> Elements:
     """Regions: cell sets, point sets, and physical groups (`gmsh:physical`) that no cell set has the name of; such
     without a name are physical_DIMENSION_NUMBER, as the command reads them. Throws InvalidInput."""
+    if not hasattr(mesh, "cells") or not hasattr(mesh, "points"):
+        raise InvalidInput(f"mesh must be a meshio.Mesh, not {shown(mesh)}")
     blocks = [(str(block.type), np.asarray(block.data, dtype=np.int64)) for block in mesh.cells]
     sets = {name: parts for name, parts in (mesh.cell_sets or {}).items() if not name.startswith("gmsh:")}
     names = {tuple(int(x) for x in value[:2]): name for name, value in (mesh.field_data or {}).items()}
@@ -101,7 +115,9 @@ def from_pyvista(grid: pyvista.UnstructuredGrid) -> Elements:
     """Regions: values of the cell array `region`, named by the field data `region_NAME`, else region_NUMBER. Throws
     InvalidInput."""
     if not hasattr(grid, "cells_dict") or not hasattr(grid, "celltypes"):
-        raise InvalidInput(f"{type(grid).__name__} is no pyvista.UnstructuredGrid; for a surface take from_surfaces")
+        raise InvalidInput(
+            f"grid must be a pyvista.UnstructuredGrid, not {shown(grid)}; for a surface take softkin.mesh.from_surfaces"
+        )
     kinds = {int(kind): np.asarray(cells, dtype=np.int64) for kind, cells in grid.cells_dict.items()}
     blocks = [(VTK_KINDS.get(kind, f"VTK cell {kind}"), cells) for kind, cells in kinds.items()]
     sets: dict[str, list[Any]] = {}

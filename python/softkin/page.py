@@ -9,7 +9,8 @@ from pathlib import Path
 
 from . import _core
 from ._compiled import Compiled
-from ._files import PathLike
+from ._core import InvalidInput
+from ._files import PathLike, write
 from .maps import KinematicMap
 from .shape import Shape
 
@@ -39,13 +40,13 @@ class PageView:
 
 def page(robot: Compiled, path: PathLike | None, shapes: Shape | Iterable[Shape], map: KinematicMap | None) -> str:
     if path is not None and Path(path).suffix != ".html":
-        raise ValueError(f"{os.fspath(path)}: must end in .html")
+        raise InvalidInput(f"{os.fspath(path)}: must end in .html")
     listed = [shapes] if isinstance(shapes, Shape) else list(shapes)
     for shape in listed:
         if not isinstance(shape, Shape):
-            raise TypeError(f"shapes must be of type Shape, not {type(shape).__name__}")
+            raise InvalidInput(f"shapes must be of type Shape, not {type(shape).__name__}")
     cores = [shape._core for shape in listed]
     html = _core.page(robot._core, cores, None if map is None else map._core, "Python: robot.to_html()")
     if path is not None:
-        Path(path).write_text(html, encoding="utf-8", newline="\n")
+        write(path, html, newline="\n")
     return html

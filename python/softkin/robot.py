@@ -13,7 +13,8 @@ from numpy.typing import ArrayLike
 
 from . import _core
 from ._compiled import Command, Commands, Compiled
-from ._description import Forces, force_texts, formulation_of, yaml_text
+from ._core import InvalidInput
+from ._description import Forces, changes_of, force_texts, formulation_of
 from ._files import PathLike, optional
 from ._solving import Solving
 from ._warning import SoftkinWarning
@@ -134,9 +135,9 @@ class Robot(Compiled, Solving):
         check_map(map, polish, statics)
         nearest = method == "nearest"
         if nearest and (workspace is None) == (samples is None):
-            raise ValueError("method 'nearest' takes the samples of one of workspace and samples")
+            raise InvalidInput("method 'nearest' takes the samples of one of workspace and samples")
         if samples is not None and not nearest:
-            raise ValueError("samples are those of method 'nearest'")
+            raise InvalidInput("samples are those of method 'nearest'")
         search = _core.InverseOptions("newton" if nearest else method, tolerance_mm, 200, descents, 3, statics)
         by = None if map is None else map._core
         begin = None if start is None else self._actuation(start, {})
@@ -165,7 +166,7 @@ class Robot(Compiled, Solving):
         raises  InvalidInput where the robot has no feet, or is held or loaded along its way
         """
         if not 1 <= cycles <= 100_000:
-            raise ValueError(f"cycles must be a whole number from 1 to 100000, not {cycles}")
+            raise InvalidInput(f"cycles must be a whole number from 1 to 100000, not {cycles}")
         rows = steps_of(self, "gait", gait, times, {})
         return WalkRun(self, remarked(_core.WalkRun(self._core, rows, cycles, options_of(solver), optional(store))))
 
@@ -296,8 +297,8 @@ def load(
     changes      other values for anything in it, by path: {"materials.body.youngs_modulus": 0.8}
     raises       InvalidInput naming file and line, or the change
     """
-    texts = [f"{path}={yaml_text(value)}" for path, value in (changes or {}).items()]
-    source = _core.Source.of_scene(os.fspath(scene), formulation_of(formulation), force_texts(forces), texts)
+    texts = (formulation_of(formulation), force_texts(forces), changes_of(changes))
+    source = _core.Source.of_scene(os.fspath(scene), *texts)
     return Robot._of(_core.Robot(source, True))
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any, TypeVar
 
 import numpy as np
@@ -13,10 +14,12 @@ from numpy.typing import ArrayLike, NDArray
 from . import _core
 from ._arrays import Floats, floats
 from ._compiled import Command, Compiled
+from ._core import InvalidInput
 from ._files import PathLike
+from ._kinds import named_file, shown
 from ._of_robot import OfRobot, parsed
 from ._warning import warn
-from .shape import Shape
+from .shape import Shape, warn_of
 from .table import Table
 
 __all__ = ["FollowRun", "PathRun", "Waypoint"]
@@ -38,11 +41,19 @@ class _Run(OfRobot[Core], Iterator[Record]):
         """Records so far."""
         return self._core.done
 
+    _records = "step"
+
+    @cached_property
+    def _raised(self) -> set[int]:
+        """Kinds of warnings that were raised, each once."""
+        return set()
+
     def _next_shape(self) -> Shape:
         found = self._core.next()
         if found is None:
             self._core.finish()
             raise StopIteration
+        warn_of(self._core.findings(), self._raised, f"{self._records} {max(0, self.done - 1)}: ")
         return Shape(self._robot, found)
 
     @property
@@ -57,7 +68,7 @@ class _Run(OfRobot[Core], Iterator[Record]):
     def save_plot(self, path: PathLike) -> None:
         """What the command's --plot draws, of the records so far: an .svg."""
         if self.done == 0:
-            raise ValueError("there is nothing to plot: no record is made yet")
+            raise InvalidInput("there is nothing to plot: no record is made yet")
         self._core.save_plot(os.fspath(path))
 
 
@@ -106,6 +117,8 @@ class Waypoint:
 class FollowRun(_Run[_core.FollowRun, Waypoint]):
     """Inverse kinematics along a path of markers, waypoint by waypoint. Stop when you like."""
 
+    _records = "waypoint"
+
     def __next__(self) -> Waypoint:
         shape = self._next_shape()
         return Waypoint(self.done - 1, shape, *self._core.asked(), parsed(self._core.step()))
@@ -129,7 +142,7 @@ def times_of(times: ArrayLike | None, rows: int) -> Floats | None:
         return None
     array = floats("times", times, (rows,))
     if (np.diff(array) <= 0).any():
-        raise ValueError("times must ascend")
+        raise InvalidInput("times must ascend")
     return array
 
 
@@ -138,14 +151,18 @@ def steps_of(
 ) -> _core.Steps:
     """others: commands of actuators that the steps do not name"""
     if isinstance(steps, (str, os.PathLike)):
+        named_file(name, steps)
         if times is not None:
-            raise ValueError("times: a file has its own, in column t_s")
+            raise InvalidInput("times: a file has its own, in column t_s")
         return _core.Steps.of_file(robot._core, os.fspath(steps), [f"{key}={v}" for key, v in others.items()])
     rows: ArrayLike = steps  # type: ignore[assignment]
     if isinstance(steps, Sequence) and steps and isinstance(steps[0], Mapping):
-        rows = [robot._actuation({**others, **step}, {}) for step in steps]  # type: ignore[dict-item]
+        for i, step in enumerate(steps):
+            if not isinstance(step, Mapping):
+                raise InvalidInput(f"{name}[{i}] must be a dictionary as the steps before it, not {shown(step)}")
+        rows = [robot._actuation(step, others) for step in steps]
     elif others:
-        raise ValueError("commands: rows of an array name every actuator")
+        raise InvalidInput("commands: rows of an array name every actuator")
     table = floats(name, rows, (None, len(robot.actuators)))
     called = "the path" if name == "steps" else "the gait"
     return _core.Steps.of_rows(robot._core, table, times_of(times, len(table)), called)
@@ -168,8 +185,9 @@ def waypoints_of(
     """And what they are called."""
     name = "the path"
     if isinstance(path, (str, os.PathLike)):
+        named_file("path", path)
         if times is not None:
-            raise ValueError("times: a file of waypoints has its own, in column t_s")
+            raise InvalidInput("times: a file of waypoints has its own, in column t_s")
         name = os.fspath(path)
         places = _core.MarkerPath.of_file(robot._core, name, marker or "")
     else:
@@ -185,20 +203,20 @@ def _marker_path(
     if not isinstance(path, Mapping):
         if marker is None:
             if len(robot.markers) != 1:
-                raise ValueError(f"marker: the robot has {len(robot.markers)} markers; say whose path it is")
+                raise InvalidInput(f"marker: the robot has {len(robot.markers)} markers; say whose path it is")
             marker = robot.markers[0]
         path = {marker: path}
     arrays = [floats(f"path: {name}", values, (None, 3), nan=True) for name, values in path.items()]
     if not arrays or any(len(array) != len(arrays[0]) for array in arrays):
-        raise ValueError("path: every marker needs as many places as the others, at least one")
+        raise InvalidInput("path: every marker needs as many places as the others, at least one")
     axes: list[tuple[bool, bool, bool]] = []
     for name, array in zip(path, arrays):
         missing: NDArray[np.bool_] = np.isnan(array)
         if (missing.any(axis=0) != missing.all(axis=0)).any():
-            raise ValueError(f"path: {name}: a coordinate counts at every waypoint or (all NaN) at none")
+            raise InvalidInput(f"path: {name}: a coordinate counts at every waypoint or (all NaN) at none")
         x, y, z = (not missing[:, axis].all() for axis in range(3))
         if not (x or y or z):
-            raise ValueError(f"path: {name}: no coordinate counts")
+            raise InvalidInput(f"path: {name}: no coordinate counts")
         axes.append((bool(x), bool(y), bool(z)))
     targets = np.ascontiguousarray(np.nan_to_num(np.stack(arrays, axis=1)))
     return _core.MarkerPath.of_targets(robot._core, list(path), targets, axes, times_of(times, len(targets)))

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property
 from html import escape
 from typing import TYPE_CHECKING, Any
@@ -12,10 +12,13 @@ from numpy.typing import NDArray
 
 from . import _core, neighbours
 from ._arrays import Floats
+from ._core import InvalidInput
 from ._core import Shape as CoreShape
+from ._kinds import nearest, shown
 from ._measures import ActuatorState, Contact, Deformation, Fibre, Layer, MagneticLoad, Reaction, SelfOverlap
 from ._of_robot import parsed
 from ._saving import Saving
+from ._warning import warn
 
 if TYPE_CHECKING:
     import meshio
@@ -38,6 +41,12 @@ class NotConverged(RuntimeError):
         return type(self), (str(self.args[0]), self.shape)
 
 
+class UnknownMarker(InvalidInput, KeyError):
+    """As a mapping raises it, so that `in` and `get` find out."""
+
+    __str__ = ValueError.__str__
+
+
 class Views(Mapping[str, Floats]):
     """Markers by name: (3,) arrays [mm]."""
 
@@ -48,8 +57,7 @@ class Views(Mapping[str, Floats]):
     def __getitem__(self, name: str) -> Floats:
         place = self._places.get(name)
         if place is None:
-            self._core.robot.marker(name)  # raises with the nearest name
-            raise KeyError(name)
+            raise UnknownMarker(f"no marker {shown(name)}{nearest(str(name), list(self._places))}")
         return np.array(self._core.marker(place))
 
     def __iter__(self) -> Iterator[str]:
@@ -216,35 +224,44 @@ class Shape(Saving[CoreShape]):
         return SelfOverlap(points, deepest, np.array(at))
 
     @cached_property
+    def _findings(self) -> list[tuple[int, bool, str]]:
+        return self._core.findings()
+
+    @property
+    def findings(self) -> list[str]:
+        """What `softkin fk` prints about a shape, a line each: strains, stresses, reactions, contacts, warnings."""
+        return [text for _, _, text in self._findings]
+
+    @property
+    def warnings(self) -> list[str]:
+        """Findings that are probably not meant: inverted elements, a shape that passes through itself, an unstable
+        equilibrium, ... `solve` and `inverse` of a robot, `path`, `follow` and `walk` raise them as SoftkinWarning."""
+        return [_warning_text(text) for _, is_warning, text in self._findings if is_warning]
+
+    @cached_property
     def report(self) -> dict[str, Any]:
         """What `softkin fk --report` writes: docs/formats.md."""
         return parsed(self._core.report())
 
     def to_meshio(self) -> meshio.Mesh:
-        """A meshio.Mesh of it, with displacements, strains and stresses; needs meshio."""
-        return neighbours.to_meshio(self.positions, self._robot._blocks(), *self._fields())
+        """A meshio.Mesh of it, with the arrays of points and cells that the .vtu of `save` has; needs meshio."""
+        return neighbours.to_meshio(*self._content())
 
     def to_pyvista(self) -> pyvista.UnstructuredGrid:
-        """A pyvista.UnstructuredGrid of it, with displacements, strains and stresses; needs PyVista."""
-        robot = self._robot
-        return neighbours.to_pyvista(self.positions, robot._blocks(), *self._fields(), robot.region_names)
+        """A pyvista.UnstructuredGrid of it, with the cells and arrays of the .vtu that `save` writes; needs PyVista."""
+        return neighbours.to_pyvista(*self._content())
 
-    def _fields(self) -> tuple[neighbours.Fields, neighbours.Fields]:
-        """Of the vertices and of the elements, with the names of the .vtu that `save` writes."""
-        deformation = self.deformation
-        points = {"displacement_mm": self.displacements}
-        elements: dict[str, NDArray[Any]] = {
-            "volume_ratio": deformation.volume_ratio,
-            "principal_strain_max": deformation.strain[:, 0],
-            "principal_strain_min": deformation.strain[:, 2],
-            "region": self._robot.element_regions,
-        }
-        if len(deformation.von_mises_MPa):
-            elements["von_mises_MPa"] = deformation.von_mises_MPa
-            points["reaction_N"] = self.vertex_reactions
-        if len(self.contact_pressure_kPa):
-            points["contact_pressure_kPa"] = self.contact_pressure_kPa
-        return points, elements
+    def _content(self) -> tuple[Floats, neighbours.Blocks, neighbours.Content]:
+        """The points, cells and arrays of the .vtu that `save` writes; copies, which outlive the shape."""
+        core = self._core.content()
+        blocks = self._robot._blocks()
+        if len(core.triangles):
+            blocks.append(("triangle", core.triangles))
+        whole: dict[str, NDArray[Any]] = {name: np.array([value]) for name, value in core.constants}
+        for number, name in enumerate(core.region_names):
+            whole[f"region_{name}"] = np.array([number], dtype=np.int32)
+        cells = {**core.cell_data, "region": core.cell_regions}
+        return np.array(self.positions), blocks, neighbours.Content(core.point_data, cells, {**whole, **core.arrays})
 
     def _core_shape(self) -> CoreShape:
         return self._core
@@ -271,6 +288,24 @@ class Shape(Saving[CoreShape]):
         asked = ", ".join(f"{info.name}={info.command_text(value)}" for info, value in commands)
         places = ", ".join(f"{name} at {_point(place)} mm" for name, place in self.markers.items())
         return f"<softkin.Shape {asked or 'at rest'}: {self.status}{'; ' + places if places else ''}>"
+
+
+def _warning_text(line: str) -> str:
+    return line.removeprefix("warning: ")
+
+
+def warn_of(findings: Iterable[tuple[int, bool, str]], raised: set[int] | None = None, where: str = "") -> None:
+    """Raises what is to be warned of as SoftkinWarning.
+
+    raised  kinds that were raised before, which are not raised again
+    where   before the text: "step 3: "
+    """
+    for kind, is_warning, text in findings:
+        if not is_warning or (raised is not None and kind in raised):
+            continue
+        if raised is not None:
+            raised.add(kind)
+        warn(where + _warning_text(text))
 
 
 def _point(place: Floats) -> str:

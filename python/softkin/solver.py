@@ -9,6 +9,7 @@ from functools import lru_cache, wraps
 from typing import Any, ClassVar, NamedTuple, ParamSpec, TypeVar
 
 from . import _core
+from ._core import InvalidInput
 from ._warning import warn
 
 __all__ = ["Progress", "Solver"]
@@ -38,7 +39,7 @@ class Solver:
 
     def __post_init__(self) -> None:
         if self.tolerance_mm is not None and not self.tolerance_mm > 0:
-            raise ValueError(f"the tolerance must be a length > 0 in mm, not {self.tolerance_mm}")
+            raise InvalidInput(f"the tolerance must be a length > 0 in mm, not {self.tolerance_mm}")
         method, tolerance_mm, *others = astuple(self)
         object.__setattr__(self, "_options", _core.SolveOptions(method, tolerance_mm or 0.0, *others))
 
@@ -84,7 +85,7 @@ def value_of(solver: Solver | str) -> Solver:
     if isinstance(solver, Solver):
         return solver
     if not isinstance(solver, str):
-        raise TypeError(f"solver must be a softkin.Solver or a method's name, not {type(solver).__name__}")
+        raise InvalidInput(f"solver must be a softkin.Solver or a method's name, not {type(solver).__name__}")
     return _named(solver)
 
 
@@ -99,11 +100,11 @@ def options_of(
     """With what is asked of one call; published: may it stop as published?"""
     options = (solver if type(solver) is Solver else value_of(solver))._options
     if options.as_published and not published:
-        raise ValueError("as_published is for solve and path")
+        raise InvalidInput("as_published is for solve and path")
     if elapsed_s is None and beyond is None and budget_s is None:
         return options
     if beyond is not None and not beyond > 0:
-        raise ValueError(f"beyond must be a volume or length > 0 over that at rest, not {beyond}")
+        raise InvalidInput(f"beyond must be a volume or length > 0 over that at rest, not {beyond}")
     return options.of_call(elapsed_s, beyond, budget_s)
 
 
@@ -138,4 +139,5 @@ def takes_old(function: Callable[P, R]) -> Callable[P, R]:
             return function(*args, **given)
         return function(*args, **keywords)
 
+    setattr(taking, "_old_keywords", names)
     return taking

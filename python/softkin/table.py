@@ -9,6 +9,8 @@ import numpy as np
 
 from . import _core
 from ._arrays import Floats
+from ._core import InvalidInput
+from ._kinds import nearest
 
 if TYPE_CHECKING:
     import pandas
@@ -39,6 +41,8 @@ class Table:
 
     def __getitem__(self, column: str) -> Floats:
         """A column of numbers; NaN where there is none."""
+        if column not in self.columns:
+            raise InvalidInput(f"there is no column {column!r}{nearest(column, self.columns)}")
         place = self.columns.index(column)
         values = [row[place] for row in self.rows]
         return np.array([np.nan if value is None else float(value) for value in values])

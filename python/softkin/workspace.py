@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from . import _core
 from ._arrays import Floats, Indices
 from ._compiled import Compiled
+from ._core import InvalidInput
 from ._files import PathLike, ending, optional
 from ._of_robot import Found, parsed
 
@@ -159,6 +160,12 @@ def sampled(
     options: _core.SolveOptions,
     threads: int,
 ) -> _core.Workspace:
+    needed = 8.0 * samples * (2 * len(robot.actuators) + 3 * len(robot.markers) + 4)
+    if needed > (free := _core.free_memory_bytes()):
+        raise InvalidInput(
+            f"samples: {samples} take about {_core.memory_text(needed)} of memory, and {_core.memory_text(free)} are free: "
+            "take fewer"
+        )
     bar: _Bar | None = None
     done = 0
 

@@ -7,6 +7,7 @@
 
 #include <softkin/io/table/settings.hpp>
 #include <softkin/model/names.hpp>
+#include <softkin/runs/body_surface.hpp>
 
 #include "bindings.hpp"
 #include "convert.hpp"
@@ -131,6 +132,9 @@ void bind_robot(nb::module_& module) {
           nb::rv_policy::automatic)
       .def_prop_ro(
           "prisms", [](const Robot& r) { return cells_out(r.model().elements.prisms); }, nb::rv_policy::automatic)
+      .def_prop_ro(
+          "surface", [](const Robot& r) { return cells_out(runs::body_surface(r.model()).triangles); },
+          nb::rv_policy::automatic)
       .def_prop_ro(
           "element_regions",
           [](const Robot& r) {

@@ -1,3 +1,4 @@
+#include <filesystem>
 #include <softkin/core/error.hpp>
 #include <softkin/core/target.hpp>
 #include <softkin/core/version.hpp>
@@ -9,6 +10,8 @@ namespace nb = nanobind;
 
 NB_MODULE(_core, module) {
   using namespace softkin;
+  // objects that other libraries still hold when Python ends, such as a plot's, are nothing that a user can mend
+  nb::set_leak_warnings(false);
   module.doc() = "What softkin does in C++; the public interface is the package softkin.";
   module.attr("version") = version();
   module.attr("instruction_set") = name_of(target());
@@ -17,6 +20,15 @@ NB_MODULE(_core, module) {
   module.attr("instruction_sets_here") = nb::tuple(others);
   nb::exception<InvalidInput>(module, "InvalidInput", PyExc_ValueError).doc() =
       "Input that softkin refuses: one sentence that begins with where it stands.";
+  nb::register_exception_translator(
+      [](const std::exception_ptr& thrown, void*) {
+        try {
+          std::rethrow_exception(thrown);
+        } catch (const std::filesystem::filesystem_error& error) {
+          throw InvalidInput({error.path1().string()}, error.code().message());
+        }
+      },
+      nullptr);
   nb::module_::import_("atexit").attr("register")(nb::cpp_function([] {
     const nb::gil_scoped_release released;
     python::Abandoned::join();

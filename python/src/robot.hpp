@@ -8,6 +8,9 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <string>
+#include <tuple>
+#include <vector>
 
 #include "source.hpp"
 
@@ -96,5 +99,9 @@ class Shape : public std::enable_shared_from_this<Shape> {
   mutable runs::StepRecord record_;
 };
 using ShapePtr = std::shared_ptr<Shape>;
+
+/// A line about a shape, as the command prints it: its kind, whether it is a warning, its text.
+using FindingOut = std::tuple<std::size_t, bool, std::string>;
+[[nodiscard]] std::vector<FindingOut> finding_lines_of(const Model& model, const runs::StepRecord& record);
 
 }  // namespace softkin::python

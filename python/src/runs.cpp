@@ -62,6 +62,10 @@ class Runner {
     if (const auto* stopped = run().stopped()) return shape_of(stopped->record, stopped->state.positions);
     return shape_of(run().last(), run().last_positions());
   }
+  [[nodiscard]] std::vector<FindingOut> findings() {
+    if (const auto* stopped = run().stopped()) return finding_lines_of(model(), stopped->record);
+    return finding_lines_of(model(), run().last());
+  }
   virtual void finish() { run().finish(); }
   [[nodiscard]] virtual std::string report() {
     std::string text;
@@ -260,6 +264,7 @@ nb::class_<Run> bind_runner(nb::module_& module, const char* name, const char* w
       .def_prop_ro("done", &Run::done)
       .def_prop_ro("remark", &Run::remark, "What was not there as it was written, of a run that goes on; else ''.")
       .def("next", &Run::next)
+      .def("findings", &Run::findings, "Lines about the last shape, as Shape.findings().")
       .def("finish", &Run::finish)
       .def("save_plot", &Run::save_plot, nb::arg("path"))
       .def("report", &Run::report);

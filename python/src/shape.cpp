@@ -11,6 +11,7 @@
 #include <softkin/model/layer.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/chamber_json.hpp>
+#include <softkin/runs/finding_text.hpp>
 #include <softkin/runs/reports.hpp>
 #include <softkin/runs/shape_files.hpp>
 
@@ -32,6 +33,13 @@ const runs::StepRecord& Shape::record() const {
     record_.self_overlap = robot_->overlaps().in(positions());
   });
   return record_;
+}
+
+std::vector<FindingOut> finding_lines_of(const Model& model, const runs::StepRecord& record) {
+  std::vector<FindingOut> lines;
+  for (runs::FindingLine& line : runs::finding_lines(model, record, "solver=softkin.Solver(stable=True)"))
+    lines.emplace_back(line.kind, line.is_warning, std::move(line.text));
+  return lines;
 }
 
 namespace {
@@ -192,7 +200,42 @@ nb::bytes picture_of(const Shape& shape, const std::vector<double>& view, const 
   return nb::bytes(bytes.data(), bytes.size());
 }
 
+namespace {
+
+/// An array over points or cells: (n,) or (n, components).
+nb::object array_of_field(const Field& field) {
+  const std::size_t columns = field.components, rows = field.values.size() / columns;
+  if (columns == 1) return nb::cast(list_of(field.values.data(), rows));
+  return nb::cast(table_of(field.values.data(), rows, columns));
+}
+
+/// By name.
+nb::dict arrays_of_fields(const std::vector<Field>& fields) {
+  nb::dict arrays;
+  for (const Field& field : fields) arrays[nb::str(field.name.c_str())] = array_of_field(field);
+  return arrays;
+}
+
+using ArraysByName = nb::typed<nb::dict, nb::str, Array<double>>;
+
+void bind_content(nb::module_& module) {
+  nb::class_<VtuContent>(module, "ShapeContent", "What the .vtu of a shape holds.")
+      .def_prop_ro("point_data", [](const VtuContent& c) -> ArraysByName { return arrays_of_fields(c.point_fields); })
+      .def_prop_ro("cell_data", [](const VtuContent& c) -> ArraysByName { return arrays_of_fields(c.cell_fields); })
+      .def_prop_ro(
+          "cell_regions", [](const VtuContent& c) { return list_of(c.cell_regions.data(), c.cell_regions.size()); },
+          nb::rv_policy::automatic)
+      .def_ro("region_names", &VtuContent::region_names)
+      .def_ro("constants", &VtuContent::constants)
+      .def_prop_ro("arrays", [](const VtuContent& c) -> ArraysByName { return arrays_of_fields(c.arrays); })
+      .def_prop_ro(
+          "triangles", [](const VtuContent& c) { return cells_out(c.triangles); }, nb::rv_policy::automatic);
+}
+
+}  // namespace
+
 void bind_shape(nb::module_& module) {
+  bind_content(module);
   nb::class_<Shape> type(module, "Shape", "An equilibrium of a robot.");
   type.def_prop_ro("robot", [](const Shape& s) { return s.robot(); })
       .def_prop_ro(
@@ -226,6 +269,17 @@ void bind_shape(nb::module_& module) {
            [](const Shape& s) {
              const nb::gil_scoped_release released;
              (void)s.record();
+           })
+      .def("findings",
+           [](const Shape& s) {
+             const nb::gil_scoped_release released;
+             return finding_lines_of(s.model(), s.record());
+           })
+      .def("content",
+           [](const Shape& s) {
+             const nb::gil_scoped_release released;
+             return runs::shape_content(s.model(), s.found().state, s.deformation(),
+                                        s.found().report.status == Status::converged);
            })
       .def(
           "save_vtu",

@@ -39,7 +39,7 @@ def test_paths(examples: Path, command: str, tmp_path: Path) -> None:
 
 
 def test_wrong_arguments(tmp_path: Path) -> None:
-    with pytest.raises(ValueError, match="files must be a list of 2 files or more"):
+    with pytest.raises(ValueError, match="files must be a list, not 'one.json'"):
         softkin.compare.reports("one.json")
     with pytest.raises(ValueError, match="poses need turn"):
         softkin.compare.reports(["a.json", "b.json"], poses=[90])

@@ -250,7 +250,7 @@ def test_parts_that_stick_out_add_to_the_body():
     ("given", "told"),
     [
         ({"edge_length": 0}, "edge_length=0: give a length in mm, > 0"),
-        ({"edge_length": 3, "tolerance": float("nan")}, "tolerance=nan"),
+        ({"edge_length": 3, "tolerance": float("nan")}, "tolerance must be a finite number, not nan"),
         ({"edge_length": 3, "unit": "parsec"}, "unit='parsec': it is one of mm, cm, m, um, in"),
         ({"edge_length": 3, "backend": "magic"}, "backend='magic': it is one of tetwild, gmsh"),
         ({"edge_length": 3, "chambers": {"body": CAVITY}}, "'body' names two surfaces"),

@@ -97,7 +97,7 @@ def test_pyvista_round_trip(tmp_path):
     same(VolumeMesh.from_pyvista(pyvista.read(tmp_path / "a.vtu")), example())
     said = run_softkin("mesh", "info", tmp_path / "a.vtu")
     assert said.returncode == 0 and "body         3D  7894 elements" in said.stdout, said.stdout + said.stderr
-    with pytest.raises(InvalidInput, match="PolyData is no pyvista.UnstructuredGrid"):
+    with pytest.raises(InvalidInput, match="must be a pyvista.UnstructuredGrid, not a PolyData"):
         VolumeMesh.from_pyvista(pyvista.Sphere())
 
 

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import pickle
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -56,13 +59,56 @@ def test_regions_there_and_back(name: str, examples: Path) -> None:
 def test_regions_of_a_shape_keep_their_names(robot: softkin.Robot) -> None:
     pyvista = pytest.importorskip("pyvista", reason="PyVista is not installed")
     grid = robot.solve().to_pyvista()
-    assert set(grid.field_data.keys()) == {f"region_{name}" for name in robot.region_names}
+    assert {f"region_{name}" for name in robot.region_names} <= set(grid.field_data.keys())
     middle = {"regions": {"middle": np.arange(40)}, **DESCRIPTION}
     shape = softkin.Robot(*block((6, 2, 2), (60, 20, 20)), **middle).solve()
     again = softkin.Robot.from_pyvista(shape.to_pyvista(), **DESCRIPTION)
     assert again.region_names == ["middle"] and (again.element_regions[:40] == 0).all()
-    with pytest.raises(softkin.InvalidInput, match="PolyData is no pyvista.UnstructuredGrid"):
+    with pytest.raises(softkin.InvalidInput, match="must be a pyvista.UnstructuredGrid, not a PolyData"):
         softkin.Robot.from_pyvista(pyvista.Sphere(), **DESCRIPTION)
+
+
+def test_a_grid_has_what_the_vtu_has(robot: softkin.Robot, tmp_path: Path) -> None:
+    """As another reader reads it: cells, arrays of points, cells and the whole; with obstacles and a layer, too."""
+    pyvista = pytest.importorskip("pyvista", reason="PyVista is not installed")
+    ball = {"name": "ball", "sphere": {"center": (30, 10, 30), "radius": 5}}
+    top = {"name": "skin", "region": "top", "thickness": 0.1, "youngs_modulus": 1, "poisson_ratio": 0.3}
+    vertices, tetrahedra = block((6, 2, 2), (60, 20, 20))
+    faces = [t[list(c)] for t in tetrahedra for c in ((0, 2, 1), (0, 1, 3), (1, 2, 3), (0, 3, 2)) if (vertices[t[list(c)], 2] == 20).all()]
+    touching = softkin.Robot(
+        vertices, tetrahedra, order=2, regions={"top": np.array(faces)}, layers=[top], contact={}, obstacles=[ball], **DESCRIPTION
+    )
+    for number, shape in enumerate((robot.solve(air1=1.3), touching.solve())):
+        file = tmp_path / f"{number}.vtu"
+        shape.save(file)
+        grid, read = shape.to_pyvista(), pyvista.read(file)
+        np.testing.assert_array_equal(grid.points, read.points)
+        np.testing.assert_array_equal(grid.celltypes, read.celltypes)
+        np.testing.assert_array_equal(grid.cells, read.cells)
+        for ours, theirs in ((grid.point_data, read.point_data), (grid.cell_data, read.cell_data), (grid.field_data, read.field_data)):
+            assert sorted(ours.keys()) == sorted(theirs.keys())
+            for name in ours.keys():
+                np.testing.assert_array_equal(ours[name], theirs[name], err_msg=name)
+        assert {"principal_stress_MPa", "converged"} <= set(grid.cell_data.keys()) and "support" in grid.point_data.keys()
+        meshio = pytest.importorskip("meshio", reason="meshio is not installed")
+        mesh = shape.to_meshio()
+        assert sorted(mesh.point_data) == sorted(grid.point_data.keys()) and sorted(mesh.cell_data) == sorted(grid.cell_data.keys())
+        assert meshio.read(file).points.shape == mesh.points.shape
+
+
+def test_a_script_ends_without_a_word(tmp_path: Path, robot: softkin.Robot) -> None:
+    """What other libraries hold until Python ends, such as a grid of the module, is no leak to tell of."""
+    pytest.importorskip("pyvista", reason="PyVista is not installed")
+    script = tmp_path / "script.py"
+    script.write_text(
+        "import sys, pickle, softkin\n"
+        f"robot = pickle.loads(open({str(tmp_path / 'robot')!r}, 'rb').read())\n"
+        "shape = robot.solve()\ngrid = shape.to_pyvista()\nsys.kept = [robot, shape, shape.positions]\n"
+        "class Loop:\n    pass\nloop = Loop()\nloop.self, loop.shape = loop, shape\n"
+    )
+    (tmp_path / "robot").write_bytes(pickle.dumps(robot))
+    done = subprocess.run([sys.executable, str(script)], capture_output=True, text=True)
+    assert (done.returncode, done.stderr) == (0, "")
 
 
 def test_groups_of_gmsh_without_names() -> None:

@@ -78,7 +78,7 @@ def test_refusals(robot: softkin.Robot, tmp_path: Path) -> None:
         robot.to_html(tmp_path / "page.htm")
     with pytest.raises(softkin.InvalidInput, match="another robot"):
         robot.to_html(shapes=beam(4, 5).solve())
-    with pytest.raises(TypeError, match="of type Shape, not float"):
+    with pytest.raises(TypeError, match=r"shapes\[0\] must be a softkin.Shape, not 1.0"):
         robot.to_html(shapes=[1.0])  # type: ignore[list-item]
     assert list(tmp_path.iterdir()) == []
 

@@ -178,7 +178,7 @@ def test_other_numbers_of_a_scene(examples: Path) -> None:
     path = f"actuators.{first}.range"
     assert softkin.load(scene, changes={path: (0.9, 1.0)}).ranges.tolist()[0] == [0.9, 1.0]
     assert softkin.load(scene, changes={f"{path}.1": 0.95}).ranges.tolist()[0][0] == 0.95
-    with pytest.raises(softkin.InvalidInput, match="changes 'materals.1.density=1.0': there is no 'materals'.*'materials'"):
+    with pytest.raises(softkin.InvalidInput, match="changes 'materals.1.density=1': there is no 'materals'.*'materials'"):
         softkin.load(scene, changes={"materals.1.density": 1})
 
 

@@ -345,7 +345,7 @@ def test_budget_and_start_from_a_file(robot: softkin.Robot, shape: softkin.Shape
     answer = robot.inverse(tip=shape["tip"], budget_s=1e-9)
     assert answer.status == "not converged" and answer.reason == "the budget of 1e-09 s was spent"
     for wrong in (0, -1, float("nan")):
-        with pytest.raises(softkin.InvalidInput, match="a budget must be more than 0 s"):
+        with pytest.raises(softkin.InvalidInput, match="a budget must be more than 0 s|budget_s must be a finite number"):
             robot.solve(budget_s=wrong)
     with pytest.raises(softkin.InvalidInput, match="no such file"):
         robot.solve(start=str(tmp_path / "none.vtu"))

@@ -32,13 +32,13 @@ def test_it_is_a_value() -> None:
 
 def test_wrong_values(small: softkin.Robot) -> None:
     for tolerance in (0, -1, float("nan")):
-        with pytest.raises(ValueError, match="the tolerance must be a length > 0 in mm"):
+        with pytest.raises(ValueError, match="the tolerance must be a length > 0 in mm|tolerance_mm must be a finite number"):
             Solver(tolerance_mm=tolerance)
     with pytest.raises(softkin.InvalidInput, match="solver must be 'newton' or 'local-global', not 'newtn'"):
         Solver("newtn")
     with pytest.raises(softkin.InvalidInput, match="solver must be 'newton' or 'local-global', not 'newtn'"):
         small.solve(solver="newtn")
-    with pytest.raises(TypeError, match="solver must be a softkin.Solver or a method's name, not int"):
+    with pytest.raises(TypeError, match="solver must be a softkin.Solver or a text, not 3"):
         small.solve(solver=3)  # type: ignore[arg-type]
     with pytest.raises(softkin.InvalidInput, match="max_iterations must be at least 1, not 0"):
         Solver(max_iterations=0)

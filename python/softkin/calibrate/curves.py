@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 
 from .. import _core
 from .._arrays import Floats
 from .._compiled import Compiled
-from .._files import PathLike, listed
+from .._core import InvalidInput
+from .._files import PathLike, listed, write
 from ..table import Table
 from .fits import Fit
 
@@ -101,7 +101,7 @@ class Curve(Fit[_core.CurveCalibration]):
 
     def save(self, path: PathLike) -> None:
         """For key 'curve' of a scene's actuator: a .yaml."""
-        Path(path).write_text(self._core.file)
+        write(path, self._core.file)
 
 
 def _volume(name: str, volume: float | str) -> float:
@@ -135,13 +135,13 @@ def pressure(
     threads          of predict's solves; 0: as many as the machine has
     """
     if scale not in (None, "absolute", "gauge"):
-        raise ValueError(f"scale must be 'absolute' or 'gauge', not {scale!r}")
+        raise InvalidInput(f"scale must be 'absolute' or 'gauge', not {scale!r}")
     if robot is None:
         for name, wants in (("predict", predict), ("actuator", actuator is not None)):
             if wants:
-                raise ValueError(f"{name} needs robot=, whose chamber it is")
+                raise InvalidInput(f"{name} needs robot=, whose chamber it is")
         if chamber_volume is None:
-            raise ValueError("chamber_volume at rest is not known: give it, or robot=, whose mesh has it")
+            raise InvalidInput("chamber_volume at rest is not known: give it, or robot=, whose mesh has it")
     given = _core.SyringeTests()
     given.files, given.scale, given.actuator = listed(tests), scale or "", actuator or ""
     if robot is not None:
@@ -182,13 +182,13 @@ def dea(
     """
     files = listed(tests)
     if bool(files) == (law is not None):
-        raise ValueError("give either tests or law")
+        raise InvalidInput("give either tests or law")
     if law not in (None, "neo-hookean", "gent"):
-        raise ValueError(f"law must be 'neo-hookean' or 'gent', not {law!r}")
+        raise InvalidInput(f"law must be 'neo-hookean' or 'gent', not {law!r}")
     if loading not in (None, "equal-biaxial", "uniaxial", "constrained"):
-        raise ValueError(f"loading must be 'equal-biaxial', 'uniaxial' or 'constrained', not {loading!r}")
+        raise InvalidInput(f"loading must be 'equal-biaxial', 'uniaxial' or 'constrained', not {loading!r}")
     if prestretch_across is not None and loading != "constrained":
-        raise ValueError("prestretch_across is for loading='constrained'")
+        raise InvalidInput("prestretch_across is for loading='constrained'")
     properties = (
         shear_modulus_MPa,
         permittivity,

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
 
 from .. import _core
-from .._files import PathLike, listed, optional
+from .._core import InvalidInput
+from .._files import PathLike, listed, optional, write
 from .._warning import warn
 from ..table import Table
 from .fits import Fit
@@ -34,13 +34,13 @@ class Calibration(Fit[_core.Calibration]):
     def save(self, path: PathLike) -> None:
         """The materials, to paste into a scene: a .yaml."""
         if self.failure:
-            raise ValueError(f"there is nothing to save: {self.failure}")
-        Path(path).write_text(self.materials)
+            raise InvalidInput(f"there is nothing to save: {self.failure}")
+        write(path, self.materials)
 
     def save_plot(self, path: PathLike) -> None:
         """Measured and fitted: an .svg."""
         if self.failure:
-            raise ValueError(f"there is nothing to plot: {self.failure}")
+            raise InvalidInput(f"there is nothing to plot: {self.failure}")
         super().save_plot(path)
 
 
@@ -81,18 +81,18 @@ def material(
     progress             called with the share that is done, now and then
     """
     if formulation not in (None, "physical", "target-shape"):
-        raise ValueError(f"formulation must be 'physical' or 'target-shape', not {formulation!r}")
+        raise InvalidInput(f"formulation must be 'physical' or 'target-shape', not {formulation!r}")
     if grip not in ("clamped", "sliding"):
-        raise ValueError(f"grip must be 'clamped' or 'sliding', not {grip!r}")
+        raise InvalidInput(f"grip must be 'clamped' or 'sliding', not {grip!r}")
     if law not in ("neo-hookean", "corotational", "st-venant-kirchhoff"):
-        raise ValueError(f"law must take E and nu: neo-hookean, corotational or st-venant-kirchhoff, not {law!r}")
+        raise InvalidInput(f"law must take E and nu: neo-hookean, corotational or st-venant-kirchhoff, not {law!r}")
     for name, value in (("width_mm", width_mm), ("height_mm", height_mm)):
         if not value > 0:
-            raise ValueError(f"{name} must be greater than 0 mm, not {value}")
+            raise InvalidInput(f"{name} must be greater than 0 mm, not {value}")
     if not -1 < poisson_ratio < 0.5:
-        raise ValueError(f"poisson_ratio must be greater than -1 and less than 0.5, not {poisson_ratio}")
+        raise InvalidInput(f"poisson_ratio must be greater than -1 and less than 0.5, not {poisson_ratio}")
     if not 0 < stiffer_shape_ratio <= 1:
-        raise ValueError(f"stiffer_shape_ratio must be greater than 0 and at most 1, not {stiffer_shape_ratio}")
+        raise InvalidInput(f"stiffer_shape_ratio must be greater than 0 and at most 1, not {stiffer_shape_ratio}")
     given = _core.Specimens()
     given.file = os.fspath(specimens)
     given.twist_file = optional(twist)
@@ -126,7 +126,7 @@ def tensile(
     region                    of the scene
     """
     if law not in (None, "linear", "neo-hookean", "mooney-rivlin", "yeoh"):
-        raise ValueError(f"law must be linear, neo-hookean, mooney-rivlin or yeoh, not {law!r}")
+        raise InvalidInput(f"law must be linear, neo-hookean, mooney-rivlin or yeoh, not {law!r}")
     core = _core.calibrate_tensile(
         os.fspath(test), poisson_ratio, linear_tolerance_percent, up_to or 0.0, law or "", region
     )
@@ -161,16 +161,16 @@ def relaxation(
     task = _core.RelaxationTask()
     task.tests, task.creep = listed(tests), listed(creep)
     if not task.tests and not task.creep:
-        raise ValueError("give tests, creep or both")
+        raise InvalidInput("give tests, creep or both")
     if law not in ("neo-hookean", "mooney-rivlin", "yeoh", "gent"):
-        raise ValueError(f"law must be neo-hookean, mooney-rivlin, yeoh or gent, not {law!r}")
+        raise InvalidInput(f"law must be neo-hookean, mooney-rivlin, yeoh or gent, not {law!r}")
     if not 0 < poisson_ratio < 0.5:
-        raise ValueError(f"poisson_ratio must be greater than 0 and less than 0.5, not {poisson_ratio}")
+        raise InvalidInput(f"poisson_ratio must be greater than 0 and less than 0.5, not {poisson_ratio}")
     for name, size in (("length_mm", length_mm), ("area_mm2", area_mm2)):
         if size is not None and not size > 0:
-            raise ValueError(f"{name} must be greater than 0, not {size}")
+            raise InvalidInput(f"{name} must be greater than 0, not {size}")
     if branches is not None and not 0 <= branches <= 12:
-        raise ValueError(f"branches must be from 0 to 12, not {branches}")
+        raise InvalidInput(f"branches must be from 0 to 12, not {branches}")
     task.law, task.constants, task.branches = law, dict(constants or {}), branches
     task.length_mm, task.area_mm2 = length_mm, area_mm2
     task.poisson_ratio, task.region = poisson_ratio, region

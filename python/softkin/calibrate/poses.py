@@ -8,7 +8,8 @@ from collections.abc import Callable, Mapping, Sequence
 import numpy as np
 
 from .. import _core
-from .._description import yaml_text
+from .._core import InvalidInput
+from .._description import changes_of
 from .._files import PathLike
 from ..robot import Robot, load
 from ..table import Table
@@ -111,7 +112,7 @@ def robot(
     raises     InvalidInput naming the file, line and column, or the number
     """
     if loss not in ("squares", "huber", "cauchy"):
-        raise ValueError(f"loss must be 'squares', 'huber' or 'cauchy', not {loss!r}")
+        raise InvalidInput(f"loss must be 'squares', 'huber' or 'cauchy', not {loss!r}")
     deviations = {
         "deviation_mm": deviation_mm,
         "deviation_kPa": deviation_kPa,
@@ -124,22 +125,22 @@ def robot(
     }
     for name, deviation in deviations.items():
         if deviation is not None and not deviation > 0:
-            raise ValueError(f"{name} must be greater than 0, not {deviation}")
+            raise InvalidInput(f"{name} must be greater than 0, not {deviation}")
     if match_within_mm is not None and not match_within_mm > 0:
-        raise ValueError(f"match_within_mm must be greater than 0, not {match_within_mm}")
+        raise InvalidInput(f"match_within_mm must be greater than 0, not {match_within_mm}")
     if outline_points < 1:
-        raise ValueError(f"outline_points must be at least 1, not {outline_points}")
+        raise InvalidInput(f"outline_points must be at least 1, not {outline_points}")
     if outline_within_mm is not None and not outline_within_mm > 0:
-        raise ValueError(f"outline_within_mm must be greater than 0, not {outline_within_mm}")
+        raise InvalidInput(f"outline_within_mm must be greater than 0, not {outline_within_mm}")
     if keep < 0:
-        raise ValueError(f"keep must be at least 0, not {keep}")
+        raise InvalidInput(f"keep must be at least 0, not {keep}")
     task = _core.PosesTask()
     task.scene, task.poses, task.loss = os.fspath(scene), os.fspath(poses), loss
     if isinstance(fit, Mapping):
         task.numbers = [_fitted_number(name, value) for name, value in fit.items()]
     else:
         task.numbers = list(fit)
-    task.changes = [f"{path}={yaml_text(value)}" for path, value in (changes or {}).items()]
+    task.changes = changes_of(changes)
     task.deviations = [deviation or 0 for deviation in deviations.values()]
     task.match_within_mm = match_within_mm or 0
     task.outlines = "" if outlines is None else os.fspath(outlines)

@@ -1,5 +1,8 @@
 """From surfaces (STL, OBJ, PLY) to volume meshes with named regions. docs/python_mesh.md tells more."""
 
+import sys as _sys
+
+from .._checks import guard as _guard
 from .errors import InvalidInput, MeshWarning
 from .files import check, convert, info
 from .generate import from_surfaces
@@ -30,3 +33,5 @@ __all__ = [
     "stacked",
     "write_stl",
 ]
+
+_guard(__all__, _sys.modules[__name__])

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from .. import _core
+from .._core import InvalidInput
 
 __all__ = ["check", "convert", "info"]
 
@@ -19,9 +20,9 @@ def _unit(file: PathLike, unit: str | None) -> str:
     if unit is None:
         return "mm"
     if Path(file).suffix in (".yaml", ".yml"):
-        raise ValueError("unit: a scene names its own unit")
+        raise InvalidInput("unit: a scene names its own unit")
     if unit not in UNITS:
-        raise ValueError(f"unit must be one of {', '.join(UNITS)}, not {unit!r}")
+        raise InvalidInput(f"unit must be one of {', '.join(UNITS)}, not {unit!r}")
     return unit
 
 
@@ -51,6 +52,6 @@ def convert(file: PathLike, output: PathLike, *, ascii: bool = False) -> dict[st
     ascii   a .msh as text
     """
     if ascii and Path(output).suffix != ".msh":
-        raise ValueError(f"ascii: only a .msh can be written as text, not {os.fspath(output)!r}")
+        raise InvalidInput(f"ascii: only a .msh can be written as text, not {os.fspath(output)!r}")
     told: dict[str, Any] = json.loads(_core.mesh_convert(os.fspath(file), os.fspath(output), ascii))
     return told

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from .._kinds import shown
 from .errors import InvalidInput
 from .surface_files import read_surface
 from .triangles import Surface
@@ -37,5 +38,5 @@ def as_surface(given: SurfaceLike, name: str) -> Surface:
         return Surface(given.points, given.cells_dict.get("triangle", np.empty((0, 3), dtype=int)), name).merged()
     raise InvalidInput(
         f"{name}: a surface is a file, a softkin.mesh.Surface, or a pair (vertices, triangles); not"
-        f" {type(given).__name__}"
+        f" {shown(given)}"
     )

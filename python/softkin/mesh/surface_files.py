@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 
+from .._files import write
 from .arrays import Array
 from .errors import InvalidInput
 from .triangles import Surface
@@ -79,7 +80,7 @@ def write_stl(path: str | Path, surface: Surface) -> None:
     facets = np.zeros(len(surface.triangles), dtype=_FACET)
     facets["normal"] = normals / np.where(lengths > 0, lengths, 1)
     facets["corners"] = surface.corners
-    Path(path).write_bytes(b"softkin, lengths in mm".ljust(80) + struct.pack("<I", len(facets)) + facets.tobytes())
+    write(path, b"softkin, lengths in mm".ljust(80) + struct.pack("<I", len(facets)) + facets.tobytes())
 
 
 _FACET = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])

@@ -170,6 +170,19 @@ std::string finding_text(const Model& model, const Finding& finding) {
   return std::visit(Telling{model}, finding);
 }
 
+std::vector<FindingLine> finding_lines(const Model& model, const StepRecord& record, const std::string& stable) {
+  std::vector<FindingLine> lines;
+  for (const Finding& finding : findings(model, record)) {
+    std::string text = finding_text(model, finding);
+    if (std::holds_alternative<finding::Unstable>(finding))
+      text += "; " + stable + " looks for the shape that it goes to";
+    if (std::holds_alternative<finding::UnstableWay>(finding)) text += "; " + stable + " looks for it";
+    const bool is_warning = text.starts_with("warning: ");
+    lines.push_back({finding.index(), is_warning, std::move(text)});
+  }
+  return lines;
+}
+
 void OverlapTally::add(std::size_t number, const StepRecord& record) {
   if (record.self_overlap.points == 0) return;
   numbers_.push_back(number);

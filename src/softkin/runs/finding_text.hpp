@@ -2,11 +2,25 @@
 
 #include <softkin/runs/findings.hpp>
 #include <string>
+#include <vector>
 
 namespace softkin::runs {
 
 /// What is told of a finding, a line.
 [[nodiscard]] std::string finding_text(const Model& model, const Finding& finding);
+
+/// A finding as it is shown to a user.
+struct FindingLine {
+  std::size_t kind = 0;     // index of the alternative of Finding: lines of one kind differ in numbers and names alone
+  bool is_warning = false;  // is it probably not what the user wants
+  std::string text;         // one line; of a warning it begins with "warning: "
+};
+
+/// All findings of a record in their order.
+///
+/// stable  what a user adds to find the shape that an unstable equilibrium goes to: "--stable"
+[[nodiscard]] std::vector<FindingLine> finding_lines(const Model& model, const StepRecord& record,
+                                                     const std::string& stable);
 
 /// "0.31 mm at (1.20, 0.00, 3.00) mm" of the deepest point of an overlap.
 [[nodiscard]] std::string depth_text(double deepest_mm, const Vec3& where);

@@ -154,8 +154,8 @@ void add_state(const Model& model, const State& state, VtuContent& content) {
 
 }  // namespace
 
-void write_shape(const fs::path& path, const Model& model, const State& state, const ElementDeformation& deformation,
-                 bool converged) {
+VtuContent shape_content(const Model& model, const State& state, const ElementDeformation& deformation,
+                         bool converged) {
   VtuContent content;
   const Points& positions = state.positions;
   content.points = positions;
@@ -181,7 +181,12 @@ void write_shape(const fs::path& path, const Model& model, const State& state, c
   add_layers(model, content);
   add_surroundings(model, content);
   add_state(model, state, content);
-  write_vtu(path, content);
+  return content;
+}
+
+void write_shape(const fs::path& path, const Model& model, const State& state, const ElementDeformation& deformation,
+                 bool converged) {
+  write_vtu(path, shape_content(model, state, deformation, converged));
 }
 
 State read_state(const fs::path& path, const Model& model) {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <softkin/io/mesh/vtk.hpp>
 #include <softkin/kinematics/goal.hpp>
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/model/model.hpp>
@@ -12,6 +13,9 @@ namespace softkin::runs {
 
 /// The shape with displacement [mm], volume ratio and principal strains [-], region, actuator, and whether the solve
 /// converged (1) or not (0); and what read_state() wants. deformation: of the state.
+[[nodiscard]] VtuContent shape_content(const Model& model, const State& state, const ElementDeformation& deformation,
+                                       bool converged);
+/// Writes shape_content() as a .vtu.
 void write_shape(const std::filesystem::path& path, const Model& model, const State& state,
                  const ElementDeformation& deformation, bool converged);
 
