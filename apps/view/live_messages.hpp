@@ -94,8 +94,8 @@ struct TargetAnswer {
 struct LiveShape {
   RequestId id = 0;  // that it answers; 0: none
   std::string status, remark;
-  Actuation commands;                        // m, of the shape
-  std::vector<std::optional<double>> loads;  // m: tension [N] or gauge pressure [kPa]; none: it has none
+  Actuation commands;                             // m, of the shape
+  std::vector<std::optional<double>> loads;       // m: tension [N] or gauge pressure [kPa]; none: it has none
   std::vector<std::optional<double>> measures{};  // m: over that at rest [-]; none where a page shows none
   std::vector<Vec3> markers;                      // [mm]
   int iterations = 0;

@@ -112,7 +112,8 @@ TEST_F(MapAnswers, HaveTheSlopesOfTheMap) {
 TEST(MeasureGradient, AgreesWithDifferences) {
   RobotSpec quadratic = chambers_beam(2);
   quadratic.mesh_options.quadratic = true;
-  for (const RobotSpec& spec : {robot_of_many_outputs(), quadratic, robot_with_bags({"bag"}), cable_beam(), dea_strip()}) {
+  for (const RobotSpec& spec :
+       {robot_of_many_outputs(), quadratic, robot_with_bags({"bag"}), cable_beam(), dea_strip()}) {
     const Model model = compile(spec);
     std::mt19937 random(4);
     std::uniform_real_distribution<double> any(-1, 1);
