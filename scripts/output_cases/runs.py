@@ -90,7 +90,8 @@ def fk_physical():
                       ("corotational", "youngs_modulus: 1, poisson_ratio: 0.3"),
                       ("neo-hookean", "youngs_modulus: 1, poisson_ratio: 0.49"),
                       ("mooney-rivlin", "c10: 0.15, c01: 0.03, bulk_modulus: 10"),
-                      ("yeoh", "c10: 0.2, c20: -0.01, c30: 0.002, poisson_ratio: 0.45")):
+                      ("yeoh", "c10: 0.2, c20: -0.01, c30: 0.002, poisson_ratio: 0.45"),
+                      ("ogden", "mu1: 0.15, alpha1: 2.5, mu2: -0.01, alpha2: -2, poisson_ratio: 0.45")):
         yield Case(f"fk {name}", [f"{run} --set air=1.3 --set tendon=0.95 --report r.json -o s.vtu"],
                    s.physical(materials=f"{{law: {name}, {law}}}"))
         yield Case(f"fk {name} order 2", [f"{run} --set air=1.2 --report r.json -o s.vtu"],

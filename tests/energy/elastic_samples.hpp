@@ -12,9 +12,6 @@ namespace softkin::energy {
 template <int K>
 using Nodes = Eigen::Matrix<double, K, 3>;
 
-inline constexpr Law all_laws[] = {Law::st_venant_kirchhoff, Law::corotational, Law::neo_hookean,
-                                   Law::mooney_rivlin,       Law::yeoh,         Law::gent};
-
 /// An element kind: K nodes, Q quadrature points.
 template <int K_, int Q_>
 struct Kind {
@@ -30,6 +27,11 @@ inline ElasticLaw sample_law(Law law) {
     e.mu = sample_mu;
     e.bulk = sample_lambda + 2 * sample_mu / 3;
     e.jm = 9;
+  } else if (law == Law::ogden) {
+    e.bulk = sample_lambda + 2 * sample_mu / 3;
+    e.ogden[0] = {0.3, 2.6};
+    e.ogden[1] = {-0.15, -1.7};
+    e.ogden[2] = {(2 * sample_mu - 0.3 * 2.6 - 0.15 * 1.7) / 5, 5};
   } else if (forbids_inversion(law)) {
     e.bulk = sample_lambda + 2 * sample_mu / 3;
     e.c01 = law == Law::mooney_rivlin ? 0.11 : 0;
@@ -97,8 +99,7 @@ void set_lane(ElasticBlock<K, Q>& block, int lane, const ElasticRest<K, Q>& rest
 }
 
 inline void set_law(LawBlock& block, const ElasticLaw& law) {
-  block = {law.law,       pack(law.mu),  pack(law.lambda), pack(law.c10), pack(law.c01),
-           pack(law.c20), pack(law.c30), pack(law.bulk),   pack(law.jm)};
+  for (int lane = 0; lane < lanes; ++lane) set_law(block, lane, law);
 }
 
 /// Eight elements at rest and the shapes that they now have.

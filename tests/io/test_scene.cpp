@@ -305,7 +305,8 @@ TEST(Scene, EveryLawByItsName) {
       {"youngs_modulus: 1, poisson_ratio: 0", Law::neo_hookean},
       {"law: mooney-rivlin, c10: 1, bulk_modulus: 9", Law::mooney_rivlin},
       {"law: yeoh, c10: 1, c30: 2, bulk_modulus: 9", Law::yeoh},
-      {"law: gent, shear_modulus: 1, jm: 30, poisson_ratio: 0.4", Law::gent}};
+      {"law: gent, shear_modulus: 1, jm: 30, poisson_ratio: 0.4", Law::gent},
+      {"law: ogden, mu1: 1, alpha1: 2, mu2: -0.1, alpha2: -3, poisson_ratio: 0.4", Law::ogden}};
   for (const auto& [keys, law] : laws) {
     const RobotSpec spec = parse_body("materials: [{" + std::string(keys) + "}]\n");
     EXPECT_EQ(spec.materials.at(0).elastic.value().law, law) << keys;

@@ -131,9 +131,25 @@ TEST(Silicones, StandBesideDensityAndPoissonRatioAlone) {
       EXPECT_NE(std::string(error.what()).find(words), std::string::npos) << error.what();
     }
   };
+  refused("material: dragon-skin-10, set: yeo", "did you mean 'yeoh'?");
+  refused("material: sylgard-184, set: yeoh", "softkin has no set 'yeoh' of sylgard-184, but datasheet");
   refused("material: ecoflex-0030", "did you mean 'ecoflex-00-30'?");
   refused("material: dragon-skin-10, youngs_modulus: 1", "key 'youngs_modulus' does not go with 'material'");
   refused("material: dragon-skin-10, law: yeoh", "key 'law' does not go with 'material'");
+}
+
+TEST(Silicones, TakeTheSetThatTheSceneNames) {
+  const auto material = [](const std::string& keys) {
+    return with("softkin: 1\nmesh: {file: a.msh}\nmaterials: [{material: dragon-skin-30" + keys + "}]\n", {})
+        .materials[0];
+  };
+  const MaterialSpec sheet = material(""), fitted = material(", set: ogden");
+  EXPECT_EQ(sheet.named->set, "datasheet");
+  EXPECT_NEAR(*sheet.elastic->youngs_modulus, 1.01, 0.01);
+  EXPECT_EQ(fitted.elastic->law, Law::ogden);
+  EXPECT_EQ(fitted.density, sheet.density);
+  EXPECT_EQ(fitted.named->sets.size(), 5u);
+  EXPECT_EQ(material(", set: yeoh, poisson_ratio: 0.45").elastic->poisson_ratio, 0.45);
 }
 
 }  // namespace

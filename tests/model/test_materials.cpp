@@ -79,6 +79,58 @@ TEST(ElasticConstants, OfALimitedStretch) {
   EXPECT_NEAR(rest.poisson_ratio, 0.45, 1e-12);
 }
 
+TEST(ElasticConstants, OfOgdensTerms) {
+  ElasticSpec ogden;
+  ogden.law = Law::ogden;
+  ogden.ogden = {{0.5, 2}, {-0.1, -3}};
+  ogden.poisson_ratio = 0.45;
+  const ElasticLaw law = compiled(ogden);
+  constexpr double shear = (0.5 * 2 + 0.1 * 3) / 2;
+  EXPECT_EQ(law.ogden[1].alpha, -3);
+  EXPECT_EQ(law.ogden[2].alpha, 0);
+  EXPECT_NEAR(stiffness_at_rest(law).youngs_modulus_MPa, 2 * shear * 1.45, 1e-12);
+  EXPECT_NEAR(stiffness_at_rest(law).poisson_ratio, 0.45, 1e-12);
+  const auto refused = [&](const std::vector<OgdenTerm>& terms) {
+    ElasticSpec wrong = ogden;
+    wrong.ogden = terms;
+    EXPECT_THROW((void)compiled(wrong), InvalidInput);
+  };
+  refused({});
+  refused({{1, 0}});
+  refused({{1, -2}});
+  refused({{1, 2}, {1, 2}, {1, 2}, {1, 2}});
+  refused({{std::nan(""), 2}});
+  ElasticSpec foreign = ogden;
+  foreign.c10 = 1;
+  EXPECT_THROW((void)compiled(foreign), InvalidInput);
+}
+
+TEST(ElasticConstants, WarnOfALawThatLosesItsStability) {
+  RobotSpec spec = physical_robot(block_mesh({1, 1, 1}, {1, 1, 1}));
+  const auto warns = [&](const ElasticSpec& elastic) {
+    spec.materials[0].elastic = elastic;
+    for (const std::string& warning : compile(spec).warnings)
+      if (warning.find("loses its stability") != std::string::npos) return true;
+    return false;
+  };
+  ElasticSpec ogden;
+  ogden.law = Law::ogden;
+  ogden.poisson_ratio = 0.45;
+  ogden.ogden = {{0.5, 2}, {-0.1, -3}};
+  EXPECT_FALSE(warns(ogden));
+  ogden.ogden = {{0.5, 2}, {0.25, -3}};  // gains by being pressed
+  EXPECT_TRUE(warns(ogden));
+  ElasticSpec rivlin;
+  rivlin.law = Law::mooney_rivlin;
+  rivlin.poisson_ratio = 0.45;
+  rivlin.c10 = 0.3;
+  rivlin.c01 = 0.1;
+  EXPECT_FALSE(warns(rivlin));
+  rivlin.c10 = 0.5;
+  rivlin.c01 = -0.35;
+  EXPECT_TRUE(warns(rivlin));
+}
+
 TEST(ElasticConstants, Refusals) {
   RobotSpec lame = physical_robot(block_mesh({1, 1, 1}, {1, 1, 1}));
   lame.materials[0].origin = line(3);

@@ -13,6 +13,9 @@ inline ElasticSpec elastic(Law law, double e, double nu) {
   if (law == Law::gent) {
     spec.shear_modulus = e / (2 * (1 + nu));
     spec.jm = 30;
+  } else if (law == Law::ogden) {
+    const double shear = e / (2 * (1 + nu));
+    spec.ogden = {{0.64 * shear, 2.5}, {-0.4 / 1.5 * shear, -1.5}};
   } else if (forbids_inversion(law)) {
     spec.c10 = e / (4 * (1 + nu));
     if (law == Law::mooney_rivlin) spec.c01 = 0;

@@ -48,7 +48,7 @@ RobotSpec small_block(Law law, bool quadratic, double nu = 0.48) {
   return mixed(std::move(spec), nu, quadratic, law);
 }
 
-constexpr std::array laws_with_bulk{Law::neo_hookean, Law::mooney_rivlin, Law::yeoh, Law::gent};
+constexpr std::array laws_with_bulk{Law::neo_hookean, Law::mooney_rivlin, Law::yeoh, Law::gent, Law::ogden};
 
 }  // namespace
 

@@ -37,8 +37,7 @@ void expect_slopes(const RobotSpec& spec, const Actuation& actuation) {
 }  // namespace
 
 TEST(PhysicalMultipliers, PressureOfAChamber) {
-  for (const Law law :
-       {Law::st_venant_kirchhoff, Law::corotational, Law::neo_hookean, Law::mooney_rivlin, Law::yeoh, Law::gent}) {
+  for (const Law law : all_laws) {
     SCOPED_TRACE(static_cast<int>(law));
     RobotSpec spec = bending_finger();
     spec.materials[0].elastic = elastic(law, 1, 0.4);

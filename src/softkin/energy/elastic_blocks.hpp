@@ -12,6 +12,35 @@ struct LawBlockOf {
   Pack mu{}, lambda{}, c10{}, c01{}, c20{}, c30{}, bulk{}, jm{};
 };
 
+/// The strengths and exponents of Ogden's terms. They use the places of constants that this law does not have, so that
+/// blocks of the other laws do not grow.
+template <class Pack>
+struct OgdenPlaces {
+  static constexpr Pack LawBlockOf<Pack>::*mu[max_ogden_terms] = {&LawBlockOf<Pack>::mu, &LawBlockOf<Pack>::c10,
+                                                                  &LawBlockOf<Pack>::c20};
+  static constexpr Pack LawBlockOf<Pack>::*alpha[max_ogden_terms] = {&LawBlockOf<Pack>::lambda, &LawBlockOf<Pack>::c01,
+                                                                     &LawBlockOf<Pack>::c30};
+};
+
+/// The constants of a law into a lane.
+template <class Pack>
+void set_law(LawBlockOf<Pack>& block, int lane, const ElasticLaw& law) {
+  block.law = law.law;
+  block.mu[lane] = law.mu;
+  block.lambda[lane] = law.lambda;
+  block.c10[lane] = law.c10;
+  block.c01[lane] = law.c01;
+  block.c20[lane] = law.c20;
+  block.c30[lane] = law.c30;
+  block.bulk[lane] = law.bulk;
+  block.jm[lane] = law.jm;
+  if (law.law != Law::ogden) return;
+  for (int p = 0; p < max_ogden_terms; ++p) {
+    (block.*OgdenPlaces<Pack>::mu[p])[lane] = law.ogden[p].mu;
+    (block.*OgdenPlaces<Pack>::alpha[p])[lane] = law.ogden[p].alpha;
+  }
+}
+
 /// Elements of K nodes and Q quadrature points (4, 1: linear tetrahedra; 10, 4: quadratic ones; 6, 6: prisms), one per
 /// lane, all of one law. F = sum_a x_a slope_a^T. A dielectric elastomer's active stretch, F = F_e F_a, is in the
 /// slopes: slope_a = F_a^-T (slope of the passive element).

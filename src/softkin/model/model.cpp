@@ -125,6 +125,8 @@ class Hash {
   void put(const ElasticLaw& e) {
     add(e.law, e.mu, e.lambda, e.c10, e.c01, e.c20, e.c30, e.bulk);
     if (e.jm != 0) add(e.jm);
+    for (const OgdenTerm& term : e.ogden)
+      if (term.alpha != 0) add(term.mu, term.alpha);
   }
   void put(const ViscousBranch& branch) { add(branch.modulus_MPa, branch.time_s); }
   void put(const Material& m) {

@@ -15,16 +15,17 @@ struct Sensor;     // sensor.hpp
 
 /// What elements are made of, compiled.
 struct Material {
-  std::string region;                        // as the description names it
-  double shape_ratio = 1;                    // target-shape
-  double weight = 1;                         // target-shape
-  ElasticLaw elastic;                        // physical
-  std::vector<ViscousBranch> viscosity;      // Maxwell branches beside the elastic law; none: elastic; physical
-  double permittivity = 1;                   // over that of the vacuum [-]
-  double density = 0;                        // [kg/m^3]
-  std::optional<double> linear_range;        // largest |principal strain| of the linear range [-]; none: not stated
-  bool mixed = false;                        // elements with pressures as unknowns; physical
-  std::shared_ptr<const Families> families;  // physical; none: isotropic
+  std::string region;                          // as the description names it
+  double shape_ratio = 1;                      // target-shape
+  double weight = 1;                           // target-shape
+  ElasticLaw elastic;                          // physical
+  std::vector<ViscousBranch> viscosity;        // Maxwell branches beside the elastic law; none: elastic; physical
+  double permittivity = 1;                     // over that of the vacuum [-]
+  double density = 0;                          // [kg/m^3]
+  std::optional<double> linear_range;          // largest |principal strain| of the linear range [-]; none: not stated
+  bool mixed = false;                          // elements with pressures as unknowns; physical
+  std::shared_ptr<const Families> families;    // physical; none: isotropic
+  std::shared_ptr<const NamedMaterial> named;  // of the table, whose constants it has; none: the user's own
 };
 
 /// The nodes of a face: its corners, then those on its edges.

@@ -109,9 +109,17 @@ std::string range_text(const Actuator& actuator) {
 }
 
 const char* law_name(Law law) {
-  constexpr const char* names[] = {"st-venant-kirchhoff", "corotational", "neo-hookean",
-                                   "mooney-rivlin",       "yeoh",         "gent"};
-  return names[static_cast<std::size_t>(law)];
+  return law_traits(law).name;
+}
+
+std::string laws_with_bulk_part(const std::string& quote) {
+  std::vector<std::string> names;
+  for (const Law law : all_laws)
+    if (has_bulk_part(law)) names.push_back(quote + law_name(law) + quote);
+  std::string text;
+  for (std::size_t i = 0; i < names.size(); ++i)
+    text += (i == 0 ? "" : i + 1 < names.size() ? ", " : " or ") + names[i];
+  return text;
 }
 
 const char* formulation_name(Formulation formulation) {

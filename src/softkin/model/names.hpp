@@ -49,6 +49,8 @@ namespace softkin {
 
 /// "neo-hookean", "st-venant-kirchhoff", as scenes have it.
 [[nodiscard]] const char* law_name(Law law);
+/// "neo-hookean, mooney-rivlin, ... or ogden": the laws that can keep the volume. quote: around each name
+[[nodiscard]] std::string laws_with_bulk_part(const std::string& quote = "");
 /// "physical" or "target-shape".
 [[nodiscard]] const char* formulation_name(Formulation formulation);
 /// "printed" or "mesh-independent".

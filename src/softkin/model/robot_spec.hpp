@@ -18,6 +18,7 @@ struct RemanenceSpec;  // magnetic_field.hpp
 struct FamiliesSpec;   // families.hpp
 struct LayerSpec;      // layer.hpp
 struct SensorSpec;     // sensor.hpp
+struct NamedMaterial;  // named_material.hpp
 
 /// A region that the description adds to those of the mesh.
 struct RegionSpec {
@@ -44,6 +45,7 @@ struct ElasticSpec {
   std::optional<double> bulk_modulus;        // [MPa], > 0
   std::optional<double> shear_modulus;       // [MPa], > 0; gent
   std::optional<double> jm;                  // limit of bar I1 - 3 [-], > 0; gent
+  std::vector<OgdenTerm> ogden;              // terms, at most max_ogden_terms; ogden
 };
 
 /// A Maxwell element beside the elastic law: a spring and a damper in series.
@@ -65,6 +67,7 @@ struct MaterialSpec {
   std::optional<double> linear_range;              // largest |principal strain| of the linear range [-], > 0
   std::optional<bool> mixed;  // elements with pressures as unknowns; physical; none: where the volume is kept
   std::shared_ptr<const FamiliesSpec> families;  // of fibres in the material; physical; none: isotropic
+  std::shared_ptr<const NamedMaterial> named;    // whose constants `elastic` has; none: the user's own
   Origin origin;                                 // of its entry, for messages
 };
 

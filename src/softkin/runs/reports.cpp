@@ -5,6 +5,7 @@
 #include <softkin/drive/use.hpp>
 #include <softkin/kinematics/jacobian.hpp>
 #include <softkin/model/layer.hpp>
+#include <softkin/model/named_material.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/contacts_json.hpp>
 #include <softkin/runs/records_json.hpp>
@@ -14,6 +15,17 @@ namespace softkin::runs {
 
 namespace {
 
+Json ogden_json(const ElasticLaw& e) {
+  Json json = Json::object();
+  for (int p = 0; p < max_ogden_terms; ++p) {
+    if (e.ogden[p].alpha == 0) continue;
+    json["mu" + std::to_string(p + 1) + "_MPa"] = e.ogden[p].mu;
+    json["alpha" + std::to_string(p + 1)] = e.ogden[p].alpha;
+  }
+  json["bulk_modulus_MPa"] = e.bulk;
+  return json;
+}
+
 Json elastic_json(const ElasticLaw& e) {
   switch (e.law) {
     case Law::mooney_rivlin:
@@ -22,12 +34,20 @@ Json elastic_json(const ElasticLaw& e) {
       return {{"c10_MPa", e.c10}, {"c20_MPa", e.c20}, {"c30_MPa", e.c30}, {"bulk_modulus_MPa", e.bulk}};
     case Law::gent:
       return {{"mu_MPa", e.mu}, {"jm", e.jm}, {"bulk_modulus_MPa", e.bulk}};
+    case Law::ogden:
+      return ogden_json(e);
     case Law::st_venant_kirchhoff:
     case Law::corotational:
     case Law::neo_hookean:
       break;
   }
   return {{"mu_MPa", e.mu}, {"lambda_MPa", e.lambda}};
+}
+
+Json named_json(const NamedMaterial& named) {
+  Json json{{"name", named.name}, {"set", named.set}, {"source", named.source}};
+  for (const NamedMaterial::Set& set : named.sets) json["youngs_modulus_MPa"][set.name] = set.youngs_modulus_MPa;
+  return json;
 }
 
 Json materials_json(const Model& model) {
@@ -37,6 +57,7 @@ Json materials_json(const Model& model) {
     if (model.formulation == Formulation::physical) {
       json["law"] = law_name(material.elastic.law);
       json.update(elastic_json(material.elastic));
+      if (material.named) json["material"] = named_json(*material.named);
       json["density_kg_m3"] = material.density;
       for (const ViscousBranch& branch : material.viscosity)
         json["viscosity"].push_back({{"modulus_MPa", branch.modulus_MPa}, {"time_s", branch.time_s}});

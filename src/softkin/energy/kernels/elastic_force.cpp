@@ -1,5 +1,6 @@
 #include <softkin/energy/kernels/elastic_law_point.hpp>
 #include <softkin/energy/kernels/elastic_polar.hpp>
+#include <softkin/energy/kernels/elastic_stretches.hpp>
 
 namespace softkin::energy::SOFTKIN_TARGET {
 
@@ -19,12 +20,12 @@ Stress invariant_stress(const LawBlock& constants, const Pack33& f) {
   const InvariantEnergy w = invariant_energy<law>(constants, d);
   Stress stress{w.energy, {}, d.jacobian};
   Pack of_gradient = 2 * w.by_first;
-  if constexpr (uses_second(law)) of_gradient += 2 * w.by_second * d.first;
+  if constexpr (uses_second<law>) of_gradient += 2 * w.by_second * d.first;
   for (int i = 0; i < 3; ++i) {
     Pack3& row = stress.first.row[i];
     row = of_gradient * f.row[i];
-    if constexpr (uses_second(law)) row = row - 2 * w.by_second * (d.right * f.row[i]);
-    if constexpr (uses_jacobian(law)) row = row + w.by_jacobian * d.cofactor.row[i];
+    if constexpr (uses_second<law>) row = row - 2 * w.by_second * (d.right * f.row[i]);
+    if constexpr (uses_jacobian<law>) row = row + w.by_jacobian * d.cofactor.row[i];
   }
   return stress;
 }
@@ -44,10 +45,32 @@ Stress corotational_stress(const LawBlock& constants, const Pack33& f) {
   return stress;
 }
 
+/// P = F sum_i (l_i dW/dl_i / l_i^2) v_i v_i^T + bulk (J - 1) dJ/dF, v_i the eigenvectors of C = F^T F
+Stress ogden_stress(const LawBlock& constants, const Pack33& f) {
+  const Principal right = principal(transpose_times(f, f));
+  const Pack zero{};
+  const Stretches s =
+      stretches_of({sqrt(max(right.value[0], zero)), sqrt(max(right.value[1], zero)), sqrt(max(right.value[2], zero))});
+  const OgdenEnergy w = ogden_energy(constants, s);
+  const Pack33 modes = transposed(right.axes);
+  Pack33 second{};
+  for (int i = 0; i < 3; ++i) add_outer(second, w.pull[i] / (s.value[i] * s.value[i]) * modes.row[i], modes.row[i]);
+  const Pack33 by_gradient = cofactor(f);
+  Stress stress{{}, times(f, second), dot(f.row[0], by_gradient.row[0])};
+  const Pack swelling = positive_jacobian(stress.jacobian) - 1;
+  const Pack pressure = constants.bulk * swelling;
+  stress.energy = w.energy + 0.5 * pressure * swelling;
+  for (int i = 0; i < 3; ++i) stress.first.row[i] = stress.first.row[i] + pressure * by_gradient.row[i];
+  return stress;
+}
+
 template <Law law>
 Stress stress_of(const LawBlock& constants, const Pack33& f) {
-  if constexpr (law == Law::corotational)
+  constexpr LawForm form = law_traits(law).form;
+  if constexpr (form == LawForm::rotation)
     return corotational_stress(constants, f);
+  else if constexpr (form == LawForm::stretches)
+    return ogden_stress(constants, f);
   else
     return invariant_stress<law>(constants, f);
 }

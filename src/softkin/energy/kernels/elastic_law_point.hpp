@@ -21,19 +21,18 @@ struct InvariantEnergy {
   Pack by_first_first{}, by_first_jacobian{}, by_second_jacobian{}, by_jacobian_jacobian{};
 };
 
-/// Does W depend on I2, on J, on a product of J and another invariant?
-constexpr bool uses_second(Law law) {
-  return law == Law::st_venant_kirchhoff || law == Law::mooney_rivlin;
-}
-constexpr bool uses_jacobian(Law law) {
-  return law != Law::st_venant_kirchhoff;
-}
-constexpr bool couples_jacobian(Law law) {
-  return forbids_inversion(law);
-}
-constexpr bool curved_in_first(Law law) {
-  return law == Law::st_venant_kirchhoff || law == Law::yeoh || law == Law::gent;
-}
+/// Does W depend on I2, on J, on a product of J and another invariant, not only linearly on I1?
+template <Law law>
+inline constexpr bool uses_second = law_traits(law).uses_second;
+template <Law law>
+inline constexpr bool uses_jacobian = law_traits(law).uses_jacobian;
+template <Law law>
+inline constexpr bool couples_jacobian = law_traits(law).couples_jacobian;
+template <Law law>
+inline constexpr bool curved_in_first = law_traits(law).curved_in_first;
+/// A condition that fails for every law, once it is looked at.
+template <Law>
+inline constexpr bool no_such_law = false;
 
 inline Pack33 transposed(const Pack33& a) {
   return {{{a.row[0].x, a.row[1].x, a.row[2].x},
@@ -204,12 +203,19 @@ PackMask has_no_energy(const LawBlock& constants, const Pack33& f, const Pack& j
 /// W and its derivatives for a law that is a function of the invariants.
 template <Law law>
 InvariantEnergy invariant_energy(const LawBlock& constants, const Deformation& d) {
-  static_assert(law != Law::corotational);
-  if constexpr (law == Law::st_venant_kirchhoff) return st_venant_kirchhoff(constants, d);
-  if constexpr (law == Law::neo_hookean) return neo_hookean(constants, d);
-  if constexpr (law == Law::mooney_rivlin) return mooney_rivlin(constants, d);
-  if constexpr (law == Law::yeoh) return yeoh(constants, d);
-  if constexpr (law == Law::gent) return gent(constants, d);
+  static_assert(law_traits(law).form == LawForm::invariants);
+  if constexpr (law == Law::st_venant_kirchhoff)
+    return st_venant_kirchhoff(constants, d);
+  else if constexpr (law == Law::neo_hookean)
+    return neo_hookean(constants, d);
+  else if constexpr (law == Law::mooney_rivlin)
+    return mooney_rivlin(constants, d);
+  else if constexpr (law == Law::yeoh)
+    return yeoh(constants, d);
+  else if constexpr (law == Law::gent)
+    return gent(constants, d);
+  else
+    static_assert(no_such_law<law>, "a law of the invariants needs its energy here");
 }
 
 /// Calls work.template operator()<law>() for the law given: once per block, so that no inner loop asks.
@@ -228,6 +234,8 @@ void dispatch(Law law, const Work& work) {
       return work.template operator()<Law::yeoh>();
     case Law::gent:
       return work.template operator()<Law::gent>();
+    case Law::ogden:
+      return work.template operator()<Law::ogden>();
   }
   refuse_law(law);
 }

@@ -33,4 +33,8 @@ struct Principal {
 template <int K, int Q>
 void projected_stiffness(const ElasticBlock<K, Q>& block, const Shape<K>& current, ElasticStiffness<K>& out);
 
+/// elastic_stiffness of a law of the principal stretches, exact: the same blocks as they are.
+template <Law law, int K, int Q>
+void stretch_stiffness(const ElasticBlock<K, Q>& block, const Shape<K>& current, ElasticStiffness<K>& out);
+
 }  // namespace softkin::energy::SOFTKIN_TARGET

@@ -1,5 +1,6 @@
 #include <softkin/energy/kernels/elastic_law_point.hpp>
 #include <softkin/energy/kernels/elastic_polar.hpp>
+#include <softkin/energy/kernels/elastic_stretches.hpp>
 
 namespace softkin::energy::SOFTKIN_TARGET {
 
@@ -58,10 +59,59 @@ PrincipalTangent corotational_tangent(const LawBlock& constants, const Pack (&s)
   return t;
 }
 
+/// The change of shape of one of Ogden's terms: with t_i = l_i dW/dl_i, d^2W/(dl_i dl_j) = (dt_i/d ln l_j - d_ij t_i) /
+/// (l_i l_j); shears have the divided difference and the mean of dW/dl at two stretches.
+void add_ogden_term(PrincipalTangent& t, const LawBlock& constants, int term, const Stretches& s) {
+  const OgdenPowers p(constants, term, s);
+  const Pack scaled = p.mu * p.alpha;
+  const Pack by_stretch[3] = {1 / s.value[0], 1 / s.value[1], 1 / s.value[2]};
+  const Pack3 each{p.power[0] * by_stretch[0], p.power[1] * by_stretch[1], p.power[2] * by_stretch[2]};
+  const Pack3 inverse{by_stretch[0], by_stretch[1], by_stretch[2]};
+  add_outer(t.stretch, (1.0 / 3) * scaled * p.mean * inverse, inverse);
+  add_outer(t.stretch, (-1.0 / 3) * scaled * each, inverse);
+  add_outer(t.stretch, (-1.0 / 3) * scaled * inverse, each);
+  Pack direct[3], slope[3];
+  for (int i = 0; i < 3; ++i) {
+    const Pack pull = p.mu * (p.power[i] - p.mean);
+    slope[i] = pull * by_stretch[i];
+    direct[i] = (scaled * p.power[i] - pull) * by_stretch[i] * by_stretch[i];
+  }
+  t.stretch.row[0].x += direct[0];
+  t.stretch.row[1].y += direct[1];
+  t.stretch.row[2].z += direct[2];
+  for (int k = 0; k < 3; ++k) {
+    const int i = (k + 1) % 3, j = (k + 2) % 3;
+    const Pack difference = p.mu * (divided_difference(p, s, i, j) + p.mean * by_stretch[i] * by_stretch[j]);
+    const Pack mean = (slope[i] + slope[j]) / (s.value[i] + s.value[j]);
+    t.same[k] += 0.5 * (difference + mean);
+    t.other[k] += 0.5 * (difference - mean);
+  }
+}
+
+PrincipalTangent ogden_tangent(const LawBlock& constants, const Pack (&principal_stretches)[3]) {
+  const Stretches s = stretches_of(principal_stretches);
+  PrincipalTangent t{};
+  for (int term = 0; term < max_ogden_terms; ++term)
+    if (has_term(constants, term)) add_ogden_term(t, constants, term, s);
+  const Pack(&l)[3] = s.value;
+  const Pack pressure = constants.bulk * (l[0] * l[1] * l[2] - 1);
+  const Pack3 by_jacobian{l[1] * l[2], l[2] * l[0], l[0] * l[1]};
+  const Pack zero{};
+  add_outer(t.stretch, constants.bulk * by_jacobian, by_jacobian);
+  t.stretch.row[0] = t.stretch.row[0] + Pack3{zero, pressure * l[2], pressure * l[1]};
+  t.stretch.row[1] = t.stretch.row[1] + Pack3{pressure * l[2], zero, pressure * l[0]};
+  t.stretch.row[2] = t.stretch.row[2] + Pack3{pressure * l[1], pressure * l[0], zero};
+  for (int k = 0; k < 3; ++k) t.other[k] -= pressure * l[k];
+  return t;
+}
+
 template <Law law>
 PrincipalTangent tangent_of(const LawBlock& constants, const Pack (&s)[3]) {
-  if constexpr (law == Law::corotational)
+  constexpr LawForm form = law_traits(law).form;
+  if constexpr (form == LawForm::rotation)
     return corotational_tangent(constants, s);
+  else if constexpr (form == LawForm::stretches)
+    return ogden_tangent(constants, s);
   else
     return invariant_tangent<law>(constants, s);
 }
@@ -81,20 +131,20 @@ void clamp(PrincipalTangent& t) {
 }
 
 template <int K>
-struct ProjectedTangent {
+struct TurnedTangent {
   PrincipalTangent tangent;  // times the volume
   Pack33 frame;              // U
   Pack3 slope[K];            // V^T slope
 };
 
-template <Law law, int K>
+template <Law law, bool projected, int K>
 void set(const LawBlock& constants, const Pack3 (&slope)[K], const Pack& volume, const Shape<K>& current,
-         ProjectedTangent<K>& p) {
+         TurnedTangent<K>& p) {
   const Polar turned = polar(deformation_gradient<K>(slope, current));
   const Principal stretch = principal(turned.stretch);
   p.frame = times(turned.rotation, stretch.axes);
   p.tangent = tangent_of<law>(constants, stretch.value);
-  clamp(p.tangent);
+  if constexpr (projected) clamp(p.tangent);
   for (Pack3& row : p.tangent.stretch.row) row = volume * row;
   for (int k = 0; k < 3; ++k) {
     p.tangent.same[k] *= volume;
@@ -106,7 +156,7 @@ void set(const LawBlock& constants, const Pack3 (&slope)[K], const Pack& volume,
 
 /// k += U M U^T, M_ij = sum_kl (d^2W/dF^2)_ik,jl slope_a,k slope_b,l
 template <int K>
-void add(const ProjectedTangent<K>& p, int a, int b, Pack33& k) {
+void add(const TurnedTangent<K>& p, int a, int b, Pack33& k) {
   const Pack3 &ga = p.slope[a], &gb = p.slope[b];
   const Pack33& s = p.tangent.stretch;
   const Pack(&same)[3] = p.tangent.same;
@@ -125,10 +175,10 @@ void add(const ProjectedTangent<K>& p, int a, int b, Pack33& k) {
   }
 }
 
-template <Law law, int K, int Q>
+template <Law law, bool projected, int K, int Q>
 void stiffness(const ElasticBlock<K, Q>& block, const Shape<K>& current, ElasticStiffness<K>& out) {
-  ProjectedTangent<K> points[Q];
-  for (int q = 0; q < Q; ++q) set<law, K>(block.law, block.slope[q], block.volume[q], current, points[q]);
+  TurnedTangent<K> points[Q];
+  for (int q = 0; q < Q; ++q) set<law, projected, K>(block.law, block.slope[q], block.volume[q], current, points[q]);
   for (int a = 0, ab = 0; a < K; ++a)
     for (int b = 0; b <= a; ++b, ++ab) {
       Pack33 k{};
@@ -141,11 +191,19 @@ void stiffness(const ElasticBlock<K, Q>& block, const Shape<K>& current, Elastic
 
 template <int K, int Q>
 void projected_stiffness(const ElasticBlock<K, Q>& block, const Shape<K>& current, ElasticStiffness<K>& out) {
-  dispatch(block.law.law, [&]<Law law>() { stiffness<law, K, Q>(block, current, out); });
+  dispatch(block.law.law, [&]<Law law>() { stiffness<law, true, K, Q>(block, current, out); });
+}
+
+template <Law law, int K, int Q>
+void stretch_stiffness(const ElasticBlock<K, Q>& block, const Shape<K>& current, ElasticStiffness<K>& out) {
+  stiffness<law, false, K, Q>(block, current, out);
 }
 
 template void projected_stiffness(const ElasticBlock<4, 1>&, const Shape<4>&, ElasticStiffness<4>&);
 template void projected_stiffness(const ElasticBlock<10, 4>&, const Shape<10>&, ElasticStiffness<10>&);
 template void projected_stiffness(const ElasticBlock<6, 6>&, const Shape<6>&, ElasticStiffness<6>&);
+template void stretch_stiffness<Law::ogden>(const ElasticBlock<4, 1>&, const Shape<4>&, ElasticStiffness<4>&);
+template void stretch_stiffness<Law::ogden>(const ElasticBlock<10, 4>&, const Shape<10>&, ElasticStiffness<10>&);
+template void stretch_stiffness<Law::ogden>(const ElasticBlock<6, 6>&, const Shape<6>&, ElasticStiffness<6>&);
 
 }  // namespace softkin::energy::SOFTKIN_TARGET

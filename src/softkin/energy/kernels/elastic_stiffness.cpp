@@ -18,12 +18,12 @@ class InvariantTangent {
     const Deformation d = deformation(deformation_gradient<K>(slope, current));
     const InvariantEnergy w = invariant_energy<law>(constants, d);
     of_identity_ = 2 * volume * w.by_first;
-    if constexpr (uses_second(law)) {
+    if constexpr (uses_second<law>) {
       of_identity_ += 2 * volume * w.by_second * d.first;
       twice_second_ = 2 * volume * w.by_second;
       for (int i = 0; i < 3; ++i) left_.row[i] = twice_second_ * d.left.row[i];
     }
-    if constexpr (uses_jacobian(law)) of_jacobian_ = volume * w.by_jacobian;
+    if constexpr (uses_jacobian<law>) of_jacobian_ = volume * w.by_jacobian;
     gradient_ = d.gradient;
     set_nodes(d, w, volume);
   }
@@ -31,17 +31,17 @@ class InvariantTangent {
   void add(int a, int b, Pack33& k) const {
     const Pack s = dot(slope_[a], slope_[b]);
     Pack of_identity = of_identity_ * s;
-    if constexpr (uses_second(law)) {
+    if constexpr (uses_second<law>) {
       of_identity -= twice_second_ * dot(turned_[a], turned_[b]);
       for (int i = 0; i < 3; ++i) k.row[i] = k.row[i] - s * left_.row[i];
       add_outer(k, turned_[b], -twice_second_ * turned_[a]);
     }
-    if constexpr (uses_second(law) || curved_in_first(law)) add_outer(k, turned_[a], along_[b]);
-    if constexpr (uses_jacobian(law)) {
+    if constexpr (uses_second<law> || curved_in_first<law>) add_outer(k, turned_[a], along_[b]);
+    if constexpr (uses_jacobian<law>) {
       add_outer(k, swelling_[a], swelling_right_[b]);
       if (a != b) add_cross(k, of_jacobian_ * (gradient_ * cross(slope_[b], slope_[a])));
     }
-    if constexpr (couples_jacobian(law)) add_outer(k, coupled_[a], swelling_[b]);
+    if constexpr (couples_jacobian<law>) add_outer(k, coupled_[a], swelling_[b]);
     add_to_diagonal(k, of_identity);
   }
 
@@ -54,13 +54,13 @@ class InvariantTangent {
     for (int a = 0; a < K; ++a) {
       turned_[a] = d.gradient * slope_[a];
       along_[a] = along * turned_[a];
-      if constexpr (uses_jacobian(law)) {
+      if constexpr (uses_jacobian<law>) {
         swelling_[a] = d.cofactor * slope_[a];
         swelling_right_[a] = of_jacobian * swelling_[a];
       }
-      if constexpr (couples_jacobian(law)) {
+      if constexpr (couples_jacobian<law>) {
         coupled_[a] = of_first * turned_[a];
-        if constexpr (uses_second(law)) coupled_[a] = coupled_[a] - of_second * (d.left * turned_[a]);
+        if constexpr (uses_second<law>) coupled_[a] = coupled_[a] - of_second * (d.left * turned_[a]);
         swelling_right_[a] = swelling_right_[a] + coupled_[a];
       }
     }
@@ -123,7 +123,7 @@ struct TangentOf<Law::corotational, K> {
 };
 
 template <Law law, int K, int Q>
-void exact_stiffness(const ElasticBlock<K, Q>& block, const Shape<K>& current, ElasticStiffness<K>& out) {
+void nodal_stiffness(const ElasticBlock<K, Q>& block, const Shape<K>& current, ElasticStiffness<K>& out) {
   typename TangentOf<law, K>::type tangent[Q];
   for (int q = 0; q < Q; ++q) tangent[q].set(block.law, block.slope[q], block.volume[q], current);
   for (int a = 0, ab = 0; a < K; ++a)
@@ -142,7 +142,12 @@ void elastic_stiffness(const energy::ElasticBlock<K, Q>& block, const energy::Sh
   if (projected) {
     projected_stiffness<K, Q>(wide(block), wide(current), wide(out));
   } else {
-    dispatch(block.law.law, [&]<Law law>() { exact_stiffness<law, K, Q>(wide(block), wide(current), wide(out)); });
+    dispatch(block.law.law, [&]<Law law>() {
+      if constexpr (law_traits(law).form == LawForm::stretches)
+        stretch_stiffness<law, K, Q>(wide(block), wide(current), wide(out));
+      else
+        nodal_stiffness<law, K, Q>(wide(block), wide(current), wide(out));
+    });
   }
 }
 

@@ -7,10 +7,11 @@ namespace softkin::scene {
 namespace {
 
 const Keys constants_of_laws{"shear_modulus", "c10", "c01", "c20", "c30"};
+const Keys rubber_laws{"neo-hookean", "mooney-rivlin", "yeoh"};
 
 /// Of a skin of rubber, which keeps its volume.
 SheetRubber read_rubber(const Map& map, const Node& law) {
-  const Keys names{"neo-hookean", "mooney-rivlin", "yeoh"};
+  const Keys& names = rubber_laws;
   const Keys moduli{"youngs_modulus", "shear_modulus"};
   const std::vector<Keys> taken{moduli, {"c10", "c01"}, {"c10", "c20", "c30"}};
   const std::size_t which = choice(law, names);
@@ -64,6 +65,7 @@ void read_stiffness(const Map& map, LayerSpec& layer) {
 }  // namespace
 
 std::shared_ptr<const LayerSpec> read_layer(const Context& context, const Node& node, Names& names) {
+  check_choice(node, "law", rubber_laws);
   const Map map(node, {"name", "region", "surface", "unit", "thickness", "law", "youngs_modulus", "poisson_ratio",
                        "shear_modulus", "c10", "c01", "c20", "c30", "orthotropic", "direction", "tension_only",
                        "bending", "density"});

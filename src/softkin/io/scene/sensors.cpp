@@ -4,12 +4,14 @@
 namespace softkin::scene {
 
 std::shared_ptr<const SensorSpec> read_sensor(const Context& context, const Node& node, Names& names) {
+  const Keys kind_names{"length", "angle", "direction"};
+  check_choice(node, "kind", kind_names);
   const Map map(node, {"name", "kind", "points", "regions", "region", "axis"});
   SensorSpec spec;
   spec.name = names.add_label(map.at("name"));
   spec.origin = node.origin;
   constexpr SensorKind kinds[] = {SensorKind::length, SensorKind::angle, SensorKind::direction};
-  spec.kind = kinds[choice(map.at("kind"), {"length", "angle", "direction"})];
+  spec.kind = kinds[choice(map.at("kind"), kind_names)];
   constexpr const char* places[] = {"points", "regions", "region"};
   const std::string own = places[static_cast<std::size_t>(spec.kind)];
   for (const std::string& key : Keys{"points", "regions", "region", "axis"})

@@ -1,3 +1,4 @@
+#include <softkin/core/text.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/scene/silicones.hpp>
 
@@ -15,7 +16,70 @@ Silicone by_data_sheet(const char* name, const char* hardness, double stress_psi
           density,    "Smooth-On, technical bulletin of " + std::string(series)};
 }
 
+/// Young's modulus at small strain.
+double youngs_modulus(const ElasticSpec& spec) {
+  const double nu = spec.poisson_ratio.value_or(Silicone::usual_poisson_ratio);
+  if (spec.youngs_modulus) return *spec.youngs_modulus;
+  double twice_shear = 4 * (spec.c10.value_or(0) + spec.c01.value_or(0));
+  for (const OgdenTerm& term : spec.ogden) twice_shear += term.mu * term.alpha;
+  return (1 + nu) * twice_shear;
+}
+
 }  // namespace
+
+ElasticSpec SiliconeSet::elastic(double poisson_ratio) const {
+  ElasticSpec spec;
+  spec.law = law;
+  spec.poisson_ratio = poisson_ratio;
+  switch (law) {
+    case Law::mooney_rivlin:
+      spec.c10 = constants.at(0);
+      spec.c01 = constants.at(1);
+      break;
+    case Law::yeoh:
+      spec.c10 = constants.at(0);
+      spec.c20 = constants.at(1);
+      spec.c30 = constants.at(2);
+      break;
+    case Law::ogden:
+      for (std::size_t i = 0; i + 1 < constants.size(); i += 2) spec.ogden.push_back({constants[i], constants[i + 1]});
+      break;
+    case Law::st_venant_kirchhoff:
+    case Law::corotational:
+    case Law::gent:
+    case Law::neo_hookean:
+      spec.youngs_modulus = 2 * (1 + poisson_ratio) * constants.at(0);
+      break;
+  }
+  return spec;
+}
+
+ElasticSpec Silicone::elastic(const std::string& set, double poisson_ratio, const Origin& origin) const {
+  if (set == default_set) return elastic(poisson_ratio);
+  for (const SiliconeSet& each : silicone_sets())
+    if (each.material == name && each.name == set) return each.elastic(poisson_ratio);
+  std::string list;
+  for (const std::string& each : sets()) list += (list.empty() ? "" : ", ") + each;
+  throw InvalidInput(
+      origin, "softkin has no set " + excerpt(set) + " of " + name + ", but " + list + suggest_name(set, sets()));
+}
+
+std::vector<std::string> Silicone::sets() const {
+  std::vector<std::string> names{default_set};
+  for (const SiliconeSet& each : silicone_sets())
+    if (each.material == name) names.push_back(each.name);
+  return names;
+}
+
+NamedMaterial Silicone::named(const std::string& set, double poisson_ratio) const {
+  NamedMaterial named{name, set, source, {}};
+  for (const std::string& each : sets()) named.sets.push_back({each, youngs_modulus(elastic(each, poisson_ratio, {}))});
+  for (const SiliconeSet& each : silicone_sets())
+    if (each.material == name && each.name == set)
+      named.source = std::string(silicone_curves_source()) + "; fitted up to a strain of " + number(each.up_to_strain) +
+                     ", rms " + number(each.rms_percent, 2) + " % of the largest stress";
+  return named;
+}
 
 ElasticSpec Silicone::elastic(double poisson_ratio) const {
   ElasticSpec spec;

@@ -284,6 +284,12 @@ std::size_t choice(const Node& node, const Keys& choices) {
   return found - choices.begin();
 }
 
+void check_choice(const Node& node, std::string_view key, const Keys& choices) {
+  if (node.kind != Node::Kind::map) return;
+  for (const Node::Entry& each : node.entries)
+    if (each.key == key) (void)choice(*each.value, choices);
+}
+
 const std::vector<std::shared_ptr<const Node>>& list(const Node& node) {
   if (node.kind != Node::Kind::list) fail_type(node, "a list");
   return node.items;

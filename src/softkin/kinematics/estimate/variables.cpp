@@ -51,6 +51,7 @@ std::optional<std::string> stiffened_region(const std::string& unknown) {
 void stiffen(Material& material, double factor) {
   ElasticLaw& law = material.elastic;
   for (double* modulus : {&law.mu, &law.lambda, &law.c10, &law.c01, &law.c20, &law.c30, &law.bulk}) *modulus *= factor;
+  for (OgdenTerm& term : law.ogden) term.mu *= factor;
   for (ViscousBranch& branch : material.viscosity) branch.modulus_MPa *= factor;
   if (!material.families) return;
   Families families = *material.families;

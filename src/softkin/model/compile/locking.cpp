@@ -60,7 +60,7 @@ std::vector<Wall> walls_of(const Model& model) {
 }  // namespace
 
 StiffnessAtRest stiffness_at_rest(const ElasticLaw& law) {
-  const bool rubber = forbids_inversion(law.law);
+  const bool rubber = law_traits(law.law).constants != LawConstants::lame;
   const double shear = shear_modulus(law);
   const double bulk = rubber ? law.bulk : law.lambda + 2 * law.mu / 3;
   return {9 * bulk * shear / (3 * bulk + shear), (3 * bulk - 2 * shear) / (2 * (3 * bulk + shear))};

@@ -2,6 +2,8 @@
 #include <cmath>
 #include <map>
 #include <softkin/model/compile/parts.hpp>
+#include <softkin/model/named_material.hpp>
+#include <softkin/model/names.hpp>
 
 namespace softkin {
 
@@ -35,11 +37,24 @@ struct Constants {
     if (nu == 0.5 && !has_bulk_part(spec.law))
       refuse(
           ": poisson_ratio 0.5 keeps the volume, which laws st-venant-kirchhoff and corotational have no part for: "
-          "take neo-hookean, mooney-rivlin, yeoh or gent, or 0.49");
+          "take " +
+          laws_with_bulk_part() + ", or 0.49");
     return nu;
   }
-  void absent(const std::optional<double>& value, const std::string& name) const {
-    if (value) refuse(" has " + name + ", which its law does not take");
+  /// Refuses constants that are not among those taken.
+  void only(const std::vector<std::string>& taken) const {
+    const std::pair<const char*, bool> all[] = {{"youngs_modulus", spec.youngs_modulus.has_value()},
+                                                {"c10", spec.c10.has_value()},
+                                                {"c01", spec.c01.has_value()},
+                                                {"c20", spec.c20.has_value()},
+                                                {"c30", spec.c30.has_value()},
+                                                {"bulk_modulus", spec.bulk_modulus.has_value()},
+                                                {"shear_modulus", spec.shear_modulus.has_value()},
+                                                {"jm", spec.jm.has_value()},
+                                                {"mu1", !spec.ogden.empty()}};
+    for (const auto& [name, is_there] : all)
+      if (is_there && std::find(taken.begin(), taken.end(), name) == taken.end())
+        refuse(std::string(" has ") + name + ", which its law does not take");
   }
 };
 
@@ -52,18 +67,8 @@ double bulk_modulus(const Constants& c, double shear) {
   return nu == 0.5 ? incompressible_bulk * shear : c.finite(2 * shear * (1 + nu) / (3 * (1 - 2 * nu)), "bulk modulus");
 }
 
-void refuse_limit(const Constants& c) {
-  c.absent(c.spec.shear_modulus, "shear_modulus");
-  c.absent(c.spec.jm, "jm");
-}
-
 void set_lame(const Constants& c, ElasticLaw& law) {
-  refuse_limit(c);
-  c.absent(c.spec.c10, "c10");
-  c.absent(c.spec.c01, "c01");
-  c.absent(c.spec.c20, "c20");
-  c.absent(c.spec.c30, "c30");
-  c.absent(c.spec.bulk_modulus, "bulk_modulus");
+  c.only({"youngs_modulus"});
   const double e = c.positive(c.required(c.spec.youngs_modulus, "youngs_modulus"), "youngs_modulus");
   const double nu = c.poisson_ratio();
   law.mu = c.finite(e / (2 * (1 + nu)), "shear modulus");
@@ -71,32 +76,41 @@ void set_lame(const Constants& c, ElasticLaw& law) {
 }
 
 void set_coefficients(const Constants& c, ElasticLaw& law) {
-  refuse_limit(c);
-  c.absent(c.spec.youngs_modulus, "youngs_modulus");
+  const bool yeoh = law.law == Law::yeoh;
+  if (yeoh)
+    c.only({"c10", "c20", "c30", "bulk_modulus"});
+  else
+    c.only({"c10", "c01", "bulk_modulus"});
   law.c10 = c.required(c.spec.c10, "c10");
-  if (law.law == Law::mooney_rivlin) {
-    law.c01 = c.required(c.spec.c01, "c01");
-    c.absent(c.spec.c20, "c20");
-    c.absent(c.spec.c30, "c30");
-  } else {
-    c.absent(c.spec.c01, "c01");
-    law.c20 = c.optional(c.spec.c20, "c20");
-    law.c30 = c.optional(c.spec.c30, "c30");
-  }
-  const std::string sum = law.law == Law::yeoh ? "c10" : "c10 + c01";
+  if (!yeoh) law.c01 = c.required(c.spec.c01, "c01");
+  law.c20 = c.optional(c.spec.c20, "c20");
+  law.c30 = c.optional(c.spec.c30, "c30");
+  const std::string sum = yeoh ? "c10" : "c10 + c01";
   const double half_shear = c.positive(c.finite(law.c10 + law.c01, sum), sum);
   law.bulk = bulk_modulus(c, 2 * half_shear);
 }
 
 void set_limited(const Constants& c, ElasticLaw& law) {
-  c.absent(c.spec.youngs_modulus, "youngs_modulus");
-  c.absent(c.spec.c10, "c10");
-  c.absent(c.spec.c01, "c01");
-  c.absent(c.spec.c20, "c20");
-  c.absent(c.spec.c30, "c30");
+  c.only({"shear_modulus", "jm", "bulk_modulus"});
   law.mu = c.positive(c.required(c.spec.shear_modulus, "shear_modulus"), "shear_modulus");
   law.jm = c.positive(c.required(c.spec.jm, "jm"), "jm");
   law.bulk = bulk_modulus(c, law.mu);
+}
+
+void set_ogden(const Constants& c, ElasticLaw& law) {
+  c.only({"mu1", "bulk_modulus"});
+  const std::vector<OgdenTerm>& terms = c.spec.ogden;
+  if (terms.empty()) c.refuse(" needs mu1 and alpha1: its law takes them");
+  if (terms.size() > max_ogden_terms)
+    c.refuse(" has " + std::to_string(terms.size()) + " terms of Ogden's law, which has at most " +
+             std::to_string(max_ogden_terms));
+  for (std::size_t p = 0; p < terms.size(); ++p) {
+    const std::string place = std::to_string(p + 1);
+    law.ogden[p] = {c.finite(terms[p].mu, "mu" + place), c.finite(terms[p].alpha, "alpha" + place)};
+    if (law.ogden[p].alpha == 0) c.refuse(": alpha" + place + " must not be 0: such a term stores no energy");
+  }
+  const char* sum = "the shear modulus at small strain, half the sum of mu and alpha of every term,";
+  law.bulk = bulk_modulus(c, c.positive(c.finite(shear_modulus(law.ogden), sum), sum));
 }
 
 /// Has a material elements with pressures as unknowns? Unless its description says so, where it keeps its volume.
@@ -111,7 +125,8 @@ bool takes_mixed(const MaterialSpec& spec, const ElasticLaw& law, const std::str
   if (!has_bulk_part(law.law))
     throw InvalidInput(spec.origin, owner +
                                         " has elements: mixed, which go with a law that has a part of the volume "
-                                        "alone: neo-hookean, mooney-rivlin, yeoh or gent");
+                                        "alone: " +
+                                        laws_with_bulk_part());
   ElasticLaw own = law;
   if (!(bulk_part(own) > 0))
     throw InvalidInput(spec.origin, owner + " has elements: mixed, which need a poisson_ratio above 0");
@@ -154,6 +169,7 @@ Material checked_material(const MaterialSpec& spec, Formulation formulation) {
   material.density = spec.density;
   material.permittivity = spec.permittivity.value_or(1);
   material.linear_range = spec.linear_range;
+  if (physical) material.named = spec.named;
   return material;
 }
 
@@ -214,16 +230,68 @@ void require_permittivity(const Compilation& c) {
 
 }  // namespace
 
+namespace {
+
+/// "set 'yeoh' E 0.47 MPa, set 'ogden' ..."
+std::string other_sets(const NamedMaterial& named) {
+  std::string text;
+  for (const NamedMaterial::Set& set : named.sets)
+    if (set.name != named.set)
+      text += (text.empty() ? "" : ", ") + set.name + " " + number(set.youngs_modulus_MPa, 3) + " MPa";
+  return text;
+}
+
+/// What is said of a material of the table: how much its sources differ.
+std::string note_of(const NamedMaterial& named, const std::string& regions) {
+  double own = 0, least = 0, most = 0;
+  for (const NamedMaterial::Set& set : named.sets) {
+    if (set.name == named.set) own = set.youngs_modulus_MPa;
+    least = least == 0 ? set.youngs_modulus_MPa : std::min(least, set.youngs_modulus_MPa);
+    most = std::max(most, set.youngs_modulus_MPa);
+  }
+  const std::string begin = "Material '" + named.name + "' of " + regions + " has set '" + named.set +
+                            "', a Young's modulus of " + number(own, 3) + " MPa at small strain";
+  if (named.sets.size() == 1)
+    return begin +
+           "; softkin has no measured curve of it, and where it has one the data sheet's modulus is 1.2 to 4.5 "
+           "times that of the curve.";
+  return begin + "; its other sets have " + other_sets(named) + ": its sources differ by a factor of " +
+         number(most / least, 2) + ", and 'set' chooses between them.";
+}
+
+/// One note for each material of the table and set.
+void note_named_materials(Compilation& c) {
+  if (c.spec.formulation != Formulation::physical) return;
+  std::map<std::pair<std::string, std::string>, std::pair<const NamedMaterial*, std::string>> seen;
+  for (const Material& material : c.model.elements.materials) {
+    if (!material.named) continue;
+    auto& [named, regions] = seen[{material.named->name, material.named->set}];
+    named = material.named.get();
+    regions += (regions.empty() ? "region '" : ", '") + material.region + "'";
+  }
+  for (const auto& [key, each] : seen) c.model.notes.push_back(note_of(*each.first, each.second));
+}
+
+}  // namespace
+
 ElasticLaw elastic_law(const ElasticSpec& spec, const std::string& owner, const Origin& origin) {
   const Constants constants{spec, owner, origin};
   ElasticLaw law;
   law.law = spec.law;
-  if (spec.law == Law::mooney_rivlin || spec.law == Law::yeoh)
-    set_coefficients(constants, law);
-  else if (spec.law == Law::gent)
-    set_limited(constants, law);
-  else
-    set_lame(constants, law);
+  switch (law_traits(spec.law).constants) {
+    case LawConstants::lame:
+      set_lame(constants, law);
+      break;
+    case LawConstants::coefficients:
+      set_coefficients(constants, law);
+      break;
+    case LawConstants::limited:
+      set_limited(constants, law);
+      break;
+    case LawConstants::ogden:
+      set_ogden(constants, law);
+      break;
+  }
   return law;
 }
 
@@ -248,6 +316,7 @@ void compile_materials(Compilation& c) {
   }
   refuse_bare_elements(c);
   require_permittivity(c);
+  note_named_materials(c);
 }
 
 }  // namespace softkin

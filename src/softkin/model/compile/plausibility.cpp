@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <softkin/core/elastic_stability.hpp>
 #include <softkin/core/text.hpp>
 #include <softkin/model/compile/parts.hpp>
 
@@ -88,6 +89,23 @@ void doubt_moduli(Model& model) {
   }
 }
 
+/// Laws of rubber whose constants are of no material at strains that every soft robot comes to.
+void doubt_stability(Model& model) {
+  constexpr double largest_stretch = 1.5;
+  for (const Material& material : model.elements.materials) {
+    if (!forbids_inversion(material.elastic.law)) continue;
+    const auto limit = stability_limit(material.elastic, largest_stretch);
+    if (!limit) continue;
+    model.warnings.push_back("The law '" + std::string(law_traits(material.elastic.law).name) + "' of region '" +
+                             material.region + "' loses its stability (Drucker's condition) at a strain of " +
+                             decimal(limit->stretch - 1, 2) + " along " +
+                             (limit->mode == StretchMode::uniaxial ? "one axis"
+                              : limit->mode == StretchMode::planar ? "one axis at a fixed width"
+                                                                   : "two axes") +
+                             ": its constants are of no material there, and shapes beyond it may not be found.");
+  }
+}
+
 /// Pressures that no elastomer takes: Pa for kPa.
 void doubt_pressures(const Compilation& c, std::vector<std::string>& warnings) {
   constexpr double highest_kPa = 10000, in_stiffest_moduli = 20;
@@ -113,6 +131,7 @@ void doubt_units(Compilation& c) {
   doubt_size(model);
   if (model.formulation != Formulation::physical) return;
   doubt_moduli(model);
+  doubt_stability(model);
   doubt_pressures(c, model.warnings);
   doubt_gravity(c.spec.loads.gravity, model.warnings);
   if (c.spec.loads.gravity.isZero(0)) return;

@@ -32,18 +32,6 @@ std::vector<Index> spatial_order(const Points& rest, const std::vector<Element>&
   return order;
 }
 
-void set_law(LawBlock& block, int lane, const ElasticLaw& law) {
-  block.law = law.law;
-  block.mu[lane] = law.mu;
-  block.lambda[lane] = law.lambda;
-  block.c10[lane] = law.c10;
-  block.c01[lane] = law.c01;
-  block.c20[lane] = law.c20;
-  block.c30[lane] = law.c30;
-  block.bulk[lane] = law.bulk;
-  block.jm[lane] = law.jm;
-}
-
 }  // namespace
 
 /// Adds the pressures of an element to a set, into its lane and in advance into those behind.
