@@ -8,6 +8,7 @@
 #include <softkin/io/file.hpp>
 #include <softkin/io/scanner.hpp>
 #include <softkin/io/table/measurements.hpp>
+#include <softkin/io/table/tensile_file.hpp>
 #include <softkin/model/names.hpp>
 
 #include "command.hpp"
@@ -23,12 +24,16 @@ namespace {
 struct MaterialOptions {
   calibration::SpecimenTask task;
   calibration::TensileTask tensile;
+  std::vector<std::string> tensile_files;
+  TensileLayout layout;
+  std::string branch, zero;
+  bool true_measures = false;
   std::string fragment, plot, residuals;  // outputs
   std::string formulation;                // empty: both
   std::string law;                        // empty: neo-hookean, or with --tensile the one that fits
   std::string grip = "clamped";
   std::vector<std::string> regions{"A", "B"};
-  bool json = false, resume = false, may_replace = false;
+  bool json = false, resume = false, may_replace = false, allow_unstable = false;
   std::set<std::string> given;  // options that the user gave
 
   [[nodiscard]] std::vector<Output> outputs() const {
@@ -55,9 +60,10 @@ void add_inputs(CLI::App& command, MaterialOptions& options) {
   add_value(
       command, "SPECIMENS", options.task.file, "F.csv",
       "Stretched bars of two materials, a row each: l_mm, l1_mm, dl_mm,\ndl1_mm; force_n and area_mm2 where measured");
-  add_value(command, "--tensile", options.tensile.file, "F.csv",
+  add_value(command, "--tensile", options.tensile_files, "F.csv...",
             "In place of SPECIMENS: the tensile test of one material, columns\nstrain or strain_percent, and "
-            "stress_mpa; both nominal");
+            "stress_mpa, both nominal; or the file\nof a testing machine. Several: their fits side by side")
+      ->expected(1, 1000);
   add_value(command, "--twist", options.task.twist_file, "F.csv",
             "With SPECIMENS, to validate: l_mm, l1_mm, twist_deg of the free\nend; interface_deg where measured");
 }
@@ -105,16 +111,47 @@ void add_set_up(CLI::App& command, MaterialOptions& options) {
 }
 
 void add_tensile(CLI::App& command, MaterialOptions& options) {
-  add_value(command, "--law", options.law, "NAME",
-            "Of the simulated specimens: neo-hookean (default), corotational,\nst-venant-kirchhoff; with --tensile, of "
-            "the scene: linear,\nneo-hookean, mooney-rivlin, yeoh (default: the fewest constants\nthat are off by 1 % "
-            "of the largest stress at most (rms), else\nthe best)");
+  add_value(
+      command, "--law", options.law, "NAME",
+      "Of the simulated specimens: neo-hookean (default), corotational,\nst-venant-kirchhoff; with --tensile, of "
+      "the scene: linear,\nneo-hookean, mooney-rivlin, yeoh, gent, ogden-1, ogden-2, ogden-3,\nogden: the first of "
+      "these "
+      "three that fits (default: the first law\nthat is off by 1 % of the largest stress at most (rms), else\nthe "
+      "best)");
   add_value(command, "--linear-tolerance", options.tensile.tolerance_percent, "PERCENT",
             "--tensile: the linear range ends where a stress is off the line\nthrough the origin by more than this "
             "share of the line's stress\nat the end [%] (default: 5)",
             real_number(0, 100));
   add_value(command, "--up-to", options.tensile.most_strain, "STRAIN",
             "--tensile: strain up to which laws are fitted [-] (default: all)", real_number(0, 15));
+  command.add_flag(
+      "--allow-unstable", options.allow_unstable,
+      "--tensile: fit mooney-rivlin and yeoh without the condition that\nthey are stable up to the largest "
+      "strain that is fitted");
+  add_value(command, "--strain-column", options.layout.strain_column, "NAME",
+            "--tensile: the column of the strain, stretch or elongation, where\nits name does not show it");
+  add_value(command, "--stress-column", options.layout.stress_column, "NAME",
+            "--tensile: the column of the stress or force");
+  add_value(command, "--strain-unit", options.layout.strain_unit, "UNIT",
+            "--tensile: of that column, where its name does not state it:\n-, %; of an elongation mm, cm, m, um, in");
+  add_value(command, "--stress-unit", options.layout.stress_unit, "UNIT",
+            "--tensile: of that column: MPa, kPa, Pa, GPa, N/mm2, psi, ksi, bar;\nof a force N, kN, mN, lbf, gf, kgf");
+  command.add_flag("--true-measures", options.true_measures,
+                   "--tensile: the columns that are named hold true strain and true\nstress, not nominal ones");
+  add_value(command, "--length", options.layout.length_mm, "MM",
+            "--tensile: of the specimen between the gauge marks at rest, for\nelongations [mm]", real_number(0, 1e9));
+  add_value(command, "--area", options.layout.area_mm2, "MM2",
+            "--tensile: of the specimen's cross-section at rest, for forces\n[mm^2]", real_number(0, 1e9));
+  add_value(
+      command, "--branch", options.branch, "NAME",
+      "--tensile: of cyclic tests: envelope (default): rows whose strain\nexceeds all before; first: the loading of "
+      "the first cycle; last: that\nof the last one",
+      one_of({"envelope", "first", "last"}));
+  add_value(
+      command, "--zero", options.zero, "NAME",
+      "--tensile: where the strain is 0: file (default): as the file has it;\nfirst: at the first row, whose stress "
+      "is taken off; toe: where the\nline through the beginning has no stress, which takes out slack and\npreload",
+      one_of({"file", "first", "toe"}));
   add_value(command, "--region", options.tensile.region, "NAME",
             "--tensile: name of the material's region in the scene (default: body)");
 }
@@ -145,6 +182,7 @@ void check_names(const std::vector<std::string>& names, const char* option) {
 }
 
 void check(MaterialOptions& options) {
+  if (!options.tensile_files.empty()) options.tensile.file = options.tensile_files.front();
   if (options.task.file.empty() == options.tensile.file.empty())
     throw CLI::ValidationError("SPECIMENS, --tensile", "give one of the two");
   must_end_in("--output", options.fragment, ".yaml");
@@ -155,14 +193,22 @@ void check(MaterialOptions& options) {
   if (options.resume && options.fragment.empty())
     throw CLI::ValidationError("--resume", "needs the --output of the run that was interrupted");
   if (!options.tensile.file.empty()) {
-    check_law(options, {"linear", "neo-hookean", "mooney-rivlin", "yeoh"});
+    std::vector<std::string> laws{"linear", "ogden"};
+    for (const calibration::LawChoice& each : calibration::fitted_laws()) laws.push_back(each.name());
+    check_law(options, laws);
+    if (options.tensile_files.size() > 1)
+      check_belonging(options, {"--output", "--plot", "--residuals"}, "is of one test: give one file to --tensile");
     return check_belonging(options,
                            {"--twist", "--formulation", "--width", "--height", "--grip", "--stiffer", "--cells",
                             "--modulus-b", "--try", "--regions", "--threads", "--resume"},
                            "is of specimens of two materials: it does not go with --tensile");
   }
   check_law(options, {"neo-hookean", "corotational", "st-venant-kirchhoff"});
-  check_belonging(options, {"--linear-tolerance", "--up-to", "--region"}, "needs --tensile");
+  check_belonging(
+      options,
+      {"--linear-tolerance", "--up-to", "--region", "--allow-unstable", "--strain-column", "--stress-column",
+       "--strain-unit", "--stress-unit", "--true-measures", "--length", "--area", "--branch", "--zero"},
+      "needs --tensile");
   if (options.formulation == "physical")
     check_belonging(options, {"--stiffer", "--try"}, "is of target shapes: it does not go with --formulation physical");
   if (options.regions[0] == options.regions[1]) throw CLI::ValidationError("--regions", "the two are one");
@@ -179,6 +225,15 @@ void take(MaterialOptions& options) {
   task.regions = {options.regions[0], options.regions[1]};
   task.set_up = set_up_lines(task, [&](const std::string& option) { return options.unless_given(option); });
   options.tensile.law = options.law;
+  options.tensile.stable = !options.allow_unstable;
+  TensileLayout& layout = options.layout;
+  layout.true_strain = layout.true_stress = options.true_measures;
+  layout.branch = options.branch == "first"  ? TensileBranch::first
+                  : options.branch == "last" ? TensileBranch::last
+                                             : TensileBranch::envelope;
+  layout.zero = options.zero == "first" ? TensileZero::first
+                : options.zero == "toe" ? TensileZero::toe
+                                        : TensileZero::file;
   options.tensile.poisson_ratio = task.options.poisson_ratio;
 }
 
@@ -239,9 +294,37 @@ int calibrate_specimens(const MaterialOptions& options) {
   return not_converged;
 }
 
+/// The test; files of testing machines, and any that options of the layout are given for, by their layout.
+TensileCurve read_test(const MaterialOptions& options, const std::string& file) {
+  const bool by_layout = std::any_of(options.given.begin(), options.given.end(), [](const std::string& option) {
+    return option == "--strain-column" || option == "--stress-column" || option == "--strain-unit" ||
+           option == "--stress-unit" || option == "--length" || option == "--area" || option == "--branch" ||
+           option == "--zero";
+  });
+  return by_layout ? read_tensile_file(file, options.layout) : read_tensile_curve(file);
+}
+
+/// Several tests side by side.
+int compare_tensile(const MaterialOptions& options) {
+  std::vector<std::pair<calibration::TensileTask, calibration::TensileResults>> tests;
+  catch_interrupt();
+  ProgressLine line;
+  for (const std::string& file : options.tensile_files) {
+    if (interrupted()) break;
+    line.show(static_cast<double>(tests.size()) / static_cast<double>(options.tensile_files.size()), file);
+    calibration::TensileTask task = options.tensile;
+    task.file = file;
+    tests.emplace_back(task, calibration::evaluate(task, read_test(options, file)));
+  }
+  line.clear();
+  print(options.json ? calibration::tensile_comparison_json(tests) : calibration::tensile_comparison(tests));
+  return interrupted() ? not_converged : done;
+}
+
 int calibrate_tensile(const MaterialOptions& options) {
+  if (options.tensile_files.size() > 1) return compare_tensile(options);
   const calibration::TensileTask& task = options.tensile;
-  TensileCurve curve = read_tensile_curve(task.file);
+  TensileCurve curve = read_test(options, task.file);
   check_outputs(options.outputs(), {task.file}, options.may_replace);
   const calibration::TensileResults results = calibration::evaluate(task, std::move(curve));
   const OutputFolders folders(options.outputs());

@@ -15,6 +15,7 @@
 #include <softkin/io/file.hpp>
 #include <softkin/io/table/actuator_curve_file.hpp>
 #include <softkin/io/table/measurements.hpp>
+#include <softkin/io/table/tensile_file.hpp>
 #include <softkin/model/names.hpp>
 
 #include "bindings.hpp"
@@ -127,9 +128,11 @@ CurveCalibration dea(const Files& tests, const std::string& law, const std::stri
 }
 
 Calibration tensile(const std::string& file, double poisson_ratio, double tolerance_percent, double most_strain,
-                    const std::string& law, const std::string& region) {
-  const calibration::TensileTask task{file, poisson_ratio, tolerance_percent, most_strain, law, region};
-  const calibration::TensileResults results = calibration::evaluate(task, read_tensile_curve(file));
+                    const std::string& law, const std::string& region, bool stable,
+                    const std::optional<TensileLayout>& layout) {
+  const calibration::TensileTask task{file, poisson_ratio, tolerance_percent, most_strain, law, region, stable};
+  const calibration::TensileResults results =
+      calibration::evaluate(task, layout ? read_tensile_file(file, *layout) : read_tensile_curve(file));
   return {tensile_text(task, results), tensile_json(task, results), tensile_fragment(task, results), "",
           residual_table(results),     tensile_plot(task, results)};
 }
@@ -279,8 +282,21 @@ void bind_calibrate(nb::module_& module) {
       .def_rw("regions", &Specimens::regions)
       .def_rw("journal", &Specimens::journal);
   module.def("calibrate_specimens", &specimens, nb::arg("specimens"), nb::arg("progress").none());
+  nb::class_<TensileLayout>(module, "TensileLayout", "How the file of a testing machine is read.")
+      .def(nb::init<>())
+      .def_rw("strain_column", &TensileLayout::strain_column)
+      .def_rw("stress_column", &TensileLayout::stress_column)
+      .def_rw("strain_unit", &TensileLayout::strain_unit)
+      .def_rw("stress_unit", &TensileLayout::stress_unit)
+      .def_rw("true_strain", &TensileLayout::true_strain)
+      .def_rw("true_stress", &TensileLayout::true_stress)
+      .def_rw("length_mm", &TensileLayout::length_mm)
+      .def_rw("area_mm2", &TensileLayout::area_mm2)
+      .def("set_branch", [](TensileLayout& layout, int branch) { layout.branch = static_cast<TensileBranch>(branch); })
+      .def("set_zero", [](TensileLayout& layout, int zero) { layout.zero = static_cast<TensileZero>(zero); });
   module.def("calibrate_tensile", &tensile, nb::arg("file"), nb::arg("poisson_ratio"), nb::arg("tolerance_percent"),
-             nb::arg("most_strain"), nb::arg("law"), nb::arg("region"), nb::call_guard<nb::gil_scoped_release>());
+             nb::arg("most_strain"), nb::arg("law"), nb::arg("region"), nb::arg("stable"), nb::arg("layout").none(),
+             nb::call_guard<nb::gil_scoped_release>());
   using calibration::RelaxationTask;
   nb::class_<RelaxationTask>(module, "RelaxationTask", "Relaxation, creep and cyclic tests and what is asked of them.")
       .def(nb::init<>())

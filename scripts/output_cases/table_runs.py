@@ -77,7 +77,7 @@ def calibrate():
     yield Case("calibrate tensile", [f"{tensile} -o m.yaml --plot p.svg --residuals r.csv --region all"])
     yield Case("calibrate tensile json", [f"{tensile} --json"])
     yield Case("calibrate tensile part", [f"{tensile} --up-to 1 --linear-tolerance 8 --json"])
-    for law in ("linear", "neo-hookean", "mooney-rivlin", "yeoh"):
+    for law in ("linear", "neo-hookean", "mooney-rivlin", "yeoh", "gent", "ogden", "ogden-1"):
         yield Case(f"calibrate tensile {law}", [f"{tensile} --law {law} -o m.yaml"])
     files = s.target() | {"test.csv": s.syringe_test(), "gauge.csv": s.syringe_test("p_gauge_kpa,dv_sy_mm3", 0, 1)}
     volumes = "--syringe-volume 600mm3 --tube-volume 0.02mL"

@@ -108,6 +108,40 @@ def material(
     return Calibration(core)
 
 
+_TENSILE_LAWS = ("linear", "neo-hookean", "mooney-rivlin", "yeoh", "gent", "ogden-1", "ogden-2", "ogden-3", "ogden")
+_BRANCHES = ("envelope", "first", "last")
+_ZEROS = ("file", "first", "toe")
+
+
+def _layout(
+    columns: tuple[str | None, str | None],
+    units: tuple[str | None, str | None],
+    true_measures: bool,
+    length_mm: float | None,
+    area_mm2: float | None,
+    branch: str,
+    zero: str,
+) -> _core.TensileLayout | None:
+    """How the file is read; None: as its header states."""
+    if branch not in _BRANCHES:
+        raise ValueError(f"branch must be one of {', '.join(_BRANCHES)}, not {branch!r}")
+    if zero not in _ZEROS:
+        raise ValueError(f"zero must be one of {', '.join(_ZEROS)}, not {zero!r}")
+    for name, size in (("length_mm", length_mm), ("area_mm2", area_mm2)):
+        if size is not None and not size > 0:
+            raise ValueError(f"{name} must be greater than 0, not {size}")
+    if not any((*columns, *units, length_mm, area_mm2)) and branch == "envelope" and zero == "file":
+        return None
+    layout = _core.TensileLayout()
+    layout.strain_column, layout.stress_column = columns[0] or "", columns[1] or ""
+    layout.strain_unit, layout.stress_unit = units[0] or "", units[1] or ""
+    layout.true_strain = layout.true_stress = true_measures
+    layout.length_mm, layout.area_mm2 = length_mm or 0.0, area_mm2 or 0.0
+    layout.set_branch(_BRANCHES.index(branch))
+    layout.set_zero(_ZEROS.index(zero))
+    return layout
+
+
 def tensile(
     test: PathLike,
     *,
@@ -116,19 +150,48 @@ def tensile(
     up_to: float | None = None,
     law: str | None = None,
     region: str = "body",
+    allow_unstable: bool = False,
+    strain_column: str | None = None,
+    stress_column: str | None = None,
+    strain_unit: str | None = None,
+    stress_unit: str | None = None,
+    true_measures: bool = False,
+    length_mm: float | None = None,
+    area_mm2: float | None = None,
+    branch: str = "envelope",
+    zero: str = "file",
 ) -> Calibration:
     """An elastic law from the tensile test of one material.
 
-    test                      CSV: strain or strain_percent, and stress_mpa; both nominal
+    test                      CSV: strain or strain_percent, and stress_mpa, both nominal; or the file of a testing
+                              machine
     linear_tolerance_percent  of the line's stress at its end: where a stress is farther off, the linear range ends
     up_to                     strain up to which laws are fitted [-]; None: all
-    law                       of the scene: 'linear', 'neo-hookean', 'mooney-rivlin' or 'yeoh'; None: the one that fits
+    law                       of the scene: 'linear', 'neo-hookean', 'mooney-rivlin', 'yeoh', 'gent', 'ogden-1' to
+                              'ogden-3', or 'ogden', the first of these that fits; None: the first law that fits
     region                    of the scene
+    allow_unstable            mooney-rivlin and yeoh need not be stable up to the largest strain that is fitted
+    strain_column, stress_column  of the file, where their names do not show it
+    strain_unit, stress_unit  of these, such as '%' and 'kPa'
+    true_measures             the columns that are named hold true strain and true stress
+    length_mm, area_mm2       of the specimen at rest, for elongations and forces
+    branch                    of a cyclic test: 'envelope', 'first' or 'last' loading
+    zero                      where the strain is 0: as in the 'file', at the 'first' row, or at the 'toe' of the curve
     """
-    if law not in (None, "linear", "neo-hookean", "mooney-rivlin", "yeoh"):
-        raise InvalidInput(f"law must be linear, neo-hookean, mooney-rivlin or yeoh, not {law!r}")
+    if law is not None and law not in _TENSILE_LAWS:
+        raise InvalidInput(f"law must be {', '.join(_TENSILE_LAWS)}, not {law!r}")
+    layout = _layout(
+        (strain_column, stress_column), (strain_unit, stress_unit), true_measures, length_mm, area_mm2, branch, zero
+    )
     core = _core.calibrate_tensile(
-        os.fspath(test), poisson_ratio, linear_tolerance_percent, up_to or 0.0, law or "", region
+        os.fspath(test),
+        poisson_ratio,
+        linear_tolerance_percent,
+        up_to or 0.0,
+        law or "",
+        region,
+        not allow_unstable,
+        layout,
     )
     return Calibration(core)
 

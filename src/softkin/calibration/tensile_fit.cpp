@@ -1,39 +1,55 @@
 #include <algorithm>
 #include <cmath>
+#include <softkin/calibration/constrained_fit.hpp>
+#include <softkin/calibration/ogden_fit.hpp>
 #include <softkin/calibration/tensile_fit.hpp>
 #include <softkin/core/dense.hpp>
+#include <softkin/core/elastic_stability.hpp>
 #include <softkin/core/error.hpp>
 #include <softkin/model/compile/parts.hpp>
+#include <softkin/model/names.hpp>
 
 namespace softkin::calibration {
 
 namespace {
 
 /// Slope of the isochoric energy by s, where the stretches are s, s^-1/2, s^-1/2.
-template <class AnyLaw>
-double isochoric_slope(const AnyLaw& law, double s) {
+double isochoric_slope(const IncompressibleLaw& law, double s) {
+  double of_terms = 0;
+  for (const OgdenTerm& term : law.ogden)
+    if (term.alpha != 0) of_terms += term.mu * (std::pow(s, term.alpha - 1) - std::pow(s, -term.alpha / 2 - 1));
   const double excess = s * s + 2 / s - 3;
   const double limited = law.jm > 0 ? law.jm / (law.jm - excess) : 1;
   const double slope_1 = law.c10 * limited + 2 * law.c20 * excess + 3 * law.c30 * excess * excess;
-  return 2 * (s - 1 / (s * s)) * (slope_1 + law.c01 / s);
+  return 2 * (s - 1 / (s * s)) * (slope_1 + law.c01 / s) + of_terms;
+}
+
+/// The change of shape of a law as scenes have it.
+IncompressibleLaw shape_part(const ElasticLaw& law) {
+  IncompressibleLaw part{law.law, law.c10, law.c01, law.c20, law.c30, law.jm};
+  if (law.law == Law::gent) part.c10 = law.mu / 2;
+  std::copy(std::begin(law.ogden), std::end(law.ogden), std::begin(part.ogden));
+  return part;
 }
 
 /// The bulk modulus times J - 1 balances the isochoric pull on the sides; both as functions of their stretch t.
-double excess_pressure(const ElasticLaw& law, double stretch, double t) {
+double excess_pressure(const IncompressibleLaw& law, double bulk, double stretch, double t) {
   const double s = std::pow(stretch / t, 2.0 / 3);
   const double j = stretch * t * t;
-  return 3 * law.bulk * (j - 1) * j - isochoric_slope(law, s) * s;
+  return 3 * bulk * (j - 1) * j - isochoric_slope(law, s) * s;
 }
 
-double nearly_incompressible_stress(const ElasticLaw& law, double stretch) {
+double nearly_incompressible_stress(const ElasticLaw& scene_law, double stretch) {
+  const IncompressibleLaw law = shape_part(scene_law);
+  const double bulk = scene_law.bulk;
   double low = 1 / std::sqrt(stretch), high = low;  // no change of volume at low
-  for (int grow = 0; excess_pressure(law, stretch, high) < 0; ++grow) {
+  for (int grow = 0; excess_pressure(law, bulk, stretch, high) < 0; ++grow) {
     if (grow > 200) throw InvalidInput("under tension this law finds no stretch of its sides");
     high *= 1.05;
   }
   for (int halve = 0; halve < 100 && high - low > 1e-15; ++halve) {
     const double middle = 0.5 * (low + high);
-    (excess_pressure(law, stretch, middle) < 0 ? low : high) = middle;
+    (excess_pressure(law, bulk, stretch, middle) < 0 ? low : high) = middle;
   }
   const double t = 0.5 * (low + high), s = std::pow(stretch / t, 2.0 / 3);
   // from the isochoric part: J - 1 of a nearly incompressible law has few digits
@@ -66,11 +82,17 @@ Points2 points_of(const TensileCurve& curve, double most) {
           Eigen::Map<const Eigen::VectorXd>(curve.stress.data(), size)};
 }
 
-/// The stress for each constant alone, a column each.
-Eigen::MatrixXd columns_of(Law law, const Eigen::VectorXd& strain) {
+/// The law with one constant alone, for each.
+std::vector<IncompressibleLaw> unit_laws(Law law) {
   std::vector<IncompressibleLaw> units{{law, 1, 0, 0, 0}};
   if (law == Law::mooney_rivlin) units.push_back({law, 0, 1, 0, 0});
   if (law == Law::yeoh) units.insert(units.end(), {{law, 0, 0, 1, 0}, {law, 0, 0, 0, 1}});
+  return units;
+}
+
+/// The stress for each constant alone, a column each.
+Eigen::MatrixXd columns_of(Law law, const Eigen::VectorXd& strain) {
+  const std::vector<IncompressibleLaw> units = unit_laws(law);
   Eigen::MatrixXd columns(strain.size(), units.size());
   for (Index c = 0; c < columns.cols(); ++c)
     for (Index i = 0; i < strain.size(); ++i) columns(i, c) = uniaxial_stress(units[c], strain[i]);
@@ -84,19 +106,61 @@ Eigen::VectorXd modulus_row(Law law) {
   return Eigen::VectorXd::Ones(1);
 }
 
-/// Least squares with row . c >= bound: one inequality, so the optimum is free or on it.
-Eigen::VectorXd bounded_fit(const Eigen::MatrixXd& columns, const Eigen::VectorXd& stress, const Eigen::VectorXd& row,
-                            double bound, bool& at_bound) {
+/// Conditions on the constants, a row each: the energy of these changes of shape grows faster than linearly, at stretches
+/// up to the largest one. They are linear in the constants.
+Eigen::MatrixXd stability_rows(Law law, double largest_stretch, Index constants) {
+  constexpr int steps = 40, directions = 12;
+  Eigen::MatrixXd rows(std::size(stretch_modes) * steps * directions, constants);
+  Index row = 0;
+  for (const StretchMode mode : stretch_modes)
+    for (int i = 1; i <= steps; ++i) {
+      const Vec3 stretches = stretches_of(mode, std::exp(std::log(largest_stretch) * i / steps));
+      std::vector<Mat3> units;
+      for (const IncompressibleLaw& unit : unit_laws(law))
+        units.push_back(logarithmic_stiffness(isochoric(unit), stretches));
+      for (int d = 0; d < directions; ++d, ++row) {
+        const double angle = std::acos(-1.0) * d / directions;
+        const Vec3 along =
+            std::cos(angle) * Vec3(1, -1, 0) / std::sqrt(2.0) + std::sin(angle) * Vec3(1, 1, -2) / std::sqrt(6.0);
+        for (Index c = 0; c < constants; ++c) rows(row, c) = along.dot(units[c] * along);
+      }
+    }
+  return rows;
+}
+
+struct BoundedFit {
+  Eigen::VectorXd constants;
+  bool at_bound = false;
+  std::optional<double> free_rms;
+};
+
+/// Least squares with row . c >= bound, and where it is asked with the conditions of stability.
+BoundedFit bounded_fit(const LawChoice& choice, const Eigen::MatrixXd& columns, const Points2& points, double bound) {
   const Eigen::VectorXd scale = columns.colwise().norm().transpose().cwiseInverse();
-  const LeastSquares fit = least_squares(columns * scale.asDiagonal(), stress);
+  const Eigen::MatrixXd scaled = columns * scale.asDiagonal();
+  const LeastSquares fit = least_squares(scaled, points.stress);
   if (!scale.allFinite() || fit.rank < columns.cols())
     throw InvalidInput("the tensile test has too few different strains for the constants of this law");
-  const Eigen::VectorXd free = scale.cwiseProduct(fit.solution);
-  at_bound = row.dot(free) < bound;
-  if (!at_bound) return free;
-  const Eigen::MatrixXd normal = (scale.asDiagonal() * columns.transpose() * columns * scale.asDiagonal());
-  const Eigen::VectorXd away = scale.cwiseProduct(solve_symmetric(normal, scale.cwiseProduct(row)));
-  return free + away * (bound - row.dot(free)) / row.dot(away);
+  const Eigen::VectorXd row = modulus_row(choice.law);
+  BoundedFit result{scale.cwiseProduct(fit.solution), false, std::nullopt};
+  result.at_bound = row.dot(result.constants) < bound;
+  Eigen::MatrixXd conditions = scale.cwiseProduct(row).transpose();
+  Eigen::VectorXd bounds = Eigen::VectorXd::Constant(1, bound);
+  bool is_violated = result.at_bound;
+  if (choice.stable) {
+    const Eigen::MatrixXd stability = stability_rows(choice.law, 1 + points.strain.maxCoeff(), columns.cols());
+    const Eigen::VectorXd size = stability.cwiseAbs() * result.constants.cwiseAbs();
+    if (((stability * result.constants).array() < -1e-9 * size.array()).any()) {
+      is_violated = true;
+      result.free_rms = std::sqrt((columns * result.constants - points.stress).squaredNorm() / points.stress.size());
+      conditions.conservativeResize(1 + stability.rows(), Eigen::NoChange);
+      conditions.bottomRows(stability.rows()) = stability * scale.asDiagonal();
+      bounds.conservativeResize(1 + stability.rows());
+      bounds.tail(stability.rows()).setZero();
+    }
+  }
+  if (is_violated) result.constants = scale.cwiseProduct(constrained_fit(scaled, points.stress, conditions, bounds));
+  return result;
 }
 
 IncompressibleLaw law_of(Law law, const Eigen::VectorXd& c) {
@@ -109,6 +173,38 @@ IncompressibleLaw law_of(Law law, const Eigen::VectorXd& c) {
   return result;
 }
 
+bool is_fitted(Law law) {
+  const std::vector<LawChoice>& all = fitted_laws();
+  return std::any_of(all.begin(), all.end(), [law](const LawChoice& each) { return each.law == law; });
+}
+
+Index number_of_constants(const LawChoice& choice) {
+  if (choice.law == Law::ogden) return 2 * choice.terms;
+  return choice.law == Law::gent ? 2 : modulus_row(choice.law).size();
+}
+
+/// The constants; whether they are at a bound goes into the fit.
+IncompressibleLaw fitted_law(const LawChoice& choice, const Points2& points, LawFit& fit) {
+  IncompressibleLaw law{choice.law};
+  if (choice.law == Law::ogden) {
+    const std::vector<OgdenTerm> terms = fit_ogden(points.strain, points.stress, choice.terms);
+    std::copy(terms.begin(), terms.end(), law.ogden);
+    return law;
+  }
+  if (choice.law == Law::gent) {
+    const GentConstants constants = fit_gent(points.strain, points.stress);
+    law.c10 = constants.shear_modulus / 2;
+    law.jm = constants.jm;
+    return law;
+  }
+  const double secant = points.stress.dot(points.strain) / points.strain.squaredNorm();
+  const BoundedFit found =
+      bounded_fit(choice, columns_of(choice.law, points.strain), points, least_modulus * std::max(secant, 0.0) / 6);
+  fit.at_bound = found.at_bound;
+  fit.free_rms_mpa = found.free_rms;
+  return law_of(choice.law, found.constants);
+}
+
 /// The strain nearest to 0, on either side, at which the stress stops to grow.
 std::optional<double> falls_at(const IncompressibleLaw& law, double end) {
   constexpr int steps = 400;
@@ -117,6 +213,7 @@ std::optional<double> falls_at(const IncompressibleLaw& law, double end) {
     double before = 0;
     for (int i = 1; i <= steps; ++i) {
       const double strain = side * i / steps;
+      if (law.jm > 0 && std::pow(1 + strain, 2) + 2 / (1 + strain) - 3 >= law.jm) break;  // it has no energy there
       const double stress = uniaxial_stress(law, strain) * (side > 0 ? 1 : -1);
       if (stress <= before) {
         if (!nearest || std::abs(strain) < std::abs(*nearest)) nearest = strain;
@@ -150,8 +247,8 @@ double uniaxial_stress(const ElasticLaw& law, double strain) {
     const double j = 1 + law.mu * (1 - 1 / stretch) / (law.lambda + law.mu);  // nothing pulls the sides
     return law.mu * (stretch - j / (stretch * stretch));
   }
-  if (law.law != Law::mooney_rivlin && law.law != Law::yeoh)
-    throw InvalidInput("tension is known of neo-hookean, mooney-rivlin and yeoh alone");
+  if (!forbids_inversion(law.law))
+    throw InvalidInput(std::string("a law of rubber is needed for tension, not ") + law_name(law.law));
   return nearly_incompressible_stress(law, stretch);
 }
 
@@ -185,23 +282,53 @@ LinearRange linear_range(const TensileCurve& curve, double tolerance) {
   return range;
 }
 
-LawFit fit_law(const TensileCurve& curve, Law law, double most) {
-  if (law != Law::neo_hookean && law != Law::mooney_rivlin && law != Law::yeoh)
-    throw InvalidInput("a tensile test is fitted by neo-hookean, mooney-rivlin and yeoh alone");
+int IncompressibleLaw::terms() const {
+  return static_cast<int>(
+      std::count_if(std::begin(ogden), std::end(ogden), [](const OgdenTerm& t) { return t.alpha != 0; }));
+}
+
+ElasticLaw isochoric(const IncompressibleLaw& law) {
+  ElasticLaw result;
+  result.law = law.law;
+  result.c10 = law.c10;
+  result.c01 = law.c01;
+  result.c20 = law.c20;
+  result.c30 = law.c30;
+  result.jm = law.jm;
+  if (law.law == Law::gent || law.law == Law::neo_hookean) {
+    result.mu = 2 * law.c10;
+    result.c10 = 0;
+  }
+  std::copy(std::begin(law.ogden), std::end(law.ogden), std::begin(result.ogden));
+  return result;
+}
+
+std::string LawChoice::name() const {
+  return law_name(law) + (law == Law::ogden ? "-" + std::to_string(terms) : "");
+}
+
+const std::vector<LawChoice>& fitted_laws() {
+  static const std::vector<LawChoice> all{{Law::neo_hookean}, {Law::mooney_rivlin}, {Law::yeoh},    {Law::gent},
+                                          {Law::ogden, 1},    {Law::ogden, 2},      {Law::ogden, 3}};
+  return all;
+}
+
+LawFit fit_law(const TensileCurve& curve, const LawChoice& choice, double most) {
+  if (!is_fitted(choice.law))
+    throw InvalidInput("a tensile test is fitted by neo-hookean, mooney-rivlin, yeoh, gent and ogden, not by " +
+                       std::string(law_name(choice.law)));
   const Points2 points = points_of(curve, most);
-  const Eigen::VectorXd row = modulus_row(law);
-  if (points.strain.size() < row.size() || points.strain.size() < 1)
+  if (points.strain.size() < number_of_constants(choice))
     throw InvalidInput("the tensile test has fewer points than this law has constants");
-  const double secant = points.stress.dot(points.strain) / points.strain.squaredNorm();
-  const Eigen::MatrixXd columns = columns_of(law, points.strain);
   LawFit fit;
-  const Eigen::VectorXd constants =
-      bounded_fit(columns, points.stress, row, least_modulus * std::max(secant, 0.0) / 6, fit.at_bound);
-  if (!constants.allFinite() || !(row.dot(constants) > 0))
+  fit.law = fitted_law(choice, points, fit);
+  const double modulus = fit.law.youngs_modulus();
+  if (!(std::isfinite(modulus) && modulus > 0))
     throw InvalidInput("the tensile test has no fit with a modulus above 0: its stress does not grow with strain");
-  fit.law = law_of(law, constants);
   fit.falls_at = falls_at(fit.law, points.strain[points.strain.size() - 1]);
-  fit.quality = quality_of(points.stress, columns * constants);
+  Eigen::VectorXd fitted(points.strain.size());
+  for (Index i = 0; i < fitted.size(); ++i) fitted[i] = uniaxial_stress(fit.law, points.strain[i]);
+  fit.quality = quality_of(points.stress, fitted);
   fit.points = points.strain.size();
   return fit;
 }
@@ -215,12 +342,25 @@ ElasticSpec scene_constants(const IncompressibleLaw& law, double poisson_ratio) 
     return spec;
   }
   const double scale = 3 / (2 * (1 + poisson_ratio));
-  spec.c10 = scale * law.c10;
-  if (law.law == Law::mooney_rivlin) {
-    spec.c01 = scale * law.c01;
-  } else {
-    spec.c20 = scale * law.c20;
-    spec.c30 = scale * law.c30;
+  switch (law_traits(law.law).constants) {
+    case LawConstants::lame:
+      break;
+    case LawConstants::coefficients:
+      spec.c10 = scale * law.c10;
+      if (law.law == Law::mooney_rivlin) spec.c01 = scale * law.c01;
+      if (law.law == Law::yeoh) {
+        spec.c20 = scale * law.c20;
+        spec.c30 = scale * law.c30;
+      }
+      break;
+    case LawConstants::limited:
+      spec.shear_modulus = 2 * scale * law.c10;
+      spec.jm = law.jm;
+      break;
+    case LawConstants::ogden:
+      for (const OgdenTerm& term : law.ogden)
+        if (term.alpha != 0) spec.ogden.push_back({scale * term.mu, term.alpha});
+      break;
   }
   return spec;
 }

@@ -33,6 +33,7 @@ struct TwistedSpecimen {
 struct TensileCurve {
   std::vector<double> strain, stress;  // as many, row by row
   std::vector<std::size_t> lines;      // of the file; empty: not from a file
+  std::vector<std::string> notes{};    // what was taken of the file, a sentence each
 };
 
 /// What the pressures of a syringe test are above: vacuum, or the air around.

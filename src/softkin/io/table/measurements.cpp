@@ -2,10 +2,12 @@
 #include <cmath>
 #include <softkin/core/error.hpp>
 #include <softkin/core/text.hpp>
+#include <softkin/io/file.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/scanner.hpp>
 #include <softkin/io/table/csv.hpp>
 #include <softkin/io/table/measurements.hpp>
+#include <softkin/io/table/tensile_file.hpp>
 
 namespace softkin {
 
@@ -116,7 +118,8 @@ struct Strains {
   void check_order(std::size_t row, double strain, double before) const {
     if (strain > before) return;
     table.fail(row, table.called(name()) + " must ascend, but " + number(table.at(row, name())) + " follows " +
-                        number(table.at(row - 1, name())) + ": give the loading branch of one test");
+                        number(table.at(row - 1, name())) +
+                        ": give the loading branch of one test, or choose it by --branch");
   }
 };
 
@@ -185,6 +188,7 @@ std::vector<TwistedSpecimen> read_twisted_specimens(const std::filesystem::path&
 }
 
 TensileCurve read_tensile_curve(const std::filesystem::path& path) {
+  if (is_machine_file(read_file(path))) return read_tensile_file(path, {});
   const MeasurementTable table(
       path, {{"strain_percent", "", "", false}, {"strain", "", "", false}, {"stress", "mpa", "MPa", true}});
   const bool percent = table.value(0, "strain_percent").has_value();

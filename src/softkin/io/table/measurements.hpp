@@ -18,7 +18,8 @@ namespace softkin {
 /// throws  InvalidInput as above; a twist that is not > 0 and at most 180
 [[nodiscard]] std::vector<TwistedSpecimen> read_twisted_specimens(const std::filesystem::path& path);
 
-/// A tensile test, its loading branch: columns strain or strain_percent, and stress_mpa; both nominal.
+/// A tensile test, its loading branch: columns strain or strain_percent, and stress_mpa; both nominal. Files of testing
+/// machines: as read_tensile_file() with a layout that names nothing.
 ///
 /// throws  InvalidInput as above; strains below 0 or that do not ascend, above 15 (1500 %), fewer than five rows, no
 ///         stress > 0
