@@ -353,7 +353,8 @@ void drop_before_rest(TensileCurve& curve, const std::string& file) {
 
 bool is_machine_file(const std::string& text) {
   TensileText reader("", text, TensileLayout{});
-  for (const std::string_view cell : split_cells(reader.first_line(), ','))
+  const std::string line = reader.first_line();
+  for (const std::string_view cell : split_cells(line, ','))
     if ((cell.starts_with("strain") || cell.starts_with("stress")) &&
         cell.find_first_of(" ;\t([%") == std::string_view::npos)
       return false;
