@@ -90,7 +90,7 @@ TEST(TensileFile, ConvertsTrueMeasures) {
   EXPECT_NE(converted.notes.at(0).find("constant volume"), std::string::npos);
 }
 
-/// Two cycles to 1 and 2: virgin on the way up, half as stiff where it was before.
+/// Two cycles to 1 and 2: virgin where it is new, half as stiff where it was before.
 TEST(TensileFile, ChoosesTheBranchOfACyclicTest) {
   std::string text = "strain;stress (MPa)\n";
   const auto row = [&](double e, double s) { text += std::to_string(e) + ";" + std::to_string(s) + "\n"; };

@@ -9,13 +9,13 @@ namespace softkin::calibration {
 
 namespace {
 
-constexpr double greatest_exponent = 30, least_exponent = 0.05;
-constexpr double grid[] = {-8,  -6, -4.5, -3.5, -2.5, -2, -1.5, -1, -0.5, 0.25, 0.5, 0.75, 1,  1.25,
-                           1.5, 2,  2.5,  3,    3.5,  4,  5,    6,  7,    8,    10,  12,   15, 20};
+constexpr double max_exponent = 30, min_exponent = 0.05;
+constexpr double exponent_grid[] = {-8,  -6, -4.5, -3.5, -2.5, -2, -1.5, -1, -0.5, 0.25, 0.5, 0.75, 1,  1.25,
+                                    1.5, 2,  2.5,  3,    3.5,  4,  5,    6,  7,    8,    10,  12,   15, 20};
 
 using Exponents = std::vector<double>;
 
-struct Candidate {
+struct ExponentTrial {
   Exponents exponents;
   double squares = std::numeric_limits<double>::infinity();  // that are left over
 };
@@ -44,25 +44,25 @@ class OgdenSearch {
     return scale.cwiseProduct(non_negative_fit(all * scale.asDiagonal(), stress_));
   }
 
-  [[nodiscard]] Candidate tried(Exponents exponents) const {
+  [[nodiscard]] ExponentTrial tried(Exponents exponents) const {
     const Eigen::VectorXd left = columns(exponents) * strengths(exponents) - stress_;
     const double squares = left.squaredNorm();
     return {std::move(exponents), std::isfinite(squares) ? squares : std::numeric_limits<double>::infinity()};
   }
 
   /// Compass search: one exponent at a time, with steps that are halved where none is better.
-  [[nodiscard]] Candidate refined(Candidate best) const {
+  [[nodiscard]] ExponentTrial refined(ExponentTrial best) const {
     constexpr double first_step = 0.5, last_step = 2e-4;
-    constexpr int most_tries = 600;
+    constexpr int max_tries = 600;
     int tries = 0;
-    for (double step = first_step; step > last_step && tries < most_tries;) {
+    for (double step = first_step; step > last_step && tries < max_tries;) {
       bool better = false;
       for (std::size_t p = 0; p < best.exponents.size(); ++p)
         for (const double side : {step, -step}) {
           Exponents moved = best.exponents;
-          moved[p] = std::clamp(moved[p] + side, -greatest_exponent, greatest_exponent);
-          if (std::abs(moved[p]) < least_exponent) moved[p] = std::copysign(least_exponent, side);
-          Candidate candidate = tried(std::move(moved));
+          moved[p] = std::clamp(moved[p] + side, -max_exponent, max_exponent);
+          if (std::abs(moved[p]) < min_exponent) moved[p] = std::copysign(min_exponent, side);
+          ExponentTrial candidate = tried(std::move(moved));
           ++tries;
           if (!(candidate.squares < best.squares)) continue;
           best = std::move(candidate);
@@ -104,22 +104,24 @@ class OgdenSearch {
 };
 
 /// Adds a candidate to the best ones, of which so many are kept.
-void keep(std::vector<Candidate>& best, Candidate candidate, std::size_t most) {
+void keep_best(std::vector<ExponentTrial>& best, ExponentTrial candidate, std::size_t max_kept) {
   best.push_back(std::move(candidate));
-  std::sort(best.begin(), best.end(), [](const Candidate& a, const Candidate& b) { return a.squares < b.squares; });
-  if (best.size() > most) best.pop_back();
+  std::sort(best.begin(), best.end(),
+            [](const ExponentTrial& a, const ExponentTrial& b) { return a.squares < b.squares; });
+  if (best.size() > max_kept) best.pop_back();
 }
 
 /// Starts of n exponents: those of one fewer and one of the grid.
-std::vector<Candidate> starts(const OgdenSearch& search, const std::vector<Candidate>& fewer, std::size_t most) {
-  std::vector<Candidate> best;
-  for (const Candidate& each : fewer)
-    for (const double alpha : grid) {
+std::vector<ExponentTrial> exponent_starts(const OgdenSearch& search, const std::vector<ExponentTrial>& fewer,
+                                           std::size_t max_kept) {
+  std::vector<ExponentTrial> best;
+  for (const ExponentTrial& each : fewer)
+    for (const double alpha : exponent_grid) {
       Exponents exponents = each.exponents;
       if (std::any_of(exponents.begin(), exponents.end(), [&](double e) { return std::abs(e - alpha) < 0.1; }))
         continue;
       exponents.push_back(alpha);
-      keep(best, search.tried(std::move(exponents)), most);
+      keep_best(best, search.tried(std::move(exponents)), max_kept);
     }
   return best;
 }
@@ -127,17 +129,18 @@ std::vector<Candidate> starts(const OgdenSearch& search, const std::vector<Candi
 }  // namespace
 
 std::vector<OgdenTerm> fit_ogden(const Eigen::VectorXd& strain, const Eigen::VectorXd& stress, int terms) {
-  constexpr std::size_t most_starts = 6;
+  constexpr std::size_t max_starts = 6;
   const OgdenSearch search(strain, stress);
   // every exponent of the grid is the start of a pair: the best one alone may be in no good pair
-  std::vector<Candidate> best = starts(search, {Candidate{}}, terms == 1 ? most_starts : std::size(grid));
+  std::vector<ExponentTrial> best =
+      exponent_starts(search, {ExponentTrial{}}, terms == 1 ? max_starts : std::size(exponent_grid));
   for (int n = 2; n <= terms; ++n) {
-    best = starts(search, best, most_starts);
+    best = exponent_starts(search, best, max_starts);
     if (n < terms)
-      for (Candidate& each : best) each = search.refined(std::move(each));
+      for (ExponentTrial& each : best) each = search.refined(std::move(each));
   }
-  Candidate found;
-  for (Candidate& each : best) {
+  ExponentTrial found;
+  for (ExponentTrial& each : best) {
     each = search.refined(std::move(each));
     if (each.squares < found.squares) found = each;
   }

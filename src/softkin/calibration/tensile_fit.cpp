@@ -134,7 +134,7 @@ struct BoundedFit {
   std::optional<double> free_rms;
 };
 
-/// Least squares with row . c >= bound, and where it is asked with the conditions of stability.
+/// Least squares with row . c >= bound, and with the conditions of stability where these are requested.
 BoundedFit bounded_fit(const LawChoice& choice, const Eigen::MatrixXd& columns, const Points2& points, double bound) {
   const Eigen::VectorXd scale = columns.colwise().norm().transpose().cwiseInverse();
   const Eigen::MatrixXd scaled = columns * scale.asDiagonal();

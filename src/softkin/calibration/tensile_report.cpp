@@ -21,7 +21,7 @@ double peak_of(const TensileResults& results) {
                            stress.begin() + static_cast<std::ptrdiff_t>(results.laws.front().fit.points));
 }
 
-/// The first law whose rms is small beside the stresses fitted, else the best; of Ogden's alone where it is asked for.
+/// The first law whose rms is small beside the stresses fitted, else the best; of Ogden's alone where the law is requested.
 std::string choose(const TensileTask& task, const TensileResults& results) {
   constexpr double enough = 0.01;
   const double largest = peak_of(results);
@@ -201,12 +201,12 @@ namespace {
 
 /// The linear range; where there is none, why.
 void find_linear_range(const TensileTask& task, TensileResults& results) {
-  constexpr double most_left = 0.1;  // of the largest stress: the curve is a tensile test nevertheless
+  constexpr double max_residual = 0.1;  // of the largest stress: the curve is a tensile test nevertheless
   try {
     results.linear = linear_range(results.curve, task.tolerance_percent / 100);
   } catch (const InvalidInput& error) {
     const auto is_close = [&](const FittedLaw& each) {
-      return each.fit.quality.rms_mpa <= most_left * peak_of(results);
+      return each.fit.quality.rms_mpa <= max_residual * peak_of(results);
     };
     if (task.law == "linear" || std::none_of(results.laws.begin(), results.laws.end(), is_close)) throw;
     results.linear_failure = error.what();

@@ -16,7 +16,7 @@ struct LawKeys {
 };
 
 /// "mu1"
-std::string numbered(const char* key, int term) {
+std::string term_key(const char* key, int term) {
   return key + std::to_string(term + 1);
 }
 
@@ -36,7 +36,7 @@ LawKeys keys_of(Law law) {
     case Law::ogden: {
       Keys further;
       for (int term = 1; term < max_ogden_terms; ++term)
-        further.insert(further.end(), {numbered("mu", term), numbered("alpha", term)});
+        further.insert(further.end(), {term_key("mu", term), term_key("alpha", term)});
       further.insert(further.end(), bulk.begin(), bulk.end());
       return {law, {"mu1", "alpha1"}, further, true};
     }
@@ -137,7 +137,7 @@ std::vector<OgdenTerm> read_terms(const Map& map) {
   std::vector<OgdenTerm> terms;
   double twice_shear = 0;
   for (int term = 0; term < max_ogden_terms; ++term) {
-    const std::string mu = numbered("mu", term), alpha = numbered("alpha", term);
+    const std::string mu = term_key("mu", term), alpha = term_key("alpha", term);
     if (!map.find(mu) && !map.find(alpha)) continue;
     if (!map.find(mu) || !map.find(alpha))
       fail(map.node(), map.node().name + ": law 'ogden' needs '" + mu + "' and '" + alpha + "' together");

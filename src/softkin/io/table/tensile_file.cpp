@@ -14,7 +14,7 @@ namespace softkin {
 
 namespace {
 
-constexpr double greatest_machine_strain = 25;  // 2500 %: beyond what any elastomer stretches by
+constexpr double max_machine_strain = 25;  // 2500 %: beyond what any elastomer stretches by
 
 /// What a column holds.
 enum class Measure { strain, true_strain, stretch, elongation, stress, true_stress, force };
@@ -301,7 +301,7 @@ class TensileText {
                                                               : measured;
       const double force = cell(cells, stress, line);
       if (!(e > -1)) refuse(line, "column " + excerpt(strain.name) + " is a strain of -100 % or less");
-      if (e > greatest_machine_strain)
+      if (e > max_machine_strain)
         refuse(line, "column " + excerpt(strain.name) + " is " + number(100 * e) +
                          " %, more than 2500 %: is it in percent? Then give --strain-unit %");
       curve.strain.push_back(e);
@@ -371,8 +371,8 @@ TensileCurve parse_tensile_file(const std::string& file, const std::string& text
   } catch (const InvalidInput& error) {
     throw InvalidInput({file}, error.what());
   }
-  constexpr std::size_t least_rows = 5;
-  if (curve.strain.size() < least_rows)
+  constexpr std::size_t min_rows = 5;
+  if (curve.strain.size() < min_rows)
     throw InvalidInput(
         {file}, "a tensile test needs at least five rows that ascend, not " + std::to_string(curve.strain.size()));
   if (!(*std::max_element(curve.stress.begin(), curve.stress.end()) > 0))
