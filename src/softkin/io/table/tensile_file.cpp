@@ -23,7 +23,7 @@ bool is_length(Measure m) {
   return m == Measure::strain || m == Measure::true_strain || m == Measure::stretch || m == Measure::elongation;
 }
 
-std::string lowered(std::string_view text) {
+std::string lower_case(std::string_view text) {
   std::string result(text);
   for (char& c : result) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
   return result;
@@ -59,10 +59,10 @@ std::string unit_of(const std::string& name) {
   for (const auto& [open, close] : {std::pair{'(', ')'}, std::pair{'[', ']'}}) {
     const std::size_t from = name.rfind(open), to = name.rfind(close);
     if (from != std::string::npos && to != std::string::npos && from < to)
-      return lowered(stripped(std::string_view(name).substr(from + 1, to - from - 1)));
+      return lower_case(stripped(std::string_view(name).substr(from + 1, to - from - 1)));
   }
   const std::size_t at = name.find_last_of("_ /");
-  return at == std::string::npos ? "" : lowered(std::string_view(name).substr(at + 1));
+  return at == std::string::npos ? "" : lower_case(std::string_view(name).substr(at + 1));
 }
 
 /// What a unit is worth in that of softkin: 1 for strains, MPa, N or mm; none: it is not a unit of such a measure.
@@ -94,7 +94,7 @@ bool has_word(const std::string& name, std::initializer_list<const char*> words)
 
 /// By its name, with or without a unit.
 std::optional<Measure> measure_of(std::string_view column) {
-  const std::string name = lowered(column);
+  const std::string name = lower_case(column);
   if (name.size() > 60 || has_word(name, {"rate", "energy", "cell", "fitted"})) return std::nullopt;
   const bool is_true = has_word(name, {"true", "log", "hencky", "cauchy"});
   if (has_word(name, {"strain"})) return is_true ? Measure::true_strain : Measure::strain;
@@ -157,7 +157,7 @@ class TensileText {
   [[nodiscard]] bool is_header(const std::vector<std::string_view>& cells) const {
     const auto has = [&](const std::string& named, bool length) {
       return std::any_of(cells.begin(), cells.end(), [&](std::string_view cell) {
-        if (!named.empty()) return lowered(cell) == lowered(stripped(named));
+        if (!named.empty()) return lower_case(cell) == lower_case(stripped(named));
         const std::optional<Measure> measure = measure_of(cell);
         return measure && is_length(*measure) == length;
       });
@@ -201,7 +201,7 @@ class TensileText {
       std::optional<Measure> measure = measure_of(columns_[c]);
       if (measure && is_length(*measure) != length) measure = std::nullopt;
       if (!named.empty()) {
-        if (lowered(columns_[c]) != lowered(stripped(named))) continue;
+        if (lower_case(columns_[c]) != lower_case(stripped(named))) continue;
         if (!measure) measure = length ? Measure::strain : Measure::stress;
         if (length && layout_.true_strain) measure = Measure::true_strain;
         if (!length && layout_.true_stress) measure = Measure::true_stress;
@@ -253,7 +253,7 @@ class TensileText {
 
   void set_scale(ChosenColumn& column, const std::string& given) const {
     const bool length = is_length(column.measure);
-    const std::string unit = given.empty() ? unit_of(column.name) : lowered(given);
+    const std::string unit = given.empty() ? unit_of(column.name) : lower_case(given);
     const std::optional<double> scale = unit_scale(column.measure, unit);
     const bool may_have_none = column.measure != Measure::elongation && length;
     if (!scale && !(may_have_none && given.empty() && !has_brackets(column.name)))
