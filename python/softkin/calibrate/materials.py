@@ -124,12 +124,12 @@ def _layout(
 ) -> _core.TensileLayout | None:
     """How the file is read; None: as its header states."""
     if branch not in _BRANCHES:
-        raise ValueError(f"branch must be one of {', '.join(_BRANCHES)}, not {branch!r}")
+        raise InvalidInput(f"branch must be one of {', '.join(_BRANCHES)}, not {branch!r}")
     if zero not in _ZEROS:
-        raise ValueError(f"zero must be one of {', '.join(_ZEROS)}, not {zero!r}")
+        raise InvalidInput(f"zero must be one of {', '.join(_ZEROS)}, not {zero!r}")
     for name, size in (("length_mm", length_mm), ("area_mm2", area_mm2)):
         if size is not None and not size > 0:
-            raise ValueError(f"{name} must be greater than 0, not {size}")
+            raise InvalidInput(f"{name} must be greater than 0, not {size}")
     if not any((*columns, *units, length_mm, area_mm2)) and branch == "envelope" and zero == "file":
         return None
     layout = _core.TensileLayout()
