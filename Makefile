@@ -10,6 +10,9 @@ export CCACHE_SLOPPINESS ?= pch_defines,time_macros
 export CCACHE_BASEDIR ?= $(CURDIR)
 endif
 export CTEST_OUTPUT_ON_FAILURE = 1
+# where tests that cannot run here write down why (tests/support/main.cpp, python/tests/conftest.py); with
+# SOFTKIN_NO_SKIP=1, as in .ci/run, they fail, but for those of data that are not in the repository
+export SOFTKIN_SKIPPED := $(CURDIR)/build-tests/skipped.txt
 # three quarters of gcc 12's time to compile, and kernels that are faster; looked for when it has been installed
 ifneq ($(filter default undefined,$(origin CXX)),)
 export CXX = $(shell command -v clang++ || echo c++)
@@ -28,8 +31,9 @@ empty :=
 sanitized_pattern = ^($(subst $(empty) $(empty),|,$(strip $(sanitized))))$$
 
 .PHONY: help setup build run python docs bench paper random fuzz format format-check tidy clean
-.PHONY: test setup-tests test-release test-page test-python
-.PHONY: test-deep test-release-deep test-page-deep test-sanitize test-threads test-fuzz test-python-deep test-arm
+.PHONY: test begin-tests setup-tests test-release test-page test-python
+.PHONY: test-deep setup-tests-deep test-release-deep test-page-deep test-sanitize test-threads test-fuzz
+.PHONY: test-python-deep test-arm
 # one after the other: each of them uses every core
 .NOTPARALLEL:
 
@@ -90,12 +94,26 @@ python:
 	@echo "softkin is in build-python: build-python/bin/python examples/python/first_bend.py"
 
 # Each test is in one of these two.
-test: setup-tests format-check test-release test-page test-python
+test: begin-tests setup-tests format-check test-release test-page test-python
+	$(list_skipped)
 
-test-deep: setup-tests test-release-deep test-page-deep test-sanitize test-threads test-fuzz test-python-deep
+test-deep: begin-tests setup-tests-deep test-release-deep test-page-deep test-sanitize test-threads test-fuzz test-python-deep
+	$(list_skipped)
+
+begin-tests:
+	@mkdir -p $(dir $(SOFTKIN_SKIPPED))
+	@: >$(SOFTKIN_SKIPPED)
+
+define list_skipped
+@sort -u $(SOFTKIN_SKIPPED) | awk '{ line[NR] = $$0 } \
+  END { print "skipped tests: " (NR ? NR : "none"); for (i = 1; i <= NR; ++i) print "  " line[i] }'
+endef
 
 setup-tests:
 	@$(SETUP) --tests
+
+setup-tests-deep:
+	@$(SETUP) --tests-deep
 
 test-release:
 	cmake --preset release -DSOFTKIN_TESTS=ON -DSOFTKIN_BENCH=OFF
@@ -214,4 +232,4 @@ tidy:
 	run-clang-tidy-14 -quiet -p build-tidy -j $(cores) '^(?!.*/page/)'
 
 clean:
-	rm -rf build build-arm build-debug build-docs build-fuzz build-sanitize build-threads build-tidy
+	rm -rf build build-arm build-debug build-docs build-fuzz build-sanitize build-tests build-threads build-tidy

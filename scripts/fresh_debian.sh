@@ -10,33 +10,11 @@ set -euo pipefail
   sed -n '2,6s/^# //p' "$0" >&2
   exit 2
 }
+name=fresh_debian
 folder=$(realpath -m "$1")
 shift
 source=$(realpath "$(dirname "$0")/..")
-mirror=$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' | head -n 1)
-
-# fresh NAME PACKAGES: a system of its own, from an archive of the packages that the first one leaves
-fresh() {
-  local root=$folder/$1
-  [ ! -e "$root" ] || { echo "fresh_debian: $root is there already: remove it" >&2; exit 2; }
-  mkdir -p "$folder/archives"
-  debootstrap --variant=minbase --cache-dir="$folder/archives" --include="ca-certificates,python3,python3-venv$2" bookworm \
-    "$root" "$mirror" >"$folder/$1.log" 2>&1 || { tail -n 5 "$folder/$1.log" >&2; exit 1; }
-  rm "$root/etc/apt/sources.list"
-  cp -a /etc/apt/. "$root/etc/apt/"
-  cp -a /etc/ssl/certs/. "$root/etc/ssl/certs/"
-  cp -L /etc/resolv.conf /etc/hosts "$root/etc/"
-  [ ! -f /etc/pip.conf ] || cp /etc/pip.conf "$root/etc/"
-}
-
-inside() { # NAME COMMAND: with the variables that pip and apt read, and /proc, by which programs find their libraries
-  local root=$folder/$1
-  shift
-  local settings
-  mapfile -t settings < <(env | grep -iE '^(pip_|https?_proxy|no_proxy)' || true)
-  env -i "${settings[@]}" PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 \
-    unshare --mount bash -euc 'mount -t proc proc "$0/proc" && exec chroot "$0" bash -euo pipefail -c "$1"' "$root" "$*"
-}
+. "$source/scripts/fresh_root.sh"
 
 first_script="cd /softkin/examples/python && /softkin/venv/bin/python first_bend.py && /softkin/venv/bin/softkin --version"
 

@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
-# Installs what softkin needs to build (with --tests: also what its tests need; with --python: what its Python package
-# needs of PYTHON, python3 if not said; with --arm: what building for aarch64 and running it here needs; with --tidy: what
-# `make tidy` reads the sources with), and only what is missing.
+# Installs what softkin needs to build (with --tests: also what the tests of `make test` need, --tests-deep: what those of
+# `make test-deep` need besides; with --python: what its Python package needs of PYTHON, python3 if not said; with --arm:
+# what building for aarch64 and running it here needs; with --tidy: what `make tidy` reads the sources with), and only
+# what is missing. Python packages that tests need go into build-tests/python, a virtual environment of their own.
 # Exit codes: 0 everything is there, 2 it is not and could not be installed.
 set -euo pipefail
 
@@ -9,25 +10,53 @@ packages=(clang g++ cmake ninja-build libeigen3-dev libyaml-cpp-dev nlohmann-jso
           libcli11-dev libmetis-dev libnanoflann-dev libqhull-dev libboost-dev)
 # builds the page of softkin view and --html; any npm with Node.js 18 or later does
 command -v npm >/dev/null || packages+=(npm)
+python=${PYTHON:-python3}
+requirements=()
 case "${1:-}" in
   "") ;;
-  --tests)
-    packages+=(libgtest-dev clang-format-14 libopencv-dev libclang-rt-dev lld)
+  --tests | --tests-deep)
+    packages+=(libgtest-dev clang-format-14 libopencv-dev libclang-rt-dev lld mawk gawk original-awk)
     command -v "${SOFTKIN_CHROMIUM:-chromium}" >/dev/null || packages+=(chromium)
+    "$python" -c 'import ensurepip, venv' 2>/dev/null || packages+=(python3-venv)
+    requirements=(tests/requirements.txt)
+    if [ "$1" = --tests-deep ]; then
+      packages+=(libopenmpi-dev openmpi-bin calculix-ccx)
+      command -v gmsh >/dev/null || packages+=(gmsh)
+      requirements+=(tests/requirements-deep.txt)
+    fi
     ;;
   --python)
-    python=${PYTHON:-python3}
     "$python" -c 'import ensurepip, venv' 2>/dev/null || packages+=(python3-venv)
     "$python" -c 'import os, sysconfig; os.stat(sysconfig.get_path("include") + "/Python.h")' 2>/dev/null || packages+=(python3-dev)
     ;;
   --arm) packages+=(g++-aarch64-linux-gnu qemu-user) ;;
   --tidy) packages+=(clang-tidy-14 libopencv-dev) ;;
-  *) echo "usage: scripts/setup.sh [--tests | --python | --arm | --tidy]" >&2; exit 2 ;;
+  *) echo "usage: scripts/setup.sh [--tests | --tests-deep | --python | --arm | --tidy]" >&2; exit 2 ;;
 esac
 
 fail() {
   printf 'setup: %s\n' "$@" >&2
   exit 2
+}
+
+# The virtual environment of the tests. Tests that need what it lacks are skipped, and `make test` lists them.
+finish() {
+  [ ${#requirements[@]} -gt 0 ] || exit 0
+  local folder done_file wanted
+  folder=$(dirname "$0")/../build-tests/python
+  done_file=$folder/requirements.txt
+  wanted=$(cd "$(dirname "$0")/.." && "$python" --version && cat "${requirements[@]}")
+  [ "$(head -n "$(wc -l <<<"$wanted")" "$done_file" 2>/dev/null)" = "$wanted" ] && exit 0
+  echo "setup: installs the packages of ${requirements[*]} into build-tests/python"
+  if [ "$("$folder/bin/python" --version 2>/dev/null)" != "$("$python" --version)" ]; then
+    "$python" -m venv --clear "$folder" || fail "$python cannot make a virtual environment in build-tests/python"
+  fi
+  if (cd "$(dirname "$0")/.." && build-tests/python/bin/pip install --quiet "${requirements[@]/#/--requirement=}"); then
+    echo "$wanted" >"$done_file"
+  else
+    echo "setup: pip could not install them (above); tests that need them are skipped" >&2
+  fi
+  exit 0
 }
 
 system="this system"
@@ -38,7 +67,8 @@ if ! command -v dpkg-query >/dev/null || ! command -v apt-get >/dev/null; then
   fail "$system has no apt; softkin is made for Debian 12 and Ubuntu 24.04." \
        "Install a C++20 compiler (clang 14, gcc 12 or later), CMake 3.22, Ninja, Eigen 3.4, yaml-cpp, nlohmann-json," \
        "pugixml, zlib, libpng, CLI11, METIS, nanoflann, Qhull and Boost 1.74, with their headers, and Node.js 18 with npm for the page;" \
-       "for the tests also GoogleTest, clang-format 14, clang with libFuzzer, lld, and Chromium;" \
+       "for the tests also GoogleTest, clang-format 14, clang with libFuzzer, lld, Chromium, and Python with venv and pip, in" \
+       "build-tests/python with the packages of tests/requirements.txt;" \
        "for softkin measure OpenCV 4.5 or 4.6." \
        "Then run make again with SETUP=true, e.g.: make run SETUP=true"
 fi
@@ -49,7 +79,7 @@ for package in "${packages[@]}"; do
   [ "$status" = "install ok installed" ] || missing+=("$package")
 done
 if [ ${#missing[@]} -eq 0 ]; then
-  exit 0
+  finish
 fi
 
 case "$(. /etc/os-release && echo "${ID:-} ${VERSION_ID:-}")" in
@@ -68,3 +98,4 @@ fi
 apt_get() { "${root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get -q -y "$@"; }
 apt_get update && apt_get install --no-install-recommends "${missing[@]}" ||
   fail "the packages could not be installed; as root run" "  $by_hand"
+finish

@@ -1,23 +1,26 @@
 #!/usr/bin/env bash
 # Tests the page of apps/view/web: its types, its units, and in headless Chromium the pages of a program; or its live mode.
 #   scripts/test_page.sh PROGRAM FOLDER [live]   FOLDER: what npm installs, and screenshots, to be looked at
-# Exit codes: 0 all of it passes, or there is no page to test, which is said; 1 something fails, 2 usage.
+# Exit codes: 0 all of it passes, or there is no page to test, which is reported, and listed in the file SOFTKIN_SKIPPED;
+# 1 something fails, or is skipped where SOFTKIN_NO_SKIP is set; 2 usage.
 set -euo pipefail
 
 part=${3:-files}
-[[ $# -ge 2 && $# -le 3 && $part =~ ^(files|live)$ ]] || { sed -n '2,4s/^# //p' "$0" >&2; exit 2; }
+[[ $# -ge 2 && $# -le 3 && $part =~ ^(files|live)$ ]] || { sed -n '2,5s/^# //p' "$0" >&2; exit 2; }
 program=$(realpath "$1")
 mkdir -p "$2"
 folder=$(realpath "$2")
 source=$(realpath "$(dirname "$0")/..")
-if ! "$program" view --help >/dev/null 2>&1 || ! command -v npm >/dev/null; then
-  echo "test_page: skipped: no npm"
+
+skip() { # REASON
+  echo "test_page: skipped: $1"
+  [ -z "${SOFTKIN_SKIPPED:-}" ] || echo "test_page.sh $part: $1" >>"$SOFTKIN_SKIPPED"
+  [ -z "${SOFTKIN_NO_SKIP:-}" ] || exit 1
   exit 0
-fi
-if ! grep -q 'id="softkin-page"' "$program"; then
-  echo "test_page: skipped: $program was built without its page"
-  exit 0
-fi
+}
+
+command -v npm >/dev/null || skip "the program npm is not installed"
+grep -q 'id="softkin-page"' "$program" || skip "built without the page"
 
 # taken NAME FROM: a copy, beside what npm installed there before
 taken() {

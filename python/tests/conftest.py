@@ -14,6 +14,43 @@ import softkin
 ROOT = Path(__file__).resolve().parents[2]
 
 
+class Skips:
+    """Lists skipped tests in the file SOFTKIN_SKIPPED. With SOFTKIN_NO_SKIP a run in which there are any fails."""
+
+    def __init__(self) -> None:
+        self.found: dict[str, str] = {}
+
+    def _note(self, report: pytest.TestReport | pytest.CollectReport) -> None:
+        if report.skipped and not hasattr(report, "wasxfail"):
+            reason = report.longrepr[2] if isinstance(report.longrepr, (tuple, list)) else str(report.longrepr)
+            self.found[report.nodeid] = reason.removeprefix("Skipped: ")
+
+    def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
+        self._note(report)
+
+    def pytest_collectreport(self, report: pytest.CollectReport) -> None:
+        self._note(report)
+
+    @pytest.hookimpl(tryfirst=True)
+    def pytest_sessionfinish(self, session: pytest.Session) -> None:
+        if file := os.environ.get("SOFTKIN_SKIPPED"):
+            with open(file, "a") as lines:
+                lines.writelines(f"{test}: {reason}\n" for test, reason in self.found.items())
+        if self.found and os.environ.get("SOFTKIN_NO_SKIP") and session.exitstatus == pytest.ExitCode.OK:
+            session.exitstatus = pytest.ExitCode.TESTS_FAILED
+
+    def pytest_terminal_summary(self, terminalreporter: pytest.TerminalReporter) -> None:
+        if self.found and os.environ.get("SOFTKIN_NO_SKIP"):
+            terminalreporter.section("skipped, where SOFTKIN_NO_SKIP forbids it", red=True)
+            for test, reason in self.found.items():
+                terminalreporter.line(f"{test}: {reason}", red=True)
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    if not hasattr(config, "workerinput"):  # one for all processes of pytest-xdist
+        config.pluginmanager.register(Skips())
+
+
 @pytest.fixture(scope="session")
 def examples() -> Path:
     return ROOT / "examples"

@@ -78,12 +78,16 @@ def test_layers_go_through_files(tmp_path: Path) -> None:
         np.testing.assert_array_equal(again.volume_regions[name], region)
     said = run_softkin("mesh", "info", tmp_path / "a.msh")
     assert said.returncode == 0 and "6 tetrahedra, 2 prisms" in said.stdout, said.stdout + said.stderr
-    for name in ("meshio", "pyvista"):
-        if pytest.importorskip(name) is None:
-            continue
-        other = getattr(VolumeMesh, f"from_{name}")(getattr(mesh, f"to_{name}")())
-        np.testing.assert_array_equal(other.prisms, mesh.prisms)
-        np.testing.assert_array_equal(other.volume_regions["membrane"], mesh.volume_regions["membrane"])
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize("name", ["meshio", "pyvista"])
+def test_layers_go_through_other_packages(name: str) -> None:
+    pytest.importorskip(name)
+    mesh = cube(10).with_layer("above", {"membrane": 1})
+    other = getattr(VolumeMesh, f"from_{name}")(getattr(mesh, f"to_{name}")())
+    np.testing.assert_array_equal(other.prisms, mesh.prisms)
+    np.testing.assert_array_equal(other.volume_regions["membrane"], mesh.volume_regions["membrane"])
 
 
 def test_a_membrane_of_a_sheet_spreads() -> None:

@@ -18,6 +18,7 @@
 #include "newton_runs.hpp"
 #include "physical_parts.hpp"
 #include "support/patience.hpp"
+#include "support/skips.hpp"
 
 namespace softkin::bench {
 namespace {
@@ -268,7 +269,7 @@ TEST(CalculixDeck, RefusesAnotherModel) {
 }
 
 TEST(CalculixRun, AgreesWithThePhysicalFormulation) {
-  if (!on_path("ccx")) GTEST_SKIP() << "CalculiX is not there";
+  SKIP_WITHOUT_PROGRAM("ccx");
   for (const FingerKind kind : {FingerKind::physical, FingerKind::physical_quadratic}) {
     const FingerSource source = coarse_finger();
     const auto answers = find_answers(source, kind, {1}, 1, patient(120));

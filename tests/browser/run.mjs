@@ -9,7 +9,7 @@ import {liveTests} from './live.mjs';
 import {reportTests} from './report.mjs';
 import {outputTests} from './outputs.mjs';
 import {liveShownTests, shownTests} from './shown.mjs';
-import {hasView, stopAll} from './softkin.mjs';
+import {stopAll} from './softkin.mjs';
 import {timeTests} from './times.mjs';
 
 mkdirSync(process.argv[3], {recursive: true});
@@ -35,12 +35,12 @@ try {
     await shownTests(browser, test);
     await fieldTests(browser, test);
     await timeTests(browser, test);
-  } else if (await hasView()) {
+  } else {
     await liveFieldTests(browser, test);
     await liveShownTests(browser, test);
     await estimateTests(browser, test);
     await liveTests(browser, test);
-  } else console.log('skipped: live mode, this softkin has no view');
+  }
 } finally {
   await browser.close();
   stopAll();

@@ -37,15 +37,6 @@ export async function forward(scene, names, rows, ...more) {
   return JSON.parse(await softkin('fk', scene, '--path', out('rows.csv'), '--json', ...more)).steps;
 }
 
-export async function hasView() {
-  try {
-    await softkin('view', '--help');
-    return true;
-  } catch {
-    return false;
-  }
-}
-
 const serving = new Set();
 /** Ends what a test that failed has left, which would keep this program from ending. */
 export const stopAll = () => serving.forEach((child) => child.kill('SIGKILL'));

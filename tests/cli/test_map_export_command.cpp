@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <filesystem>
+#include <memory>
 #include <softkin/core/text.hpp>
 #include <softkin/io/file.hpp>
 #include <softkin/kinematics/map.hpp>
@@ -8,8 +9,10 @@
 #include <softkin/runs/map_file.hpp>
 #include <softkin/runs/page.hpp>
 
+#include "page_samples.hpp"
 #include "run_program.hpp"
 #include "runs/small_maps.hpp"
+#include "support/skips.hpp"
 
 namespace {
 
@@ -51,8 +54,7 @@ TEST(MapExport, WritesWhatIsAskedAndTellsItsSize) {
   const ExportFolder folder;
   const std::string c = folder / "new/arm.h", numpy = folder / "arm.npz", js = folder / "arm.mjs",
                     types = folder / "arm.d.mts";
-  if (!runs::page_is_there())
-    return folder.refused({"--c", c, "--js", js}, "no module for JavaScript: this softkin was built without its page");
+  SKIP_WITHOUT_PAGE();
   const ProgramResult result = folder.run({"--c", c, "--numpy", numpy, "--js", js});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_EQ(read_text(c), runs::map_c_header(folder.data, runs::CNumbers::doubles));
@@ -122,75 +124,90 @@ TEST(MapExport, IsACommandBesideMakingMaps) {
   EXPECT_EQ(folder.files(), 1u);
 }
 
-/// The block of a language in docs/maps.md.
-std::string block_of(const std::string& language) {
-  const std::string text = read_text(SOFTKIN_SOURCE_DIR "/docs/maps.md"), begin = "```" + language + "\n";
-  const std::size_t from = text.find(begin);
-  if (from == std::string::npos) return "";
-  return text.substr(from + begin.size(), text.find("```", from + 3) - from - begin.size());
+/// The block of code in docs/maps.md of this language that has these words; there must be one.
+std::string block_of(const std::string& language, const std::string& words) {
+  const std::string text = read_text(SOFTKIN_SOURCE_DIR "/docs/maps.md"), begin = "\n```" + language + "\n";
+  std::vector<std::string> found;
+  for (std::size_t from = text.find(begin); from != std::string::npos; from = text.find(begin, from)) {
+    from += begin.size();
+    const std::string block = text.substr(from, text.find("```", from) - from);
+    if (block.find(words) != std::string::npos) found.push_back(block);
+  }
+  EXPECT_EQ(found.size(), 1u) << "blocks in " << language << " with '" << words << "' in docs/maps.md";
+  return found.empty() ? "" : found[0];
 }
 
-bool can_run(const std::string& command) {
-  return run_shell(command + " > /dev/null 2>&1").exit_code == 0;
-}
-
-/// The robot of docs/maps.md, its map less accurate.
-struct ActuatorFolder : TemporaryFolder {
-  std::string map = *this / "out/actuator.skmap";
-
-  ActuatorFolder() {
+/// The robot of docs/maps.md and its map, which is less accurate, in the forms for other programs; made once.
+class MapExportPrograms : public ::testing::Test {
+ protected:
+  static void SetUpTestSuite() {
+    folder_ = std::make_unique<TemporaryFolder>();
     const std::string robot = SOFTKIN_SOURCE_DIR "/examples/three_chamber_actuator/three_chamber_actuator.yaml";
-    const ProgramResult made = run_program({"map", robot, "-o", map, "--accuracy", "0.5", "--load-accuracy", "1",
+    const std::string file = *folder_ / "out/actuator.skmap";
+    const ProgramResult made = run_program({"map", robot, "-o", file, "--accuracy", "0.5", "--load-accuracy", "1",
                                             "--shape-accuracy", "1", "--check", "1"});
-    EXPECT_EQ(made.exit_code, 0) << made.errors;
+    ASSERT_EQ(made.exit_code, 0) << made.errors;
     std::vector<std::string> words{
-        "map", "export", map, "--c", *this / "out/actuator.h", "--float", "--numpy", *this / "out/actuator.npz"};
-    if (runs::page_is_there()) words.insert(words.end(), {"--js", *this / "out/actuator.mjs"});
+        "map", "export", file, "--c", *folder_ / "out/actuator.h", "--float", "--numpy", *folder_ / "out/actuator.npz"};
+    if (runs::page_is_there()) words.insert(words.end(), {"--js", *folder_ / "out/actuator.mjs"});
     const ProgramResult all = run_program(words);
-    EXPECT_EQ(all.exit_code, 0) << all.errors;
+    ASSERT_EQ(all.exit_code, 0) << all.errors;
+    map_ = std::make_unique<softkin::KinematicMap>(runs::read_map(file));
+  }
+  static void TearDownTestSuite() {
+    map_.reset();
+    folder_.reset();
   }
 
-  [[nodiscard]] ProgramResult shell(const std::string& command) const {
-    return run_shell("cd " + shell_quoted(*this / "out") + " && { " + command + "\n} 2>&1");
+  /// What a command prints in the folder of the exported files.
+  [[nodiscard]] static std::string printed(const std::string& command) {
+    const ProgramResult result = run_shell("cd " + shell_quoted(*folder_ / "out") + " && { " + command + "\n} 2>&1");
+    EXPECT_EQ(result.exit_code, 0) << result.output;
+    return result.output;
   }
+  [[nodiscard]] static Eigen::VectorXd outputs_at(const double* commands) {
+    Eigen::VectorXd outputs(map_->outputs());
+    EXPECT_TRUE(map_->evaluate(commands, outputs.data()));
+    return outputs;
+  }
+
+  static constexpr double commands_[] = {1.2, 1.0, 1.1};  // those of the document
+  static std::unique_ptr<TemporaryFolder> folder_;
+  static std::unique_ptr<softkin::KinematicMap> map_;
 };
 
-TEST(MapExport, ProgramsOfTheDocumentRun) {
-  const ActuatorFolder folder;
-  const softkin::KinematicMap map(runs::read_map(folder.map));
-  const double commands[] = {1.2, 1.0, 1.1};
-  Eigen::VectorXd outputs(map.outputs());
-  ASSERT_TRUE(map.evaluate(commands, outputs.data()));
-  if (can_run("cc --version")) {
-    folder.write("out/main.c", block_of("c"));
-    const ProgramResult result = folder.shell("cc -std=c99 -Wall -Wextra -Werror main.c -o main && ./main");
-    ASSERT_EQ(result.exit_code, 0) << result.output;
-    const std::vector<std::string> lines = lines_of(result.output);
-    ASSERT_EQ(lines.size(), 2u) << result.output;
-    EXPECT_NEAR(std::stod(lines[0]), outputs[3], 1e-3);
-    std::istringstream words(lines[1]);
-    Eigen::Vector3d found;
-    for (double& value : found) words >> value;
-    ASSERT_TRUE(map.evaluate(found.data(), outputs.data()));
-    EXPECT_LT((outputs.head<3>() - Eigen::Vector3d(10, -5, 140)).norm(), 0.05);  // of 4 decimals
-    ASSERT_TRUE(map.evaluate(commands, outputs.data()));
-  }
-  if (can_run("python3 -c 'import numpy'")) {
-    folder.write("out/main.py", "import os\nos.chdir('..')\n" + block_of("python") +
+std::unique_ptr<TemporaryFolder> MapExportPrograms::folder_;
+std::unique_ptr<softkin::KinematicMap> MapExportPrograms::map_;
+
+TEST_F(MapExportPrograms, CProgramOfTheDocumentGivesTheOutputsOfTheMap) {
+  SKIP_WITHOUT_PROGRAM("cc");
+  folder_->write("out/main.c", block_of("c", "actuator.h"));
+  const std::vector<std::string> lines =
+      lines_of(printed("cc -std=c99 -Wall -Wextra -Werror main.c -o main && ./main"));
+  ASSERT_EQ(lines.size(), 2u);
+  EXPECT_NEAR(std::stod(lines[0]), outputs_at(commands_)[3], 1e-3);
+  std::istringstream words(lines[1]);
+  Eigen::Vector3d found;
+  for (double& value : found) words >> value;
+  EXPECT_LT((outputs_at(found.data()).head<3>() - Eigen::Vector3d(10, -5, 140)).norm(), 0.05);  // of 4 decimals
+}
+
+TEST_F(MapExportPrograms, PythonProgramOfTheDocumentGivesTheOutputsOfTheMap) {
+  SKIP_WITHOUT_PYTHON("numpy");
+  folder_->write("out/main.py", "import os\nos.chdir('..')\n" + block_of("python", "NumpyMap(") +
                                     "assert shape.shape[0] == 1 and shape.size > 3\nprint(outputs[0, 0])\n");
-    const ProgramResult result =
-        folder.shell("PYTHONPATH=" + shell_quoted(SOFTKIN_SOURCE_DIR "/examples/python") + " python3 main.py");
-    ASSERT_EQ(result.exit_code, 0) << result.output;
-    EXPECT_NEAR(std::stod(result.output), outputs[0], 1e-9);
-  }
-  if (runs::page_is_there() && can_run("node --version")) {
-    folder.write("out/main.mjs", block_of("js") +
+  const std::string text = printed("PYTHONPATH=" + shell_quoted(SOFTKIN_SOURCE_DIR "/examples/python") + " " +
+                                   shell_quoted(test_python()) + " main.py");
+  EXPECT_NEAR(number_after(text, ""), outputs_at(commands_)[0], 1e-9);
+}
+
+TEST_F(MapExportPrograms, JavaScriptProgramOfTheDocumentGivesTheOutputsOfTheMap) {
+  SKIP_WITHOUT_PAGE();
+  SKIP_WITHOUT_PROGRAM("node");
+  folder_->write("out/main.mjs", block_of("js", "actuator.mjs") +
                                      "if (!reached || vertices.length < 3 || jacobian.length !== outputs.length) throw "
                                      "new Error('no shape');\nconsole.log(outputs[0]);\n");
-    const ProgramResult result = folder.shell("node main.mjs");
-    ASSERT_EQ(result.exit_code, 0) << result.output;
-    EXPECT_NEAR(std::stod(result.output), outputs[0], 1e-9);
-  }
+  EXPECT_NEAR(number_after(printed("node main.mjs"), ""), outputs_at(commands_)[0], 1e-9);
 }
 
 }  // namespace

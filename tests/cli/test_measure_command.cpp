@@ -57,15 +57,6 @@ class Measure : public ::testing::Test {
   const TemporaryFolder folder_;
 };
 
-TEST(MeasureWithoutOpenCv, SaysHowToGetIt) {
-#ifdef SOFTKIN_OPENCV
-  GTEST_SKIP() << "built with OpenCV";
-#endif
-  const ProgramResult result = run_program({"measure", "--help"});
-  EXPECT_EQ(result.exit_code, 2);
-  EXPECT_NE(result.errors.find("libopencv-dev"), std::string::npos) << result.errors;
-}
-
 TEST_F(Measure, DotsInMillimetresFromTwoOfThem) {
   const std::string picture = shoot("a.png", discs_on(three())), table = folder_ / "a.csv";
   const ProgramResult result = measure(

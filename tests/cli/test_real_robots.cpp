@@ -5,6 +5,7 @@
 #include <sstream>
 
 #include "fk_samples.hpp"
+#include "support/skips.hpp"
 
 /// The commands of examples/real, where the measurements are there.
 
@@ -26,9 +27,9 @@ class RealRobot {
       if (entry.path().extension() == ".py" || entry.path().extension() == ".yaml")
         fs::copy_file(entry.path(), folder_ / entry.path().filename().string());
     const std::string script = folder_ / ("make_" + name + ".py");
-    there_ =
-        std::system(
-            ("python3 " + shell_quoted(script) + " " + shell_quoted(measured.string()) + " > /dev/null").c_str()) == 0;
+    there_ = std::system((shell_quoted(test_python()) + " " + shell_quoted(script) + " " +
+                          shell_quoted(measured.string()) + " > /dev/null")
+                             .c_str()) == 0;
     EXPECT_TRUE(there_);
     name_ = name;
   }
@@ -63,7 +64,7 @@ class RealRobot {
   std::string name_;
 };
 
-constexpr const char* absent = "the measurements of examples/real are absent; SOFTKIN_REAL names their folder";
+const std::string absent = std::string(absent_measurements) + "examples/real";
 
 /// The modulus is near the 0.2638 MPa that its measurers found by another method.
 TEST(RealRobots, ABeamsModulusForetellsItsLoad) {

@@ -353,39 +353,13 @@ TEST(WorkspaceCommand, RefusesBadInputBeforeAnythingIsWritten) {
   expect_refusal(folder, {"--samples", "4"}, "the robot has no marker");
 }
 
-bool has_mpi() {
-  return run_shell("ldd " + shell_quoted(SOFTKIN_PROGRAM) + " | grep -c libmpi").output != "0\n";
-}
-
-/// Root is refused by Open MPI unless it is told twice.
-const std::string launch =
-    "OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_rmaps_base_oversubscribe=1 mpirun -np ";
-
-TEST(WorkspaceCommand, RanksOfMpirunGiveTheSameFile) {
-  if (!has_mpi()) GTEST_SKIP() << "built without MPI (-DSOFTKIN_MPI=ON)";
-  const ReachFolder alone, ranks;
-  ASSERT_EQ(alone.run(small).exit_code, 0);
-  for (const char* count : {"1", "2", "3"}) {
-    std::string command = launch + count + " " + shell_quoted(SOFTKIN_PROGRAM);
-    for (const std::string& argument : ranks.arguments(small)) command += " " + shell_quoted(argument);
-    const ProgramResult result = run_shell(command + " </dev/null 2>&1");
-    EXPECT_EQ(result.exit_code, 0) << result.output;
-    EXPECT_EQ(ranks.text(), alone.text()) << count;
-  }
-  const ProgramResult refused =
-      run_shell(launch + "2 " + shell_quoted(SOFTKIN_PROGRAM) + " workspace " + shell_quoted(ranks / "no.yaml") +
-                " --samples 4 -o " + shell_quoted(ranks / "no.csv") + " </dev/null 2>&1");
-  EXPECT_NE(refused.exit_code, 0);
-  EXPECT_NE(refused.output.find("no such file"), std::string::npos) << refused.output;
-  EXPECT_EQ(refused.output.find("no such file", refused.output.find("no such file") + 1), std::string::npos);
-}
-
+#ifndef SOFTKIN_MPI  // with it tests/options/test_ranks.cpp
 TEST(WorkspaceCommand, WithoutMpiSeveralCopiesAreRefused) {
-  if (has_mpi()) GTEST_SKIP() << "built with MPI";
   const ReachFolder folder;
   ASSERT_EQ(::setenv("OMPI_COMM_WORLD_SIZE", "2", 1), 0);
   expect_refusal(folder, {"--samples", "4"}, "this softkin was built without MPI");
   ::unsetenv("OMPI_COMM_WORLD_SIZE");
 }
+#endif
 
 }  // namespace

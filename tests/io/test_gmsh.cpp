@@ -8,6 +8,7 @@
 #include <softkin/io/mesh/mesh_io.hpp>
 
 #include "gmsh_samples.hpp"
+#include "support/skips.hpp"
 
 namespace {
 
@@ -328,7 +329,7 @@ class GmshReference : public ::testing::TestWithParam<Reference> {};
 TEST_P(GmshReference, HasItsCountsAndVolume) {
   const char* given = std::getenv("SOFTKIN_REFERENCE");
   const fs::path file = fs::path(given ? given : SOFTKIN_SOURCE_DIR "/../shared/reference") / "fem" / GetParam().file;
-  if (!fs::exists(file)) GTEST_SKIP() << "reference data absent";
+  SKIP_WITHOUT_REFERENCE(file.string());
   const Mesh mesh = read_gmsh(file);
   EXPECT_EQ(mesh.vertices.rows(), GetParam().vertices);
   EXPECT_EQ(mesh.tetrahedra.size(), GetParam().tetrahedra);

@@ -9,6 +9,7 @@
 #include <softkin/io/mesh/mesh_io.hpp>
 #include <sstream>
 
+#include "support/skips.hpp"
 #include "text_mesh_files.hpp"
 
 namespace softkin {
@@ -366,7 +367,7 @@ std::filesystem::path reference_folder() {
 
 TEST(TextMeshes, ReferenceRobot) {
   const std::filesystem::path folder = reference_folder() / "target-shape";
-  if (!std::filesystem::exists(folder / "robot3_s.tet")) GTEST_SKIP() << "reference data absent";
+  SKIP_WITHOUT_REFERENCE((folder / "robot3_s.tet").string());
   const Mesh mesh = read_tet(folder / "robot3_s.tet");
   expect_consistent(mesh);
   EXPECT_EQ(mesh.vertices.rows(), 4814);

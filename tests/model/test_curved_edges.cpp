@@ -248,7 +248,6 @@ TEST(CurvedEdges, NoElementOfRandomBodiesFolds) {
 }
 
 TEST(CurvedEdges, NoElementOfAThousandRandomBodiesFolds) {
-  if (testing::instrumented) GTEST_SKIP() << "the short one is enough for the sanitizers";
   check_random_bodies(1000, 1000);
 }
 

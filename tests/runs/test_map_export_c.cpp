@@ -11,6 +11,7 @@
 
 #include "cli/run_program.hpp"
 #include "exported_maps.hpp"
+#include "support/skips.hpp"
 
 /// The exported header, compiled by the compilers that are there and run, against the map itself.
 
@@ -24,10 +25,6 @@ using testing::commands_of;
 using testing::Exported;
 
 constexpr const char* c_warnings = " -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wdouble-promotion -Werror ";
-
-bool has_compiler(const char* name) {
-  return run_shell(std::string(name) + " --version > /dev/null 2>&1").exit_code == 0;
-}
 
 /// All exported headers and a program that runs them one after the other, of its files COMMANDS ANSWERS, a pair each.
 std::string program(const std::vector<Exported>& maps, const TemporaryFolder& folder) {
@@ -259,7 +256,7 @@ void write_doubles(const TemporaryFolder& folder, const std::string& name, const
 }
 
 TEST(MapExportC, AnswersAsTheMapDoes) {
-  if (!has_compiler("cc")) GTEST_SKIP() << "no C compiler is installed";
+  SKIP_WITHOUT_PROGRAM("cc");
   const TemporaryFolder folder;
   const std::vector<Exported> maps = exported_headers();
   const std::string source = folder.write("maps.c", program(maps, folder)), run = folder / "maps";
@@ -298,26 +295,26 @@ TEST(MapExportC, AnswersAsTheMapDoes) {
   }
 }
 
-TEST(MapExportC, CompilesEverywhereWithoutAnyInclude) {
+class MapExportCompilers : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(MapExportCompilers, CompileItWithoutAnyInclude) {
+  const std::string with = GetParam(), compiler = with.substr(0, with.find(' '));
+  SKIP_WITHOUT_PROGRAM(compiler);
   const TemporaryFolder folder;
   const std::vector<Exported> maps = exported_headers();
   std::string source;
   for (const Exported& map : maps) source += "#include \"" + c_name(map.data) + ".h\"\n";
   source += source;  // guarded
   for (const Exported& map : maps) folder.write(c_name(map.data) + ".h", map.header);
-  const std::string c = folder.write("all.c", source), cpp = folder.write("all.cpp", source);
-  int compilers = 0;
-  for (const std::string& with :
-       {std::string("gcc -std=c99 -O2"), std::string("clang -std=c99"), std::string("clang -std=c11"),
-        std::string("g++ -std=c++11 -O2"), std::string("clang++ -std=c++20")}) {
-    if (!has_compiler(with.substr(0, with.find(' ')).c_str())) continue;
-    ++compilers;
-    const auto built = run_shell(with + c_warnings + "-ffreestanding -nostdinc -c -o /dev/null " +
-                                 shell_quoted(with.find("++") < 6 ? cpp : c) + " 2>&1");
-    EXPECT_EQ(built.exit_code, 0) << with << "\n" << built.output;
-  }
-  if (compilers == 0) GTEST_SKIP() << "neither gcc nor clang is installed";
+  const std::string file = folder.write(compiler.ends_with("++") ? "all.cpp" : "all.c", source);
+  const auto built =
+      run_shell(with + c_warnings + "-ffreestanding -nostdinc -c -o /dev/null " + shell_quoted(file) + " 2>&1");
+  EXPECT_EQ(built.exit_code, 0) << with << "\n" << built.output;
 }
+
+INSTANTIATE_TEST_SUITE_P(MapExportC, MapExportCompilers,
+                         ::testing::Values("gcc -std=c99 -O2", "clang -std=c99", "clang -std=c11", "g++ -std=c++11 -O2",
+                                           "clang++ -std=c++20"));
 
 TEST(MapExportC, TellsWhatItIs) {
   const MapData data = testing::cable_map();

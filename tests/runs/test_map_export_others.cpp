@@ -9,6 +9,7 @@
 
 #include "cli/run_program.hpp"
 #include "exported_maps.hpp"
+#include "support/skips.hpp"
 
 /// The exported module in node, and the arrays in numpy, against the map itself.
 
@@ -17,15 +18,9 @@ namespace {
 
 using Told = nlohmann::json;
 
-bool can_run(const std::string& command) {
-  return softkin::testing::run_shell(command + " > /dev/null 2>&1").exit_code == 0;
-}
-
-/// Why no exported module can be made and run; empty: it can.
-std::string no_module_runs() {
-  if (!page_is_there()) return no_page;
-  return can_run("node --version") ? "" : "node is not installed";
-}
+#define SKIP_WITHOUT_MODULES()                   \
+  if (!page_is_there()) GTEST_SKIP() << no_page; \
+  SKIP_WITHOUT_PROGRAM("node")
 
 /// not_a_number: as a reader of JSON wants it
 std::string commands_text(const std::vector<Eigen::VectorXd>& rows, const std::string& not_a_number) {
@@ -135,12 +130,12 @@ void compare_module(const MapData& data) {
 }
 
 TEST(MapExportJs, AnswersAsTheMapDoes) {
-  if (const std::string lacks = no_module_runs(); !lacks.empty()) GTEST_SKIP() << lacks;
+  SKIP_WITHOUT_MODULES();
   for (const MapData& data : testing::small_maps()) compare_module(data);
 }
 
 TEST(MapExportJs, ItsCheckNoticesAnotherCoefficient) {
-  if (const std::string lacks = no_module_runs(); !lacks.empty()) GTEST_SKIP() << lacks;
+  SKIP_WITHOUT_MODULES();
   const softkin::testing::TemporaryFolder folder;
   std::string module = map_js_module(testing::arm_map());
   const std::string before = "\"coefficients\":\"";
@@ -152,13 +147,14 @@ TEST(MapExportJs, ItsCheckNoticesAnotherCoefficient) {
 }
 
 TEST(MapExportNumpy, AnswersAsTheMapDoes) {
-  if (!can_run("python3 -c 'import numpy'")) GTEST_SKIP() << "python3 with numpy is not installed";
+  SKIP_WITHOUT_PYTHON("numpy");
+  const std::string test_python = softkin::testing::shell_quoted(softkin::testing::test_python());
   for (const MapData& data : testing::small_maps()) {
     SCOPED_TRACE(data.name);
     const KinematicMap map(data);
     const softkin::testing::TemporaryFolder folder;
     const std::vector<Eigen::VectorXd> commands = testing::commands_of(map, false);
-    const Told told = told_by("python3 '" SOFTKIN_SOURCE_DIR "/tests/runs/exported_map.py'",
+    const Told told = told_by(test_python + " '" SOFTKIN_SOURCE_DIR "/tests/runs/exported_map.py'",
                               folder.write("map.npz", map_npz(data)), commands_text(commands, "NaN"), folder);
     compare_all(map, commands, told["answers"], [](const auto&...) {});
     EXPECT_EQ(told["names"]["robot"], (std::vector<std::string>{data.name, data.robot}));
@@ -169,12 +165,13 @@ TEST(MapExportNumpy, AnswersAsTheMapDoes) {
 }
 
 TEST(MapExportNumpy, IsAnArchiveThatOthersFindSound) {
-  if (!can_run("python3 --version")) GTEST_SKIP() << "python3 is not installed";
+  SKIP_WITHOUT_PYTHON("sys");
   const softkin::testing::TemporaryFolder folder;
   const std::string file = folder.write("map.npz", map_npz(testing::cable_map()));
   const auto run = softkin::testing::run_shell(
-      "python3 -c 'import sys, zipfile; z = zipfile.ZipFile(sys.argv[1]); print(z.testzip(), len(z.namelist()))' '" +
-      file + "' 2>&1");
+      softkin::testing::shell_quoted(softkin::testing::test_python()) +
+      " -c 'import sys, zipfile; z = zipfile.ZipFile(sys.argv[1]); print(z.testzip(), len(z.namelist()))' '" + file +
+      "' 2>&1");
   EXPECT_EQ(run.output.substr(0, 5), "None ") << run.output;
 }
 

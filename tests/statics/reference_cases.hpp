@@ -13,6 +13,11 @@
 #include <sstream>
 
 #include "statics/robots.hpp"
+#include "support/skips.hpp"
+
+/// table: of the reference solutions, by its name
+#define SKIP_WITHOUT_TABLE(table) \
+  if (softkin::testing::reference_file(table).empty()) GTEST_SKIP() << softkin::testing::absent_reference << (table)
 
 namespace softkin::testing {
 

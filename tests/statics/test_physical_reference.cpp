@@ -40,15 +40,12 @@ std::string case_name(const ::testing::TestParamInfo<Sweep>& info) {
   return info.param.table;
 }
 
-#define SKIP_WITHOUT(table) \
-  if (reference_file(table).empty()) GTEST_SKIP() << "reference data absent: " << (table)
-
 }  // namespace
 
 /// Volume control with the reference's volumes: tip and pressure.
 TEST_P(FingerReference, TipAndPressureAtEqualVolume) {
   const Sweep& sweep = GetParam();
-  SKIP_WITHOUT(std::string(sweep.table) + ".csv");
+  SKIP_WITHOUT_TABLE(std::string(sweep.table) + ".csv");
   RobotSpec spec = reference_robot(sweep.mesh, sweep.quadratic);
   spec.materials = {reference_material("body", sweep.law, 12, 0.4)};
   spec.fixed.push_back({{std::string("fixed"), {}}, {true, true, true}});
@@ -89,7 +86,7 @@ INSTANTIATE_TEST_SUITE_P(Fem, FingerReference,
 /// Length control with the reference's lengths: tip and tension. Rows in which notches would touch are left out.
 TEST_P(CableReference, TipAndTensionAtEqualLength) {
   const Sweep& sweep = GetParam();
-  SKIP_WITHOUT(std::string(sweep.table) + ".csv");
+  SKIP_WITHOUT_TABLE(std::string(sweep.table) + ".csv");
   RobotSpec spec = reference_robot(sweep.mesh, sweep.quadratic);
   spec.materials = {reference_material("body", sweep.law, 12, 0.4)};
   spec.fixed.push_back({{std::string("fixed"), {}}, {true, true, true}});

@@ -5,6 +5,7 @@
 #include <softkin/statics/statics.hpp>
 
 #include "statics/robots.hpp"
+#include "support/skips.hpp"
 
 namespace softkin {
 
@@ -32,7 +33,7 @@ Points aligned(const Points& a, const Points& b) {
 /// but three vertices, statically determinate.
 TEST(Reference, ThreeChamberFixedPoint) {
   const std::filesystem::path folder = testing::reference_folder() / "target-shape";
-  if (testing::reference_folder().empty()) GTEST_SKIP() << "reference data absent";
+  SKIP_WITHOUT_REFERENCE((folder / "robot3_s.tet").string());
   RobotSpec spec;
   spec.mesh = read_tet(folder / "robot3_s.tet");
   MaterialSpec body;

@@ -1,0 +1,31 @@
+# Functions of scripts that try softkin on a fresh Debian 12, made with debootstrap in a folder, with this machine's settings
+# of apt and pip. The script that reads this file has set `folder`, where the systems lie, and its own `name` in messages.
+mirror=$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' | head -n 1)
+
+# fresh NAME PACKAGES: a system of its own, from an archive of the packages that the first one leaves
+fresh() {
+  local root=$folder/$1
+  [ ! -e "$root" ] || { echo "${name:-fresh}: $root is there already: remove it" >&2; exit 2; }
+  mkdir -p "$folder/archives"
+  debootstrap --variant=minbase --cache-dir="$folder/archives" --include="ca-certificates,python3,python3-venv$2" bookworm \
+    "$root" "$mirror" >"$folder/$1.log" 2>&1 || { tail -n 5 "$folder/$1.log" >&2; exit 1; }
+  rm "$root/etc/apt/sources.list"
+  cp -a /etc/apt/. "$root/etc/apt/"
+  cp -a /etc/ssl/certs/. "$root/etc/ssl/certs/"
+  cp -L /etc/resolv.conf /etc/hosts "$root/etc/"
+  [ ! -f /etc/pip.conf ] || cp /etc/pip.conf "$root/etc/"
+}
+
+# inside NAME COMMAND: with the variables that pip and apt read, with /proc, by which programs find their libraries, and
+# with /dev. If `cache` names a folder, it is /ccache there.
+inside() {
+  local root=$folder/$1
+  shift
+  local settings
+  mapfile -t settings < <(env | grep -iE '^(pip_|https?_proxy|no_proxy)' || true)
+  [ -z "${cache:-}" ] || { mkdir -p "$root/ccache" && settings+=("cache=$cache" CCACHE_DIR=/ccache); }
+  env -i "${settings[@]}" PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin HOME=/root LANG=C.UTF-8 \
+    unshare --mount bash -euc 'mount -t proc proc "$0/proc" && mount --rbind /dev "$0/dev"
+      [ -z "${cache:-}" ] || mount --bind "$cache" "$0/ccache"
+      exec chroot "$0" bash -euo pipefail -c "$1"' "$root" "$*"
+}
