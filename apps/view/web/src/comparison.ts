@@ -28,10 +28,12 @@ export function showComparison({softkin, command, comparison: {notes, tables, pl
   main?.replaceChildren(
     element('section', {}, ...notes.map((note) => element('p', {}, note))),
     element('section', {}, element('img', {
-      src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(plot)}`, alt: 'Plot of the values in the tables below',
+      src: `data:image/svg+xml;charset=utf-8,${encodeURIComponent(plot)}`,
+      alt: 'Plot of the values in the tables below',
     })),
     ...tables.map(({caption, rows}) => tableOf(caption, rows)),
     element('section', {id: 'origin'}, element('h2', {}, 'How this was computed'),
-            element('p', {}, `Computed by softkin ${softkin}, a finite-element program for soft robots, by the command`),
+            element('p', {},
+                    `Computed by softkin ${softkin}, a finite-element program for soft robots, by the command`),
             element('code', {}, command)));
 }

@@ -47,7 +47,9 @@ export function makeCurves(box: HTMLElement, robot: Robot): () => void {
   });
 }
 
-interface Lists { ran: [number, number][]; sweep: [number, number][]; trail: [number, number][]; now: [number, number][] }
+interface Lists {
+  ran: [number, number][]; sweep: [number, number][]; trail: [number, number][]; now: [number, number][];
+}
 
 function plot(svg: SVGElement, actuator: Actuator, {ran, sweep, trail, now}: Lists): void {
   const values = [...ran, ...sweep, ...trail, ...now].map(([, load]) => load);

@@ -13,7 +13,8 @@ const known: Record<string, Omit<Field, 'name'>> = {
   contact_pressure: {words: 'Contact pressure', unit: 'kPa', about: null, fromZero: true},
 };
 
-const moved: Field = {name: 'displacement', words: 'Displacement from the reference shape', unit: 'mm', about: null, fromZero: true};
+const moved: Field =
+  {name: 'displacement', words: 'Displacement from the reference shape', unit: 'mm', about: null, fromZero: true};
 
 export function displacement(positions: Float32Array, rest: Float32Array): Float32Array {
   const far = new Float32Array(rest.length / 3);
@@ -63,7 +64,8 @@ function makeSwitches(robot: Robot, scene: RobotScene): HTMLElement[] {
   const {cables, workspace, obstacles, bodies, markers} = robot.document, {field} = scene;
   const around = obstacles.length + bodies.length > 0, who = markers[workspace?.marker ?? 0]?.name ?? 'the marker';
   const switches: [Part, string, boolean, boolean][] = [
-    ['ghost', 'reference shape (unloaded)', true, true], ['traces', 'marker trajectories', true, robot.steps.length > 1],
+    ['ghost', 'reference shape (unloaded)', true, true],
+    ['traces', 'marker trajectories', true, robot.steps.length > 1],
     ['markers', 'markers', true, true], ['workspace', `workspace of ${plain(who)}`, true, workspace !== null],
     ['around', 'obstacles and bodies', true, around], ['field', 'magnetic field', true, field !== null],
     ['forces', 'estimated forces', true, robot.tells],

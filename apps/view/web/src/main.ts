@@ -92,7 +92,8 @@ function start(): void {
   const undo = byId<HTMLButtonElement>('undo'), reset = byId<HTMLButtonElement>('reset'), state = byId('state');
   const parts = [makePathPanel(robot, scene, player), makeSliders(byId('sliders'), robot), makeTarget(robot),
                  makeLooks(robot, scene, shapes), makeTensions(robot, scene, byId('looks'), corners),
-                 makeCurves(byId('curves'), robot), makeTable(robot), makeOutputs(robot), makeSave(robot), player.update,
+                 makeCurves(byId('curves'), robot), makeTable(robot), makeOutputs(robot),
+                 makeSave(robot), player.update,
                  makeReadings(robot, () => scene.forces.mmPerNewton), ...(live ? [makeLivePanel(live)] : [])];
   const labels = makeLabels(robot, scene), record = makeRecorder(canvas, robot, player);
   byId('curves-section').hidden = !read.actuators.some((actuator) => actuator.load_unit);

@@ -50,8 +50,10 @@ export function tellOrigin(robot: Robot): void {
   }
   if (!map) return;
   const {checked, outputs} = map;
-  const use = robot.document.live ? 'is shown until the solver has the exact shape' : 'gives the shapes and numbers here';
-  box.append(element('p', {}, `A kinematic map ${use}: polynomials fitted to ${checked.equilibria} solved equilibria. ` +
+  const use = robot.document.live ? 'is shown until the solver has the exact shape'
+    : 'gives the shapes and numbers here';
+  box.append(element('p', {}, `A kinematic map ${use}: ` +
+    `polynomials fitted to ${checked.equilibria} solved equilibria. ` +
     (checked.points > 0
       ? `At ${checked.points} other points its largest deviations from the solver were (this is not a bound):`
       : 'It was compared with the solver at no other point, so its errors are unknown.')));

@@ -94,7 +94,8 @@ const meaning = (mmPerNewton: number, places: boolean): string =>
   `Arrow: the force, from where it acts; ${digits(mmPerNewton, 2)} mm are 1 N. Cone: its rim is the ellipse that ` +
   'holds the arrow\'s tip, across the arrow, with a probability of 90 %: 2.15 standard deviations (2-D factor), or ' +
   '1.64 where only one component across it is estimated. ' +
-  (places ? 'Ellipse at its foot: the force acts inside it, on the surface, with a probability of 90 % (2.15 standard deviations). ' : '') +
+  (places ? 'Ellipse at its foot: the force acts inside it, on the surface, with a probability of 90 % ' +
+   '(2.15 standard deviations). ' : '') +
   'This assumes normally distributed errors.';
 
 /** Of a ratio in words: "× rest length". */
@@ -107,7 +108,8 @@ function tell(estimate: Estimate, actuators: Actuator[], box: HTMLElement, mmPer
     element('td', {}, plusMinus(told.value, told.deviation, unitOf(told, actuators)))));
   box.replaceChildren(
     ...forces.map((force) => element('p', {class: 'force'}, forceText(force))),
-    ...places.map((place) => element('p', {}, `${plain(place.force)} acts, in the reference shape, at ${placeText(place)}`)),
+    ...places.map((place) => element('p', {},
+      `${plain(place.force)} acts, in the reference shape, at ${placeText(place)}`)),
     ...(rows.length ? [element('table', {}, element('tbody', {}, ...rows))] : []),
     ...(status === 'converged' ? [element('p', {}, fitText(estimate))]
       : [element('p', {class: 'bad message'}, `There is no estimate: ${status}${remark && ` – ${remark}`}.`)]),
@@ -121,7 +123,8 @@ export function makeReadings(robot: Robot, mmPerNewton: () => number): () => voi
   const of = robot.document.live?.estimate, box = byId('told');
   if (!of) return () => {};
   byId('readings-section').hidden = byId('told-section').hidden = false;
-  byId('explain-readings').textContent = 'Type the readings; leave a field empty where there is none. Each change gives a new estimate.';
+  byId('explain-readings').textContent = 'Type the readings; leave a field empty where there is none. ' +
+    'Each change gives a new estimate.';
   const fields = makeFields(robot, of.columns, byId('readings'));
   let last: Estimate | null | undefined;
   return () => {

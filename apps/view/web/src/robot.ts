@@ -9,7 +9,8 @@ import {measured} from './words';
 /** What is shown: a step of the run (step: its number, else -1), an answer of the map or of the running program. */
 export interface Pose {
   commands: number[]; loads: (number | null)[]; measures: (number | null)[]; markers: number[][];
-  positions: Float32Array; fields: Record<string, Float32Array>; step: number; from: 'rest' | 'step' | 'map' | 'live'; told: Told | null;
+  positions: Float32Array; fields: Record<string, Float32Array>; step: number;
+  from: 'rest' | 'step' | 'map' | 'live'; told: Told | null;
 }
 /** errorMm: null while it is sought; why: of the running program, else empty. */
 export interface Target { marker: number; at: number[]; errorMm: number | null; reached: boolean; why: string }
