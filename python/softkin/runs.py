@@ -61,6 +61,12 @@ class _Run(OfRobot[Core], Iterator[Record]):
         """What `softkin fk --report`, `softkin follow` or `softkin walk` writes, of the records so far."""
         return parsed(self._core.report())
 
+    def turns(self, marker: str, to: str | None = None) -> Floats:
+        """(done,) by how much the line from a marker to another one has turned from rest in each record so far
+        [degrees]; what `softkin fk --turn` prints and plots. Arguments as those of `Shape.turn`.
+        """
+        return np.array(self._core.turns(marker, to), dtype=float)
+
     def finish(self) -> None:
         """Writes report and series of the store, of what there is; at the end of the path that is done by itself."""
         self._core.finish()

@@ -92,6 +92,18 @@ class Shape(Saving[CoreShape]):
         """By name: where they are, (3,) [mm]."""
         return Views(self._robot.markers, self._core)
 
+    def turn(self, marker: str, to: str | None = None) -> float:
+        """By how much the line from a marker to another one has turned from rest [degrees]: the bend angle.
+
+        marker   of which the line begins; alone: a marker that is a region or a body, whose own turn it is
+        to       the marker at which the line ends
+        returns  of a shape of a run it is continued from step to step, as `softkin fk --turn` does, and may be beyond
+                 180 or below 0: the first turn is positive; of a shape alone it is 0 to 180
+        raises   InvalidInput where there is no such marker, where a single one is a point, which has no orientation, or
+                 where both are at one place at rest
+        """
+        return self._core.turn(marker, to)
+
     @cached_property
     def actuation(self) -> Floats:
         """(m,) what was asked for, in the order of `robot.actuators`: ratio [-], tension [N], pressure [kPa] or

@@ -8,6 +8,7 @@
 #include <softkin/io/table/settings.hpp>
 #include <softkin/model/names.hpp>
 #include <softkin/runs/body_surface.hpp>
+#include <softkin/runs/turns.hpp>
 
 #include "bindings.hpp"
 #include "convert.hpp"
@@ -21,6 +22,15 @@ Index Robot::marker(const std::string& name) const {
   for (std::size_t i = 0; i < names.size(); ++i)
     if (names[i] == name) return i;
   throw InvalidInput("no marker '" + name + "'" + (names.empty() ? "; the robot has none" : suggest_name(name, names)));
+}
+
+Index Robot::oriented_marker(const std::string& name) const {
+  const Index found = marker(name);
+  if (!runs::oriented_markers(model_)[static_cast<std::size_t>(found)])
+    throw InvalidInput("marker '" + name +
+                       "' is a point of the body, which has no orientation: give two markers, whose line turns, or one "
+                       "that is a region");
+  return found;
 }
 
 Index Robot::actuator(const std::string& name) const {

@@ -7,6 +7,7 @@
 #include <softkin/statics/statics.hpp>
 
 #include "archive.hpp"
+#include "robot.hpp"
 
 namespace softkin::python {
 
@@ -167,6 +168,12 @@ template <class A>
 void members(A& archive, WorkspaceSample& s) {
   auto& [number, actuation, markers, multipliers, status, reached, iterations] = s;
   archive(number, actuation, markers, multipliers, status, reached, iterations);
+}
+
+template <class A>
+void members(A& archive, RunTurns& t) {
+  auto& [markers, lines] = t;
+  archive(markers, lines);
 }
 
 }  // namespace softkin::python

@@ -33,6 +33,8 @@ class Robot : public std::enable_shared_from_this<Robot> {
   [[nodiscard]] bool is_large() const { return model_.rest.rows() > 3000; }
   /// throws  InvalidInput with the nearest name
   [[nodiscard]] Index marker(const std::string& name) const;
+  /// The marker of that name, which must have an orientation.
+  [[nodiscard]] Index oriented_marker(const std::string& name) const;
   [[nodiscard]] Index actuator(const std::string& name) const;
 
  private:
@@ -76,11 +78,17 @@ struct Session : std::enable_shared_from_this<Session> {
 };
 using SessionPtr = std::shared_ptr<Session>;
 
+/// Turns from rest of a shape of a run, continued from its first shape on [degrees]; empty: it is of no run.
+struct RunTurns {
+  std::vector<double> markers{};  // of each marker
+  std::vector<double> lines{};    // of the line between every two, as runs::LineTurns has them
+};
+
 /// An equilibrium and what was asked. The record is made when it is asked for.
 class Shape : public std::enable_shared_from_this<Shape> {
  public:
-  Shape(RobotPtr robot, Equilibrium found, StaticsOptions options)
-      : robot_(std::move(robot)), found_(std::move(found)), options_(options) {}
+  Shape(RobotPtr robot, Equilibrium found, StaticsOptions options, RunTurns turns = {})
+      : robot_(std::move(robot)), found_(std::move(found)), options_(options), turns_(std::move(turns)) {}
 
   [[nodiscard]] const RobotPtr& robot() const { return robot_; }
   [[nodiscard]] const Model& model() const { return robot_->model(); }
@@ -89,11 +97,18 @@ class Shape : public std::enable_shared_from_this<Shape> {
   [[nodiscard]] const StaticsOptions& options() const { return options_; }
   [[nodiscard]] const ElementDeformation& deformation() const;
   [[nodiscard]] const runs::StepRecord& record() const;
+  [[nodiscard]] const RunTurns& turns() const { return turns_; }
+  /// By how much a marker that has an orientation, or the line from a marker to another one, has turned from rest
+  /// [degrees].
+  ///
+  /// throws  InvalidInput where there is no such marker, it has no orientation, or both are at one place at rest
+  [[nodiscard]] double turn(const std::string& marker, const std::optional<std::string>& to) const;
 
  private:
   RobotPtr robot_;
   Equilibrium found_;
   StaticsOptions options_;
+  RunTurns turns_;
   mutable std::once_flag measured_, recorded_;
   mutable ElementDeformation deformation_;
   mutable runs::StepRecord record_;

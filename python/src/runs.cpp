@@ -15,6 +15,7 @@
 #include <softkin/runs/plots.hpp>
 #include <softkin/runs/reports.hpp>
 #include <softkin/runs/run_tables.hpp>
+#include <softkin/runs/turns.hpp>
 #include <softkin/runs/walk_run.hpp>
 #include <softkin/runs/workspace_file.hpp>
 
@@ -56,15 +57,30 @@ class Runner {
   /// The next shape; none at the end.
   [[nodiscard]] ShapePtr next() {
     if (lost_ || run().is_complete()) return nullptr;
+    note_resumed();
     const runs::Advance end =
         watched(std::nullopt, [&](const ProgressCallback& callback) { return run().advance(callback); });
     lost_ = end != runs::Advance::made;
     if (const auto* stopped = run().stopped()) return shape_of(stopped->record, stopped->state.positions);
+    ++noted_;
     return shape_of(run().last(), run().last_positions());
   }
   [[nodiscard]] std::vector<FindingOut> findings() {
     if (const auto* stopped = run().stopped()) return finding_lines_of(model(), stopped->record);
     return finding_lines_of(model(), run().last());
+  }
+  /// By how much a marker, or the line from one to another, has turned from rest in each record so far [degrees].
+  [[nodiscard]] std::vector<double> turns(const std::string& marker, const std::optional<std::string>& to) {
+    std::vector<double> all;
+    if (!to) {
+      const auto m = static_cast<std::size_t>(robot_->oriented_marker(marker));
+      run().log().each([&](std::size_t, const Record& record) { all.push_back(record.marker_turns.at(m)); });
+      return all;
+    }
+    const runs::MarkerLine line = runs::read_marker_line(model(), {marker, *to}, "turns").value();
+    runs::TurnMeter meter(line.at_rest(model()));
+    run().log().each([&](std::size_t, const Record& record) { all.push_back(meter.next(line.in(record.markers))); });
+    return all;
   }
   virtual void finish() { run().finish(); }
   [[nodiscard]] virtual std::string report() {
@@ -74,7 +90,8 @@ class Runner {
   }
 
  protected:
-  Runner(RobotPtr robot, StaticsOptions options) : robot_(std::move(robot)), options_(options) {}
+  Runner(RobotPtr robot, StaticsOptions options)
+      : robot_(std::move(robot)), options_(options), lines_(robot_->model()) {}
 
   [[nodiscard]] virtual runs::Run<Record>& run() = 0;
   [[nodiscard]] const Model& model() const { return robot_->model(); }
@@ -84,13 +101,24 @@ class Runner {
   }
 
  private:
-  [[nodiscard]] ShapePtr shape_of(const runs::StepRecord& record, const Points& positions) const {
+  [[nodiscard]] ShapePtr shape_of(const runs::StepRecord& record, const Points& positions) {
     Equilibrium found{runs::state_of(model(), record, positions), record.actuation, record};
-    return std::make_shared<Shape>(robot_, std::move(found), options_);
+    return std::make_shared<Shape>(robot_, std::move(found), options_,
+                                   RunTurns{record.marker_turns, lines_.next(record.markers)});
+  }
+
+  /// Of records that an earlier run has made.
+  void note_resumed() {
+    if (noted_ == run().done()) return;
+    lines_ = runs::LineTurns(model());
+    noted_ = run().done();
+    run().log().each([this](std::size_t, const Record& record) { (void)lines_.next(record.markers); });
   }
 
   RobotPtr robot_;
   StaticsOptions options_;
+  runs::LineTurns lines_;
+  std::size_t noted_ = 0;  // records whose turns lines_ has
   std::string remark_;
   bool lost_ = false;
 };
@@ -265,6 +293,7 @@ nb::class_<Run> bind_runner(nb::module_& module, const char* name, const char* w
       .def_prop_ro("remark", &Run::remark, "What was not there as it was written, of a run that goes on; else ''.")
       .def("next", &Run::next)
       .def("findings", &Run::findings, "Lines about the last shape, as Shape.findings().")
+      .def("turns", &Run::turns, nb::arg("marker"), nb::arg("to").none(), "[degrees]")
       .def("finish", &Run::finish)
       .def("save_plot", &Run::save_plot, nb::arg("path"))
       .def("report", &Run::report);

@@ -14,6 +14,7 @@
 #include <softkin/runs/finding_text.hpp>
 #include <softkin/runs/reports.hpp>
 #include <softkin/runs/shape_files.hpp>
+#include <softkin/runs/turns.hpp>
 
 #include "bindings.hpp"
 #include "convert.hpp"
@@ -31,6 +32,7 @@ const runs::StepRecord& Shape::record() const {
   std::call_once(recorded_, [this] {
     record_ = runs::step_record(model(), found_, deformation());
     record_.self_overlap = robot_->overlaps().in(positions());
+    if (!turns_.markers.empty()) record_.marker_turns = turns_.markers;
   });
   return record_;
 }
@@ -40,6 +42,17 @@ std::vector<FindingOut> finding_lines_of(const Model& model, const runs::StepRec
   for (runs::FindingLine& line : runs::finding_lines(model, record, "solver=softkin.Solver(stable=True)"))
     lines.emplace_back(line.kind, line.is_warning, std::move(line.text));
   return lines;
+}
+
+double Shape::turn(const std::string& marker, const std::optional<std::string>& to) const {
+  if (!to) {
+    const auto m = static_cast<std::size_t>(robot_->oriented_marker(marker));
+    return turns_.markers.empty() ? runs::marker_turns(model(), positions())[m] : turns_.markers.at(m);
+  }
+  const runs::MarkerLine line = runs::read_marker_line(model(), {marker, *to}, "turn").value();
+  if (!turns_.lines.empty()) return turns_.lines.at(runs::LineTurns::number(line));
+  const auto place = [this](Index m) { return model().markers[static_cast<std::size_t>(m)].at(positions()); };
+  return runs::TurnMeter(line.at_rest(model())).next(place(line.to) - place(line.from));
 }
 
 namespace {
@@ -243,6 +256,7 @@ void bind_shape(nb::module_& module) {
           nb::rv_policy::automatic)
       .def("marker",
            [](const Shape& s, std::size_t marker) { return array_of(s.model().markers.at(marker).at(s.positions())); })
+      .def("turn", &Shape::turn, nb::arg("marker"), nb::arg("to").none(), "[degrees]")
       .def("actuators",
            [](const Shape& s) {
              std::vector<ActuatorOut> all;
@@ -298,7 +312,7 @@ void bind_shape(nb::module_& module) {
       .def("pickled",
            [](const Shape& s) {
              Writer writer;
-             writer(s.found(), s.options());
+             writer(s.found(), s.options(), s.turns());
              return nb::bytes(writer.bytes().data(), writer.bytes().size());
            })
       .def_static(
@@ -306,12 +320,13 @@ void bind_shape(nb::module_& module) {
           [](RobotPtr robot, nb::bytes bytes) {
             Equilibrium found;
             StaticsOptions options;
+            RunTurns turns;
             Reader reader({bytes.c_str(), bytes.size()});
-            reader(found, options);
+            reader(found, options, turns);
             reader.finish();
             if (found.state.positions.rows() != robot->model().rest.rows())
               throw InvalidInput("the pickled shape is one of another robot");
-            return std::make_shared<Shape>(std::move(robot), std::move(found), options);
+            return std::make_shared<Shape>(std::move(robot), std::move(found), options, std::move(turns));
           },
           nb::arg("robot"), nb::arg("bytes"));
   bind_fields(type);

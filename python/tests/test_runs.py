@@ -1,6 +1,7 @@
 from __future__ import annotations
 
 import json
+import pickle
 from pathlib import Path
 
 import numpy as np
@@ -36,6 +37,51 @@ def test_a_motor_with_play_along_a_path() -> None:
         assert shape.actuation.tolist() == [tension]
     with pytest.raises(softkin.InvalidInput, match="backlash"):
         beam(actuators=[{**pull, "backlash": -1}])
+
+
+ANGLES = [40, 120, 172, 186, 290, 370, 200, 30, -50]
+
+
+def turning_beam() -> softkin.Robot:
+    """Turned as a whole by its support, so that everything in it turns by the command."""
+    support = {"region": "base", "rotation": {"axis": [0, 0, 1], "about": [0, 0, 0]}}
+    return beam(4, 5, fixed=[support], actuators=[], markers={"tip": "end", "root": (1, 10, 10), "top": (60, 10, 19)})
+
+
+def test_turns_are_continued_along_a_path(tmp_path: Path) -> None:
+    turning = turning_beam()
+    run = turning.path([[angle] for angle in ANGLES], store=tmp_path)
+    shapes = [next(run), next(run), next(run), next(run)]
+    np.testing.assert_allclose(run.turns("root", "tip"), ANGLES[:4], atol=1e-4)
+    run = turning.path([[angle] for angle in ANGLES], store=tmp_path)  # goes on there
+    shapes += run
+    assert run.turns("root", "tip").shape == (len(ANGLES),)
+    for turns in (run.turns("root", "tip"), run.turns("tip", "root"), run.turns("tip")):
+        np.testing.assert_allclose(turns, ANGLES, atol=1e-4)
+    for shape, angle in zip(shapes, ANGLES):
+        for same in (shape, pickle.loads(pickle.dumps(shape))):
+            assert same.turn("root", "tip") == pytest.approx(angle, abs=1e-4)
+            assert same.turn("tip") == pytest.approx(angle, abs=1e-4)
+            assert same.report["steps"][0]["marker_turns_deg"]["tip"] == same.turn("tip")
+    assert [step["marker_turns_deg"]["tip"] for step in run.report["steps"]] == run.turns("tip").tolist()
+
+
+def test_turns_of_a_shape_alone_and_of_what_has_none() -> None:
+    turning = turning_beam()
+    alone = turning.solve(base_turn=200)
+    assert alone.turn("tip") == pytest.approx(160, abs=1e-4)  # nothing says which way it went
+    assert alone.turn("root", "tip") == pytest.approx(160, abs=1e-4)
+    run = turning.path([[10]])
+    for turns in (alone.turn, run.turns):
+        with pytest.raises(softkin.InvalidInput, match="'top' is a point of the body, which has no orientation"):
+            turns("top")
+        with pytest.raises(softkin.InvalidInput, match="no marker 'tap'"):
+            turns("tap")
+        with pytest.raises(softkin.InvalidInput, match="turns?: there is no marker 'rot'.*'root'"):
+            turns("rot", "tip")
+        with pytest.raises(softkin.InvalidInput, match="are at one place at rest"):
+            turns("tip", "tip")
+    assert run.turns("tip").shape == (0,)
 
 
 def test_path_goes_on_where_it_was(robot: softkin.Robot, tmp_path: Path) -> None:

@@ -8,6 +8,7 @@ import subprocess
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 
 import softkin
@@ -63,6 +64,21 @@ def test_a_solve_is_the_first_step_of_a_path(examples: Path) -> None:
     step, shape = next(run), robot.solve(air1=1.2)
     assert shape.fingerprint == step.fingerprint
     assert without_times(shape.report) == without_times(run.report)
+
+
+def test_turn_of_a_line(examples: Path, command: str, tmp_path: Path) -> None:
+    """The column that --turn adds, to its digits."""
+    scene, path = examples / "pneumatic_finger/pneumatic_finger.yaml", tmp_path / "path.csv"
+    path.write_text("air\n1.1\n1.25\n")
+    arguments = [command, "fk", str(scene), "--path", str(path), "--turn", "tip", "end"]
+    table = subprocess.run(arguments, check=True, capture_output=True, text=True).stdout
+    rows = [line.split() for line in table.splitlines() if line.strip().endswith("converged")]
+    told = [float(row[-4]) for row in rows]  # before iterations, time and status
+    run = softkin.load(scene).path(path)
+    shapes = list(run)
+    assert len(told) == 2 and told[1] > told[0] > 1
+    np.testing.assert_allclose(run.turns("tip", "end"), told, atol=0.06)
+    np.testing.assert_allclose([shape.turn("tip", "end") for shape in shapes], told, atol=0.06)
 
 
 def test_inverse_kinematics(examples: Path, command: str, tmp_path: Path) -> None:

@@ -51,6 +51,47 @@ TEST(Turns, StretchingAFaceDoesNotTurnIt) {
   EXPECT_NEAR(marker_turns(model, stretched * rotation.transpose())[0], 35, 1e-5);
 }
 
+/// All of the robot turned about an axis through shape after shape.
+std::vector<double> continued_turns(const Model& model, const Vec3& axis, const std::vector<double>& angles) {
+  std::vector<double> turns, last(model.markers.size(), 0);
+  Points before = model.rest;
+  for (const double angle : angles) {
+    const Points moved = model.rest * Eigen::AngleAxisd(angle * degree, axis).toRotationMatrix().transpose();
+    last = continued_marker_turns(model, moved, last, before);
+    before = moved;
+    turns.push_back(last[0]);
+  }
+  return turns;
+}
+
+TEST(Turns, AFaceTurnsBeyondHalfATurnAndBackAndBelowZero) {
+  const Model model = testing::bending_model();
+  const std::vector<double> angles{5, 90, 172, 186, 226, 278, 370, 300, 200, 170, 20, 3, -4, -60, -190, -30};
+  for (const Vec3& axis : {Vec3(0, 1, 0), Vec3(0, -1, 0), Vec3(1, 2, -0.5)}) {
+    const std::vector<double> turns = continued_turns(model, axis.normalized(), angles);
+    for (std::size_t i = 0; i < angles.size(); ++i) EXPECT_NEAR(turns[i], angles[i], 1e-4) << "step " << i;
+  }
+}
+
+/// By the line and by the face alike, as both turn with the whole robot.
+TEST(Turns, LinesBetweenAllMarkersTurnAsEachByItself) {
+  const Model model = testing::bending_model();
+  LineTurns all(model);
+  const MarkerLine line{0, 1};
+  TurnMeter one(line.at_rest(model));
+  for (const double angle : {30.0, 120.0, 200.0, 310.0, 150.0}) {
+    const Mat3 rotation = Eigen::AngleAxisd(angle * degree, Vec3(1, 0, 0)).toRotationMatrix();
+    std::vector<Vec3> markers;
+    for (const Marker& marker : model.markers) markers.emplace_back(rotation * marker.at(model.rest));
+    const std::vector<double> turns = all.next(markers);
+    ASSERT_EQ(turns.size(), 1u);
+    EXPECT_EQ(turns.at(LineTurns::number(line)), one.next(line.in(markers)));
+    EXPECT_EQ(LineTurns::number({1, 0}), LineTurns::number(line));
+    EXPECT_NEAR(turns[0], angle, 1e-9);
+  }
+  EXPECT_TRUE(std::isnan(all.next({Vec3::Zero(), Vec3::Constant(std::nan(""))})[0]));
+}
+
 TEST(Turns, ALineIsOfTwoMarkersThatAreApart) {
   const Model model = testing::bending_model();
   EXPECT_FALSE(read_marker_line(model, {}).has_value());

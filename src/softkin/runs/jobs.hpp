@@ -9,6 +9,7 @@
 #include <softkin/kinematics/walk.hpp>
 #include <softkin/model/model.hpp>
 #include <softkin/runs/record_log.hpp>
+#include <softkin/runs/turns.hpp>
 #include <utility>
 
 namespace softkin::runs {
@@ -108,6 +109,9 @@ class Run {
     const std::size_t number = done();
     if (number > 0 && number % fresh_every == 0) job_.go_on(number, last_, state_.positions);
     auto made = job_.make(number, progress);
+    if (number > 0)
+      made.record.marker_turns =
+          continued_marker_turns(model_, made.state.positions, last_.marker_turns, state_.positions);
     if (made.record.stopped) {
       stopped_ = std::move(made);
       return Advance::interrupted;

@@ -60,18 +60,37 @@ Mat3 best_map(const EmbeddedPoint& point, const Points& rest, const Points& posi
   return to * from.transpose();
 }
 
+Eigen::AngleAxisd rotation_of(const EmbeddedPoint& point, const Points& rest, const Points& positions) {
+  return Eigen::AngleAxisd(nearest_rotation(best_map(point, rest, positions)).rotation);
+}
+
 double turn_of(const EmbeddedPoint& point, const Points& rest, const Points& positions) {
-  return degrees_per_radian * Eigen::AngleAxisd(nearest_rotation(best_map(point, rest, positions)).rotation).angle();
+  return degrees_per_radian * rotation_of(point, rest, positions).angle();
+}
+
+/// The angle [degrees] that differs from one by whole turns and is nearest to another one.
+double nearest_turn(double angle, double near) {
+  return angle + 360 * std::round((near - angle) / 360);
+}
+
+/// The axis about which a marker has turned by `turn`, of the two directions of that of its rotation; none at rest.
+Vec3 axis_of(const Eigen::AngleAxisd& rotation, double turn) {
+  constexpr double rounding = 1e-7;  // [radians]: below it the axis is noise
+  if (rotation.angle() < rounding) return Vec3::Zero();
+  const double angle = degrees_per_radian * rotation.angle();
+  const bool along = std::abs(nearest_turn(angle, turn) - turn) <= std::abs(nearest_turn(-angle, turn) - turn);
+  return along ? rotation.axis() : Vec3(-rotation.axis());
 }
 
 }  // namespace
 
 double TurnMeter::next(const Vec3& line) {
+  if (!line.allFinite()) return std::numeric_limits<double>::quiet_NaN();
   constexpr double rounding = 1e-9;  // below it the axis of a turn is noise
   const Vec3 turned = start_.cross(line);
   if (axis_.isZero() && turned.norm() > rounding * start_.norm() * line.norm()) axis_ = turned.normalized();
   const double turn = degrees_per_radian * std::atan2(axis_.dot(turned), start_.dot(line));
-  last_ = turn + 360 * std::round((last_ - turn) / 360);
+  last_ = nearest_turn(turn, last_);
   return last_;
 }
 
@@ -83,7 +102,8 @@ Vec3 MarkerLine::at_rest(const Model& model) const {
   return model.markers.at(to).at(model.rest) - model.markers.at(from).at(model.rest);
 }
 
-std::optional<MarkerLine> read_marker_line(const Model& model, const std::vector<std::string>& names) {
+std::optional<MarkerLine> read_marker_line(const Model& model, const std::vector<std::string>& names,
+                                           const std::string& source) {
   if (names.empty()) return std::nullopt;
   std::vector<std::string> known;
   for (const Marker& marker : model.markers) known.push_back(marker.name);
@@ -91,14 +111,34 @@ std::optional<MarkerLine> read_marker_line(const Model& model, const std::vector
   for (const auto& [name, index] : {std::pair{names.at(0), &line.from}, std::pair{names.at(1), &line.to}}) {
     const auto found = std::find(known.begin(), known.end(), name);
     if (found == known.end())
-      throw InvalidInput("--turn: there is no marker " + excerpt(name) +
+      throw InvalidInput(source + ": there is no marker " + excerpt(name) +
                          (known.empty() ? "; the robot has none" : suggest_name(name, known)));
     *index = found - known.begin();
   }
   if (!(line.at_rest(model).norm() > 1e-9 * model.diagonal_mm))
-    throw InvalidInput("--turn: markers '" + names[0] + "' and '" + names[1] +
+    throw InvalidInput(source + ": markers '" + names[0] + "' and '" + names[1] +
                        "' are at one place at rest, so no line goes from one to the other");
   return line;
+}
+
+LineTurns::LineTurns(const Model& model) {
+  const Index count = std::ssize(model.markers);
+  for (Index to = 1; to < count; ++to)
+    for (Index from = 0; from < to; ++from) meters_.emplace_back(MarkerLine{from, to}.at_rest(model));
+}
+
+std::vector<double> LineTurns::next(const std::vector<Vec3>& markers) {
+  std::vector<double> turns;
+  turns.reserve(meters_.size());
+  for (std::size_t to = 1; to < markers.size(); ++to)
+    for (std::size_t from = 0; from < to; ++from)
+      turns.push_back(meters_[turns.size()].next(markers[to] - markers[from]));
+  return turns;
+}
+
+std::size_t LineTurns::number(const MarkerLine& line) {
+  const Index from = std::min(line.from, line.to), to = std::max(line.from, line.to);
+  return static_cast<std::size_t>(to * (to - 1) / 2 + from);
 }
 
 std::vector<bool> oriented_markers(const Model& model) {
@@ -114,6 +154,19 @@ std::vector<double> marker_turns(const Model& model, const Points& positions) {
   for (std::size_t m = 0; m < model.markers.size(); ++m)
     turns.push_back(oriented[m] ? turn_of(model.markers[m].point, model.rest, positions)
                                 : std::numeric_limits<double>::quiet_NaN());
+  return turns;
+}
+
+std::vector<double> continued_marker_turns(const Model& model, const Points& positions,
+                                           const std::vector<double>& before, const Points& positions_before) {
+  std::vector<double> turns = marker_turns(model, positions);
+  for (std::size_t m = 0; m < turns.size(); ++m) {
+    if (!std::isfinite(turns[m]) || m >= before.size() || !std::isfinite(before[m])) continue;
+    const EmbeddedPoint& point = model.markers[m].point;
+    const Vec3 axis_before = axis_of(rotation_of(point, model.rest, positions_before), before[m]);
+    const bool is_reversed = rotation_of(point, model.rest, positions).axis().dot(axis_before) < 0;
+    turns[m] = nearest_turn(is_reversed ? -turns[m] : turns[m], before[m]);
+  }
   return turns;
 }
 

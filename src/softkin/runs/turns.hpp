@@ -16,7 +16,7 @@ class TurnMeter {
   /// start: the line that turns are measured from, of some length
   explicit TurnMeter(const Vec3& start) : start_(start) {}
 
-  /// [degrees]
+  /// [degrees]; not finite where the line is not, and the next one is measured from the last that was
   double next(const Vec3& line);
 
  private:
@@ -33,8 +33,26 @@ struct MarkerLine {
 };
 
 /// names   none, or two markers
-/// throws  InvalidInput, naming the option --turn: no such marker, or two that are at one place at rest
-[[nodiscard]] std::optional<MarkerLine> read_marker_line(const Model& model, const std::vector<std::string>& names);
+/// source  the option or function that named them, for messages
+/// throws  InvalidInput: no such marker, or two that are at one place at rest
+[[nodiscard]] std::optional<MarkerLine> read_marker_line(const Model& model, const std::vector<std::string>& names,
+                                                         const std::string& source = "--turn");
+
+/// The turns of the lines between every two markers, from shape to shape.
+class LineTurns {
+ public:
+  explicit LineTurns(const Model& model);
+
+  /// markers  of the next shape [mm]
+  /// returns  by number(), [degrees]; that of two markers at one place at rest means nothing
+  std::vector<double> next(const std::vector<Vec3>& markers);
+
+  /// Where the turn of a line is. That of the line the other way round is the same.
+  [[nodiscard]] static std::size_t number(const MarkerLine& line);
+
+ private:
+  std::vector<TurnMeter> meters_;
+};
 
 /// How far each marker that is a region or a body has turned from rest: the angle of the rotation in the polar
 /// decomposition of the linear map that takes its vertices, weighted as in the marker's mean, best to where they are.
@@ -42,6 +60,15 @@ struct MarkerLine {
 /// positions  #V by 3 [mm]
 /// returns    per marker, 0 to 180 [degrees]; not finite where it is a point of the body, or its vertices are on a line
 [[nodiscard]] std::vector<double> marker_turns(const Model& model, const Points& positions);
+
+/// The same along a path, where a turn may exceed 180 degrees and changes its sign where a marker passes its orientation
+/// at rest: from shape to shape a marker turns by less than 180 degrees, and its axis by less than 90.
+///
+/// before            turns of the shape before, of this function or of marker_turns [degrees]
+/// positions_before  of that shape, #V by 3 [mm]
+[[nodiscard]] std::vector<double> continued_marker_turns(const Model& model, const Points& positions,
+                                                         const std::vector<double>& before,
+                                                         const Points& positions_before);
 
 /// Which markers have an orientation, by which marker_turns knows their turn.
 [[nodiscard]] std::vector<bool> oriented_markers(const Model& model);
