@@ -85,6 +85,55 @@ def test_it_answers_as_the_solver_does(robot: softkin.Robot, made: softkin.Kinem
         np.testing.assert_allclose(made.shape(commands), shape.positions, atol=0.05)
 
 
+def expect_outputs_of_the_map(robot: softkin.Robot, made: softkin.KinematicMap, commands: Any) -> None:
+    """Of robot.solve(map=) within what the map states, which is less than what its shape is off by."""
+    answer, shape = made.solve(commands), robot.solve(commands, map=made)
+    allowed = {each.name: each.largest_error + 1e-9 for each in made.outputs}
+    for name in made.markers:
+        for axis, value in zip("xyz", answer[name]):
+            assert shape[name]["xyz".index(axis)] == pytest.approx(value, abs=allowed[f"{name}_{axis}"])
+    for column, value in answer.ratios.items():
+        name = column.removesuffix("_ratio")
+        assert shape.actuators[name].ratio == pytest.approx(float(value), abs=allowed[column])
+    for name, state in shape.actuators.items():
+        for kind, load in (("pressure_kPa", state.pressure_kPa), ("tension_N", state.tension_N)):
+            if f"{name}_{kind}" in answer.loads:
+                expected = float(answer.loads[f"{name}_{kind}"])
+                expected = max(0, expected) if kind == "tension_N" else expected  # as cables do not push
+                assert load == pytest.approx(expected, abs=allowed[f"{name}_{kind}".rsplit("_", 1)[0]])
+
+
+def test_shapes_by_a_map_have_its_outputs() -> None:
+    """Volumes of chambers by pressure and a cable's length, of a shape that is far less accurate than they are."""
+    pressures = [{**each, "control": "pressure"} for each in chambers((0, 30))[:2]]
+    pull: dict[str, Any] = {"name": "pull", "kind": "cable", "control": "tension", "range": (0, 0.5)}
+    pull["points"] = [(0, 10, 18), (64, 10, 18)]
+    pushed = beam(4, 5, actuators=[*pressures, pull], markers={"tip": "end", "side": (63, 12, 9), "other": (63, 11, 9)})
+    made = pushed.map(accuracy_mm=0.01, shape_accuracy_mm=1, checks=5)
+    for commands in inside(made, 5):
+        expect_outputs_of_the_map(pushed, made, commands)
+        exact = pushed.solve(commands)
+        answer = pushed.solve(commands, map=made)
+        for name, state in exact.actuators.items():
+            assert answer.actuators[name].ratio == pytest.approx(state.ratio, abs=3e-4)
+    run = pushed.path(inside(made, 3), map=made)
+    for shape in run:
+        ratio = float(made.solve(shape.actuation).ratios["air1_ratio"])
+        assert shape.actuators["air1"].ratio == pytest.approx(ratio, abs=1e-9)
+
+
+@pytest.mark.deep
+@pytest.mark.parametrize(
+    "scene",
+    ["three_chamber_actuator", "pneumatic_finger", "three_tendon_finger", "cable_gripper", "paper_finger"],
+)
+def test_shapes_of_examples_by_a_map_have_its_outputs(scene: str, examples: Path) -> None:
+    shown = softkin.load(examples / scene / f"{scene}.yaml")
+    made = shown.map(accuracy_mm=0.05, shape_accuracy_mm=0.5, checks=5)
+    for commands in inside(made, 10):
+        expect_outputs_of_the_map(shown, made, commands)
+
+
 def test_commands(made: softkin.KinematicMap) -> None:
     named = made.solve(air1=1.3)
     np.testing.assert_array_equal(named.commands, [1.3, 1, 1])

@@ -22,7 +22,7 @@ constexpr double stricter = 0.3;
 constexpr int most_rounds = 4;
 /// After so many equilibria that were sought for each input, of which at most this fraction exists while no part of the
 /// map is accurate yet, a map is given up.
-constexpr Index samples_per_input = 30;
+constexpr Index samples_per_input = 12;
 constexpr double min_good_fraction = 0.67;
 /// Points at which a map is asked which cables hang slack.
 constexpr Index looks = 4000;
@@ -121,7 +121,7 @@ class Builder {
       if (!good && !check_ranges(found.front())) return false;
       if (wanted_of_ != strictness_) want(piece, found.front());
       piece.fit->take(std::move(found));
-      if (!good && piece.made.cells.empty() && !check_samples(*piece.fit)) return false;
+      if (!good && piece.made.cells.empty() && !check_samples(piece.made, *piece.fit)) return false;
     }
     gave_up_ = gave_up_ || piece.fit->gave_up();
     data().shape.reset();
@@ -148,7 +148,7 @@ class Builder {
   }
 
   /// The same of what has been found so far.
-  bool check_samples(const PieceFit& fit) {
+  bool check_samples(const MapPiece& piece, const PieceFit& fit) {
     const std::vector<Sample>& samples = fit.samples();
     const auto good =
         std::count_if(samples.begin(), samples.end(), [](const Sample& sample) { return sample.is_good(); });
@@ -156,8 +156,10 @@ class Builder {
     const double fraction = static_cast<double>(good) / static_cast<double>(samples.size());
     if (std::ssize(samples) < enough || fraction > min_good_fraction) return true;
     if (!probe_.probe_corners()) return false;
+    const std::string corner = probe_.wrong_corner();
     throw InvalidInput("of " + std::to_string(samples.size()) + " equilibria that were sought in the ranges only " +
-                       std::to_string(good) + " exist" + after(probe_.wrong_corner()));
+                       std::to_string(good) + " exist" +
+                       after(corner.empty() ? probe_.suspected_input(piece, samples) : corner));
   }
 
   static std::string after(const std::string& why) { return why.empty() ? "" : ": " + why; }

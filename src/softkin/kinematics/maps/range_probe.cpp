@@ -147,4 +147,27 @@ std::string RangeProbe::wrong_corner() const {
          " % of the path, so give the inputs smaller ranges, such as " + ranges;
 }
 
+std::string RangeProbe::suspected_input(const MapPiece& piece, const std::vector<Sample>& samples) const {
+  double largest = -2;
+  Index suspected = 0;
+  for (std::size_t j = 0; j < piece.inputs.size(); ++j) {
+    const MapInput& input = data_.inputs[piece.inputs[j]];
+    double sums[2] = {0, 0}, counts[2] = {0, 0};  // of distances from rest over the range: missing ones, others
+    for (const Sample& sample : samples) {
+      const int which = sample.is_good() ? 1 : 0;
+      sums[which] +=
+          std::abs(sample.commands[static_cast<Index>(j)] - rest_[piece.inputs[j]]) / (input.high - input.low);
+      counts[which] += 1;
+    }
+    const double difference = sums[0] / std::max(counts[0], 1.0) - sums[1] / std::max(counts[1], 1.0);
+    if (!(difference > largest)) continue;
+    largest = difference;
+    suspected = piece.inputs[j];
+  }
+  const MapInput& input = data_.inputs[suspected];
+  const auto half = [&](double end) { return number(rest_[suspected] + 0.5 * (end - rest_[suspected]), 4); };
+  return "the missing ones are far from rest along input '" + input.name + "', so give it a smaller range, such as [" +
+         half(input.low) + ", " + half(input.high) + "]";
+}
+
 }  // namespace softkin::maps
