@@ -272,7 +272,7 @@ class Shape(Saving[CoreShape]):
         whole: dict[str, NDArray[Any]] = {name: np.array([value]) for name, value in core.constants}
         for number, name in enumerate(core.region_names):
             whole[f"region_{name}"] = np.array([number], dtype=np.int32)
-        cells = {**core.cell_data, "region": core.cell_regions}
+        cells: dict[str, NDArray[Any]] = {**core.cell_data, "region": core.cell_regions}
         return np.array(self.positions), blocks, neighbours.Content(core.point_data, cells, {**whole, **core.arrays})
 
     def _core_shape(self) -> CoreShape:

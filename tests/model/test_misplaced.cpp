@@ -85,6 +85,15 @@ TEST(Misplaced, ShapesInMetres) {
   expect_warning(region(VertexList{{0}}), "");
 }
 
+TEST(Misplaced, SupportsThatHoldEverything) {
+  const auto held = [](const Vec3& high) {
+    return [high](RobotSpec& spec) { spec.fixed = {{{Selector(Box{{-1, -1, -1}, high}), {}}}}; };
+  };
+  expect_warning(held({59, 11, 11}), "");
+  expect_warning(held({61, 11, 11}),
+                 "Every vertex of the robot is held by an entry of 'fixed', so that nothing can move");
+}
+
 TEST(Misplaced, ObstaclesOfAnotherSizeOrOutOfReach) {
   const auto obstacle = [](const ObstacleShape& shape) {
     return [shape](RobotSpec& spec) {

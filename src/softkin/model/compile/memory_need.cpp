@@ -131,7 +131,8 @@ MemoryNeed memory_need(const Points& vertices, const std::vector<Tetrahedron>& t
 void refuse_too_large(const Compilation& c) {
   // Below this not even a cube takes a GiB, and the exact number is known soon enough.
   constexpr double small = 150'000;  // unknowns
-  constexpr double sure = 2;         // times too much: what may fit is left to the exact number
+  // Times too much: what may fit is left to the exact number, which is 1.37 times the estimate for a cube of order 2.
+  constexpr double sure = 1.5;
   if (c.model.formulation != Formulation::physical || 3 * c.mesh.vertices.rows() < small) return;
   check_cells(c.mesh, c.origin);
   const MemoryNeed need = memory_need(c.mesh.vertices, c.mesh.tetrahedra, c.mesh.edge_nodes, c.mesh.prisms);

@@ -180,6 +180,19 @@ class MisplacedParts {
 
 void doubt_places(Compilation& c) {
   MisplacedParts(c).doubt_all();
+  const Model& model = c.model;
+  bool any = false;
+  for (std::size_t v = 0; v < model.held.support_of.size(); ++v) {
+    if (!model.elements.used[v]) continue;
+    any = true;
+    const auto& axes = model.held.support_of[v];
+    if (std::any_of(axes.begin(), axes.end(), [](Index support) { return support < 0; })) return;
+  }
+  if (any)
+    c.model.warnings.emplace_back(
+        "Every vertex of the robot is held by an entry of 'fixed', so that nothing can move: hold a part of it, such "
+        "as "
+        "one end; a shape in 'fixed' is in the scene's unit of lengths.");
 }
 
 }  // namespace softkin
