@@ -111,6 +111,7 @@ std::vector<std::vector<ChamberForce>> chamber_forces(const Model& model, const 
     if (!has_caps(model.actuators[a])) continue;
     const ChamberDrive& chamber = *model.actuators[a].as<ChamberDrive>();
     for (const ChamberCap& cap : chamber.caps) {
+      if (cap.support < 0) continue;
       std::vector<ChamberForce>& on = all[cap.support];
       if (on.empty() || on.back().actuator != a) on.push_back({a});
       const CapNodes nodes(chamber, cap);

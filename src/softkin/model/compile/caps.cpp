@@ -22,7 +22,7 @@ struct OpenFace {
   double area = 0;              // [mm^2]
 };
 
-/// Which vertices the entries of `fixed` hold, those of no element among them.
+/// The vertices that the entries of `fixed` hold, with those of no element.
 class Holders {
  public:
   explicit Holders(const Compilation& c) : c_(c), held_(c.spec.fixed.size()) {
@@ -32,25 +32,22 @@ class Holders {
     }
   }
 
-  /// The first entry that holds a face against its normal: all of its vertices, else all of those that elements have.
+  /// The entry that holds the most vertices of a face against its normal, the first of several; -1: none holds any.
   [[nodiscard]] Index holder_of(const OpenFace& face) const {
-    for (const bool every : {true, false})
-      for (std::size_t s = 0; s < held_.size(); ++s)
-        if (c_.spec.fixed[s].axes[face.axis] && holds(s, face, every)) return static_cast<Index>(s);
-    return -1;
+    Index holder = -1;
+    std::ptrdiff_t most = 0;
+    for (std::size_t s = 0; s < held_.size(); ++s) {
+      if (!c_.spec.fixed[s].axes[face.axis]) continue;
+      const auto count = std::count_if(face.vertices.begin(), face.vertices.end(),
+                                       [&](Index v) { return static_cast<bool>(held_[s][v]); });
+      if (count <= most) continue;
+      most = count;
+      holder = static_cast<Index>(s);
+    }
+    return holder;
   }
 
  private:
-  [[nodiscard]] bool holds(std::size_t entry, const OpenFace& face, bool every) const {
-    bool any = false;
-    for (const Index v : face.vertices) {
-      if (!every && !c_.model.elements.used[v]) continue;
-      if (!held_[entry][v]) return false;
-      any = true;
-    }
-    return any;
-  }
-
   const Compilation& c_;
   std::vector<std::vector<bool>> held_;
 };
@@ -63,7 +60,7 @@ void measure_face(const Points& points, OpenFace& face) {
 }
 
 /// Sets the supports of the faces. A face in the middle of an opening, whose vertices no entry names, has that of most
-/// of the faces around the same opening that look the same way.
+/// of the faces around the same opening that look the same way, or of any.
 void assign_supports(const Holders& holders, const Points& points, const std::vector<OpenFace>& faces,
                      std::vector<ChamberCap>& caps) {
   std::vector<Triangle> triangles;
@@ -73,19 +70,19 @@ void assign_supports(const Holders& holders, const Points& points, const std::ve
     supports.push_back(holders.holder_of(face));
   }
   for (const Shell& opening : shells_of(points, triangles)) {
-    std::array<std::map<Index, double>, 3> areas;
+    std::array<std::map<Index, double>, 4> areas;  // by axis, and in all
     for (const Index f : opening.triangles)
-      if (supports[f] >= 0) areas[faces[f].axis][supports[f]] += faces[f].area;
+      if (supports[f] >= 0)
+        for (const int axis : {faces[f].axis, 3}) areas[axis][supports[f]] += faces[f].area;
     for (const Index f : opening.triangles) {
-      const std::map<Index, double>& around = areas[faces[f].axis];
-      if (supports[f] < 0 && !around.empty())
-        supports[f] = std::max_element(around.begin(), around.end(), [](const auto& a, const auto& b) {
-                        return a.second < b.second;
-                      })->first;
+      if (supports[f] >= 0) continue;
+      const std::map<Index, double>& around = areas[areas[faces[f].axis].empty() ? 3 : faces[f].axis];
+      const auto largest = std::max_element(around.begin(), around.end(),
+                                            [](const auto& a, const auto& b) { return a.second < b.second; });
+      if (largest != around.end()) supports[f] = largest->first;
     }
   }
-  for (std::size_t f = 0; f < faces.size(); ++f)
-    if (supports[f] >= 0) caps.push_back({faces[f].face, supports[f]});
+  for (std::size_t f = 0; f < faces.size(); ++f) caps.push_back({faces[f].face, supports[f]});
 }
 
 void add_cavity_caps(const Compilation& c, const Holders& holders, ChamberDrive& chamber) {
