@@ -64,7 +64,8 @@ TEST(Sensitivity, Cable) {
 }
 
 TEST(Sensitivity, Layer) {
-  for (const Law law : {Law::neo_hookean, Law::st_venant_kirchhoff, Law::corotational, Law::yeoh, Law::gent, Law::ogden}) {
+  for (const Law law :
+       {Law::neo_hookean, Law::st_venant_kirchhoff, Law::corotational, Law::yeoh, Law::gent, Law::ogden}) {
     RobotSpec spec = dea_strip();
     spec.materials[0].elastic = elastic(law, 1, 0.4);
     for (const double ratio : {1.0, 0.8, 1.3}) expect_differences_at(spec, values({ratio}));
