@@ -40,7 +40,7 @@ constexpr double ratio_at_240_degrees = 1.68;
 }  // namespace
 
 TEST(PhysicalSteps, FromRestTo240DegreesInOneCall) {
-  SKIP_WITHOUT_TABLE("finger_15k.vtu");
+  SKIP_WITHOUT_TABLE("finger_15k.msh");
   const Model model = compile(reference_finger());
   const Statics statics(model);
   const Equilibrium found = statics.solve(Actuation::Constant(1, ratio_at_240_degrees), statics.rest());
@@ -52,7 +52,7 @@ TEST(PhysicalSteps, FromRestTo240DegreesInOneCall) {
 /// At most 8 factorisations a step of 0.1, and at its end the residual falls ever faster: each of the last falls by
 /// more than the one before, until rounding.
 TEST(PhysicalSteps, StepsOfATenth) {
-  SKIP_WITHOUT_TABLE("finger_15k.vtu");
+  SKIP_WITHOUT_TABLE("finger_15k.msh");
   const Model model = compile(reference_finger());
   const Statics statics(model);
   State state = statics.rest();
