@@ -53,6 +53,7 @@ def test_turns_are_continued_along_a_path(tmp_path: Path) -> None:
     run = turning.path([[angle] for angle in ANGLES], store=tmp_path)
     shapes = [next(run), next(run), next(run), next(run)]
     np.testing.assert_allclose(run.turns("root", "tip"), ANGLES[:4], atol=1e-4)
+    del run  # or its store would be locked
     run = turning.path([[angle] for angle in ANGLES], store=tmp_path)  # goes on there
     shapes += run
     assert run.turns("root", "tip").shape == (len(ANGLES),)
