@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterable
 from typing import Any, ParamSpec, TypeVar
 
 from ._core import InvalidInput
-from ._kinds import ANY, Kind, Names, kind_of, nearest, wrong
+from ._kinds import ANY, INT, THREADS, Kind, Names, kind_of, nearest, wrong
 
 __all__ = ["InvalidCall", "checked", "guard"]
 
@@ -45,6 +45,8 @@ class Plan:
         if isinstance(annotation, str):
             annotation = eval(annotation, {}, names)  # of this package's own source
         kind = ANY if annotation is inspect.Parameter.empty else kind_of(annotation)
+        if parameter.name == "threads" and kind is INT:
+            kind = THREADS
         check = None if kind is ANY else kind
         if parameter.kind is parameter.VAR_KEYWORD:
             self._rest, self._takes_rest = check, True

@@ -18,7 +18,7 @@ import numpy as np
 
 from ._core import InvalidInput
 
-__all__ = ["ANY", "FLOAT", "INT", "Kind", "Names", "kind_of", "named_file", "nearest", "number_of", "reading_of", "shown"]
+__all__ = ["ANY", "FLOAT", "INT", "THREADS", "Kind", "Names", "kind_of", "named_file", "nearest", "number_of", "reading_of", "shown"]
 __all__ += ["wrong"]
 
 LARGEST_INT = 2**31 - 1
@@ -108,6 +108,16 @@ PLAIN: dict[Any, Kind] = {
     str: Kind("a text", lambda value: isinstance(value, str), _no_fault),
     type(None): Kind("None", lambda value: value is None, _no_fault),
 }
+MAX_THREADS = 1024
+
+
+def _threads_fault(name: str, value: Any) -> str | None:
+    if 0 <= int(value) <= MAX_THREADS:
+        return None
+    return f"{name} must be from 0 (as many as the machine has) to {MAX_THREADS}, not {shown(value)}"
+
+
+THREADS = Kind("a whole number", _is_int, _threads_fault)
 PATH = Kind("the name of a file", _is_path, _path_fault)
 ANY = Kind("anything", lambda value: True, _no_fault)
 

@@ -371,6 +371,12 @@ def test_what_was_accepted_without_a_word(calls: dict[str, Call]) -> None:
         robot.path([{"pull": 0.1}], pull=0.2)
 
 
+def test_threads_are_as_many_as_a_machine_may_have() -> None:
+    for threads in (-1, 1025, 10**6):
+        with pytest.raises(softkin.InvalidInput, match=rf"threads must be from 0 .as many as the machine has. to 1024, not {threads}"):
+            softkin.Solver(threads=threads)
+
+
 def test_unknown_keywords_name_the_nearest(calls: dict[str, Call]) -> None:
     robot: softkin.Robot = calls["Session"].given[0]
     with pytest.raises(softkin.InvalidInput, match="'tolerance', and the robot no marker of that name; did you mean 'tolerance_mm'"):
