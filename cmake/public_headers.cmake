@@ -51,6 +51,7 @@ set(softkin_public_headers
     io/table/measured_poses.hpp
     io/table/measurements.hpp
     io/table/relaxation_runs.hpp
+    statics/chamber_caps.hpp
     statics/contact_forces.hpp
     statics/deformation.hpp
     statics/electric_layer.hpp

@@ -39,11 +39,11 @@ struct ConnectedChamber {
 };
 
 /// A face of a chamber's boundary where a support closes the chamber: no material of the robot lies behind it, and the
-/// vertices that carry it are held against its normal. The pressure in the chamber acts on the support there, not on the
-/// robot.
+/// vertices that carry it are held against its normal. The pressure in the chamber acts on the support there, not on
+/// the robot.
 struct ChamberCap {
   Index face = -1;     // index into ChamberDrive::cavity, or into its surface where it has one
-  Index support = -1;  // index into Held::supports: the support that closes the chamber there
+  Index support = -1;  // index into Held::supports: the support that closes the chamber there; -1: none
 };
 
 /// A chamber, or several that are connected: by its elements, by its boundary, or by a surface that the body carries.
