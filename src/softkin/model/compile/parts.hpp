@@ -126,8 +126,8 @@ void compile_families(Compilation& c);
 void check_openings(const Compilation& c);
 /// The faces of a cavity that are neither faces of the body's elements nor of layers, as indices into the cavity.
 [[nodiscard]] std::vector<Index> open_faces(const Compilation& c, const std::vector<CavityFace>& cavity);
-/// Do supports hold the face whose place follows from these vertices, so that a plate or a plane of symmetry may close a
-/// chamber there: are all of them held along x, y and z, or all along the axis to which their plane is normal?
+/// Do supports hold the face whose place follows from these vertices, so that a plate or a plane of symmetry may close
+/// a chamber there: are all of them held along x, y and z, or all along the axis to which their plane is normal?
 ///
 /// at_rest  must they be held at their places at rest, too? Where some belong to no element, which stay there
 [[nodiscard]] bool is_plate(const Model& model, const std::vector<Index>& vertices, bool at_rest);
