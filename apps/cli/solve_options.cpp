@@ -137,7 +137,8 @@ void add_solver(CLI::App& command, SolveOptions& options, const std::string& thr
   add_value(
       command, "--max-iterations", options.max_iterations, "N",
       "Give up on a shape after so many, of Newton's method (default: " + std::to_string(newton.iteration_limit()) +
-          ")\nor of Algorithm 1 (" + std::to_string(local_global.iteration_limit()) + ")",
+          ")\nor of Algorithm 1 (" + std::to_string(local_global.iteration_limit()) +
+          "); where the path to it advances\nin steps, the limit is one of each step",
       integer_from(1, most_iterations));
   add_value(command, "--anderson", options.anderson, "N",
             "local-global: earlier iterations that Anderson acceleration\ncombines, 0 to 20; 0: Algorithm 1 as "

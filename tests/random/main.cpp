@@ -10,6 +10,7 @@
 #include <mutex>
 #include <thread>
 
+#include "random/paths.hpp"
 #include "random/runs.hpp"
 
 /// Solves robots that nobody thought of and checks every answer by an evaluation of its own.
@@ -113,8 +114,15 @@ int main(int argc, char** argv) {
   const CLI::Option* one = app.add_option("--seed", seed, "one seed, told at length");
   bool falsify = false;
   app.add_flag("--falsify", falsify, "falsify answers: every false one must be noticed");
+  bool paths = false;
+  int rows = 32;
+  app.add_flag("--paths", paths, "solve in one step and along a path of rows: ends that differ without a report fail");
+  app.add_option("--rows", rows, "rows of a path")->check(CLI::PositiveNumber);
   CLI11_PARSE(app, argc, argv);
   if (falsify) return count_unnoticed_lies(options.first, options.count) == 0 ? 0 : 1;
+  if (paths && one->count() == 0)
+    return compare_paths(options.first, options.count, rows, options.threads) == 0 ? 0 : 1;
+  if (paths) return compare_path(seed, rows, true).comparison == PathComparison::differs ? 1 : 0;
   if (one->count() == 0) return run(options);
   const RunResult result = run_seed(seed, true);
   std::printf("seed %llu: %s in %.3f s %s\n", static_cast<unsigned long long>(seed), name_of(result.outcome),

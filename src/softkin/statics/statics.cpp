@@ -103,11 +103,17 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   const auto begin = std::chrono::steady_clock::now();
   const int most = options.iteration_limit();
   bool stops = false, late = false, spent = false;
+  double reached = 0;  // fraction of the path
+  int before = 0;      // iterations until then: the limit is one of a step, for as long as the path advances
   const ProgressCallback progress = [&](const Progress& p) {
     if (stops) return false;
     stops = asked_progress && !asked_progress(p);
     late = options.deadline.passed();  // afterwards, as what is asked may look at the same deadline
-    spent = !stops && !late && p.iteration >= most;
+    if (p.share > reached) {
+      reached = p.share;
+      before = p.iteration;
+    }
+    spent = !stops && !late && p.iteration - before >= most;
     stops = stops || late || spent;
     return !stops;
   };

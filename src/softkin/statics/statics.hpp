@@ -30,7 +30,7 @@ struct StaticsOptions {
   /// Largest move of a vertex in one iteration at which a solver stops [mm], > 0. 0: the paper's 1e-5 mm on a robot
   /// of its size, 8e-8 of the bounding box's diagonal.
   double step_tolerance_mm = 0;
-  int max_iterations = 0;     // of a solve, >= 0; 0: iteration_limit()
+  int max_iterations = 0;     // of a step of a solve's path, >= 0; 0: iteration_limit()
   int anderson = 6;           // earlier steps that Anderson acceleration combines, 0 <= anderson <= 20; 0: as printed
   bool as_published = false;  // local_global: without acceleration, to PublishedStop; for what ends there, not for use
   int threads = 0;            // 0: as many as the machine has and the robot is worth; the result is the same
@@ -50,8 +50,9 @@ struct StaticsOptions {
   std::shared_ptr<const ViscousHistory> history{};
   double elapsed_s = std::numeric_limits<double>::infinity();
 
-  /// After how many iterations a solve ends, not converged, with its last good shape: max_iterations, or 500 of
-  /// Newton's method, which 999 of 1,000 random robots that have an equilibrium do not need, and 50,000 of Algorithm 1.
+  /// After how many iterations without an advance along its path a solve ends, not converged, with its last good shape:
+  /// max_iterations, or 500 of Newton's method, which 999 of 1,000 random robots that have an equilibrium do not need,
+  /// and 50,000 of Algorithm 1.
   [[nodiscard]] int iteration_limit() const {
     if (max_iterations > 0) return max_iterations;
     return solver == Solver::newton ? 500 : 50000;

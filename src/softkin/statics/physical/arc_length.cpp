@@ -23,8 +23,9 @@ constexpr double difference = 1e-3;
 /// The shape that is kept stands so far before the turn, over the way to the point beyond it: at it the stiffness is
 /// singular.
 constexpr double before_turn = 0.02;
-/// Of steps beyond the turn; and how far the share may fall there.
-constexpr int most_iterations_beyond = 300;
+/// Of steps beyond the turn, where the curve may bend sharply; and how far the share may fall there.
+constexpr int most_iterations_beyond = 300, most_missed_beyond = 8;
+constexpr double shortest_step_beyond = 1e-4;
 constexpr double farthest_back = -1;
 
 }  // namespace
@@ -76,8 +77,7 @@ bool ArcLength::begin(const Iterate& at, Point& point) {
 }
 
 /// Newton's method across the tangent, from a step along it.
-bool ArcLength::correct(const Point& from, double length, Point& point) {
-  const double whole = system_.freedoms().size_of(length * from.ahead, from.at.positions).largest;
+bool ArcLength::correct(const Point& from, double whole, double tolerance, Point& point) {
   double before = 0;
   missed_ = std::numeric_limits<double>::infinity();
   why_ = "its iterations were not enough";
@@ -119,7 +119,7 @@ bool ArcLength::correct(const Point& from, double length, Point& point) {
     report_.gradient_norm = balance.force.norm();
     report_.energy = balance.energy;
     if (options_.keep_history) report_.history.push_back({balance.energy, report_.gradient_norm, move});
-    if (move < options_.tolerance_mm) return true;
+    if (move < tolerance) return true;
   }
   return false;
 }
@@ -147,7 +147,8 @@ std::optional<ArcLength::Point> ArcLength::go(const Point& from, double length) 
   next.at.multipliers += length * from.multipliers;
   settler_.give_loads(there, next.at);
   const Points predicted = next.at.positions;
-  const bool found = correct(from, length, next);
+  const double whole = system_.freedoms().size_of(length * from.ahead, from.at.positions).largest;
+  const bool found = correct(from, whole, options_.tolerance_mm, next);
   tracer_.end(found, found ? "" : why_, system_.largest_move(from.at.positions, predicted),
               system_.largest_move(predicted, next.at.positions));
   if (!found) return std::nullopt;
@@ -158,16 +159,12 @@ std::optional<ArcLength::Point> ArcLength::go(const Point& from, double length) 
   return next;
 }
 
-ArcLength::Pace ArcLength::pace(double length, int iterations) const {
-  return {length, shortest_step * length, report_.iterations + iterations};
-}
-
 /// The point at the end of a step, which is made shorter where it leads nowhere; none: nor do those.
 std::optional<ArcLength::Point> ArcLength::next(const Point& from, Pace& pace) {
   while (report_.iterations < pace.most_iterations && pace.length > pace.shortest) {
     std::optional<Point> found = go(from, pace.length);
     pace.missed = found ? 0 : pace.missed + 1;
-    if (interrupted_ || pace.missed > most_missed) break;
+    if (interrupted_ || pace.missed > pace.most_missed) break;
     pace.length *= std::clamp(std::sqrt(wanted_miss / missed_), most_shrinking, found ? most_grown : least_shrinking);
     if (found) return found;
   }
@@ -179,7 +176,8 @@ ArcLength::End ArcLength::follow(Iterate& at) {
   Point low;
   if (!begin(at, low)) return End::lost;
   const double first = low.share;
-  Pace steps = pace(first_share * (route_.failed - low.share) / low.slope, most_iterations);
+  const double length = first_share * (route_.failed - low.share) / low.slope;
+  Pace steps{length, shortest_step * length, report_.iterations + most_iterations, most_missed};
   End end = End::lost;
   std::optional<Beyond> high;
   std::optional<Point> far;  // beyond the turn
@@ -206,6 +204,7 @@ ArcLength::End ArcLength::follow(Iterate& at) {
       const double top = largest_between(low, *high);
       steps.length = std::max(top - before_turn * high->away, 0.5 * top);
       last = true;
+      if (steps.length <= steps.shortest && low.share > first) end = End::turned;  // nearer than any step
     }
   }
   if (low.share > first && !keep(low, at)) end = End::lost;
@@ -215,12 +214,13 @@ ArcLength::End ArcLength::follow(Iterate& at) {
 
 /// On from beyond the turn to a stable equilibrium that bears more than is borne at the turn, or all that is asked.
 ArcLength::End ArcLength::go_beyond(Point last, Iterate& at) {
-  Pace steps = pace(last.went, most_iterations_beyond);
+  Pace steps{last.went, shortest_step_beyond * last.went, report_.iterations + most_iterations_beyond,
+             most_missed_beyond};
   while (std::optional<Point> found = next(last, steps)) {
     if (!holds(*found) || found->share < farthest_back) break;
     if (found->slope > 0 && found->negative == 0 && found->share > route_.done) {
       found->share = std::min(found->share, 1.0);
-      const Jump jump{route_.done, system_.largest_move(at.positions, found->at.positions)};
+      const Jump jump{route_.done, jump_to(last, *found, at)};
       if (!keep(*found, at)) break;
       jump_ = jump;
       return End::passed;
@@ -228,6 +228,22 @@ ArcLength::End ArcLength::go_beyond(Point last, Iterate& at) {
     last = std::move(*found);
   }
   return interrupted_ ? End::interrupted : End::turned;
+}
+
+/// How far it is to the equilibrium under the loads of the turn, which lies before the first point found that bears
+/// more: that point itself depends on the steps.
+double ArcLength::jump_to(const Point& before, const Point& found, const Iterate& at) {
+  const double far = system_.largest_move(at.positions, found.at.positions);
+  if (!(before.share < route_.done && route_.done < found.share && before.negative == 0)) return far;
+  const double part = (route_.done - before.share) / (found.share - before.share);
+  const Demand there = demand(route_.done);
+  Iterate trial = found.at;
+  trial.positions = before.at.positions + part * (found.at.positions - before.at.positions);
+  trial.multipliers = before.at.multipliers + part * (found.at.multipliers - before.at.multipliers);
+  system_.placement().hold(there, trial.positions);
+  if (settler_.settle(there, Newton::Policy::follow, trial) != Newton::Outcome::converged) return far;
+  const double near = system_.largest_move(at.positions, trial.positions);
+  return near > 0.5 * far ? near : far;
 }
 
 /// The equilibrium of a share is Newton's, from that of the curve.

@@ -9,7 +9,7 @@ namespace softkin::physical {
 ///
 /// source  Riks 1979, An incremental approach to the solution of snapping and buckling problems, with the plane across
 ///         the tangent as the constraint; Allgower, Georg 1990, Numerical continuation methods, chapter 4
-class ArcLength : Follower {
+class ArcLength : protected Follower {
  public:
   /// lost: the curve could not be followed to one of the others. passed: beyond where steps of the share failed.
   enum class End { lost, passed, turned, interrupted };
@@ -36,7 +36,7 @@ class ArcLength : Follower {
   /// Over which it came to that, where it lies beyond a turn.
   [[nodiscard]] const std::optional<Jump>& jump() const { return jump_; }
 
- private:
+ protected:
   /// An equilibrium on the curve. Per unit of its length, in unknowns:
   struct Point {
     Iterate at{};
@@ -49,36 +49,43 @@ class ArcLength : Follower {
     double went = 0;                         // along the curve, from the last point
   };
 
+  [[nodiscard]] Demand demand(double share) const { return between(route_.from, route_.to, share); }
+  /// Newton's method across from.ahead, until a correction is shorter than `tolerance_mm`.
+  ///
+  /// whole_mm  largest move of a vertex by the step, which corrections are compared with
+  bool correct(const Point& from, double whole_mm, double tolerance_mm, Point& point);
+  [[nodiscard]] bool holds(const Point& point) const;
+
+  const char* why_ = "";  // it was not found
+  bool interrupted_ = false;
+
+ private:
   /// A point beyond the turn.
   struct Beyond {
     double away = 0;  // along the curve
     double share = 0, slope = 0;
   };
 
-  /// Steps along the curve: the length of the next one, the shortest, how many failed in a row.
+  /// Steps along the curve: the length of the next one, the shortest; iterations of all; how many may fail in a row, and
+  /// how many did.
   struct Pace {
     double length = 0, shortest = 0;
-    int most_iterations = 0, missed = 0;
+    int most_iterations = 0, most_missed = 0, missed = 0;
   };
 
-  [[nodiscard]] Pace pace(double length, int iterations) const;
-  [[nodiscard]] Demand demand(double share) const { return between(route_.from, route_.to, share); }
   bool set_rates(const Balance& balance, const Eigen::VectorXd* before, Point& point);
   bool begin(const Iterate& at, Point& point);
   std::optional<Point> next(const Point& from, Pace& pace);
   std::optional<Point> go(const Point& from, double length);
-  bool correct(const Point& from, double length, Point& point);
   [[nodiscard]] double largest_between(const Point& low, const Beyond& high);
-  [[nodiscard]] bool holds(const Point& point) const;
+  double jump_to(const Point& before, const Point& found, const Iterate& at);
   bool keep(const Point& found, Iterate& at);
   End go_beyond(Point last, Iterate& at);
 
   Route route_;
   std::optional<Jump> jump_{};
   double largest_ = 0;
-  double missed_ = 0;     // by the last step, over its length
-  const char* why_ = "";  // it was not found
-  bool interrupted_ = false;
+  double missed_ = 0;  // by the last step, over its length
 };
 
 }  // namespace softkin::physical

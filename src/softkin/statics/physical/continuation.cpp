@@ -81,6 +81,7 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
   bool led = false, cut = false;
   const auto prediction = [&] {
     led = whole && !led && lead(here, there, trial);
+    step_.extrapolated = led;
     if (led) {
       system_.placement().hold(there, trial.positions);
       step_.predicted = step_.begun = trial.positions;
@@ -89,6 +90,7 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
     }
     const ClearPrediction clear = predict_clear(system_, here, there, settler_.active, work_, team_, trial);
     step_.predicted = clear.predicted;
+    step_.straight = clear.straight;
     if (system_.friction()) settler_.free_way = {clear.straight, clear.predicted};
     step_.move_mm = clear.move_mm.value_or(system_.largest_move(at.positions, step_.predicted));
     cut = clear.cut && settler_.weighs(here, there) &&
@@ -275,6 +277,23 @@ Continuation::StepEnd Continuation::judge(Newton::Outcome outcome, const Demand&
     end.found = false;
     end.why = because;
   };
+  if (end.found && getenv("SOFTKIN_DEBUG_STEPS") != nullptr) {
+    Iterate back = trial;
+    (void)predict(system_, there, way_.here, settler_.active, work_, team_, back);
+    const Points d0 = step_.predicted - at.positions, d1 = trial.positions - back.positions,
+                 s = trial.positions - at.positions;
+    const auto size = [&](const Points& p) {
+      return system_.largest_move(Points::Zero(p.rows(), 3), p) / system_.model().diagonal_mm;
+    };
+    const double dd = (d0.array() * s.array()).sum() / std::max(1e-300, d0.norm() * s.norm()),
+                 de = (d1.array() * s.array()).sum() / std::max(1e-300, d1.norm() * s.norm());
+    fprintf(stderr,
+            "STEP len %.4g D0 %.4g S %.4g D1 %.4g c0 %.4g trap %.4g cos0 %.3f cos1 %.3f loads %d its %d proj %d shifts "
+            "%d modes %d kinked %d unforetold %d\n",
+            length, size(d0), size(s), size(d1), size(s - d0), size(2 * s - d0 - d1), dd, de, (int)way_.loads_change,
+            report_.iterations, report_.projections, report_.shifts, settler_.newton().unstable_modes(),
+            (int)system_.kinked(), (int)step_.unforetold);
+  }
   if (end.found && way_.loads_change && snapped(step_.move_mm, system_.largest_move(step_.begun, trial.positions)) &&
       jumped(way_.here, there, at, trial))
     reject("the equilibrium lies beyond a jump");
@@ -291,6 +310,61 @@ Continuation::StepEnd Continuation::judge(Newton::Outcome outcome, const Demand&
   return end;
 }
 
+/// Is there a limit point between a step's begin and its end?
+///
+/// changed  do cables that were held slacken, or others pull
+SegmentCheck::Verdict Continuation::check_segment(const Demand& there, double length, bool changed, const Iterate& at,
+                                                  const Iterate& trial) {
+  using Verdict = SegmentCheck::Verdict;
+  if (step_.unforetold || system_.kinked()) return Verdict::confirmed;
+  const Points secant = trial.positions - at.positions;
+  Points ahead = step_.predicted - at.positions;
+  const double farthest = std::max(system_.largest_move(at.positions, trial.positions),
+                                   system_.largest_move(at.positions, step_.predicted));
+  if (farthest <= SegmentCheck::least_checked * system_.model().diagonal_mm ||
+      SegmentCheck::predicts(system_, ahead, secant))
+    return Verdict::confirmed;
+  const auto tangent = [&](const Demand& from, const Demand& to, const Iterate& shape) {
+    return first_order_moves(system_, from, to, settler_.active, work_, team_, shape);
+  };
+  if (step_.extrapolated || changed) {
+    if (settler_.prepare(way_.here, at) < 0) return Verdict::unclear;
+    ahead = tangent(way_.here, there, at);
+    if (settler_.prepare(there, trial) < 0) return Verdict::unclear;
+  } else {
+    ahead = step_.straight - at.positions;
+  }
+  SegmentCheck check(settler_, tracer_, options_, way_.from, way_.to);
+  const int modes = settler_.newton().unstable_modes();
+  const SegmentEnd low{&at, way_.done, ahead / length, settler_.last.modes};
+  const SegmentEnd high{&trial, way_.done + length, -tangent(there, way_.here, trial) / length, modes};
+  // the factor at hand is of a shape nearby, and mostly good enough
+  const auto agree = [&] {
+    step_.jump_mm = 0.5 * length * system_.largest_move(low.rate, secant / length) +
+                    0.5 * length * system_.largest_move(high.rate, secant / length);
+    return check.agree(low, high);
+  };
+  if (agree()) return Verdict::confirmed;
+  Verdict verdict = check.check(low, high);
+  if (changed && verdict == Verdict::unclear) verdict = Verdict::confirmed;  // where a cable slackens tangents turn
+  way_.factorised = verdict == Verdict::confirmed && settler_.prepare(there, trial) >= 0;
+  return verdict;
+}
+
+/// A step that passed a limit point, or of which nothing shows that it did not, is not taken; where loads do not change
+/// it snaps.
+void Continuation::check_path(const Demand& there, double length, bool changed, const Iterate& at, const Iterate& trial,
+                              StepEnd& end) {
+  if (!way_.loads_change && length <= finest) return;
+  const SegmentCheck::Verdict verdict = check_segment(there, length, changed, at, trial);
+  if (verdict == SegmentCheck::Verdict::confirmed) return;
+  end.interrupted = verdict == SegmentCheck::Verdict::interrupted;
+  end.snap = !way_.loads_change;
+  end.found = end.snap;
+  end.why = verdict == SegmentCheck::Verdict::unclear ? "the tangents at its ends do not agree"
+                                                      : "the equilibrium lies beyond a limit point";
+}
+
 /// Tries one step and takes it, or chooses a shorter one; a status where the way ends.
 std::optional<Status> Continuation::go_on(Iterate& at) {
   const double next = next_share(), length = next - way_.done;
@@ -301,14 +375,16 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   const std::vector<bool> active = settler_.active;
   work_.left_field = false;
   tracer_.begin(whole(way_.done), whole(next), length);
-  step_.unforetold = false;
+  step_.unforetold = step_.extrapolated = false;
   const auto outcome = [&] {
     const auto briefly = settler_.newton().briefly(ends_early(length < follow_below));
     return step(way_.here, there, length, at, trial);
   }();
   settler_.free_way = {};
   if (outcome == Newton::Outcome::interrupted) return Status::interrupted;
-  const StepEnd came = judge(outcome, there, length, at, trial);
+  StepEnd came = judge(outcome, there, length, at, trial);
+  if (came.found && !came.snap) check_path(there, length, settler_.active != active, at, trial, came);
+  if (came.interrupted) return Status::interrupted;
   const double longest = longest_step(came.snap, came.unstable);
   const double corrected_mm = came.found ? system_.largest_move(step_.begun, trial.positions) : 0;
   const auto trace = [&](bool taken, const std::string& told) {

@@ -2,6 +2,7 @@
 
 #include <optional>
 #include <softkin/statics/physical/arc_length.hpp>
+#include <softkin/statics/physical/segment_check.hpp>
 #include <softkin/statics/physical/settling.hpp>
 #include <softkin/statics/physical/step_tracer.hpp>
 #include <softkin/statics/physical/summit.hpp>
@@ -29,14 +30,17 @@ class Continuation {
   /// The step at hand.
   struct Step {
     Points predicted{}, begun{};      // where it was to lead, and what of that is in nobody's way
+    Points straight{};                // where its tangent leads to first order
     double move_mm = 0, jump_mm = 0;  // to what it predicted, and beside the way
     bool unforetold = false;          // does no tangent say where it should have led
+    bool extrapolated = false;        // was it predicted without a tangent, from equilibria around it
   };
   /// What a step came to.
   struct StepEnd {
     std::string why{};                    // it ended
     bool found = false, blocked = false;  // an equilibrium; the way there
     bool snap = false, unstable = false;  // of what was found
+    bool interrupted = false;             // while it was checked
   };
   /// Where a step came out that jumped: what is left where shorter ones find nothing.
   struct Beyond {
@@ -101,6 +105,7 @@ class Continuation {
   bool loads_at_last(const Iterate& at);
   void go_together(Iterate& at);
   ArcLength::End follow_curve(Iterate& at);
+  SegmentCheck::Verdict check_curve(const Iterate& begun, int modes, const Iterate& at, double share);
   Climb::End climb(Climb::End (Climb::*along)(Iterate&), Index load, Iterate& at);
 
   // a step
@@ -110,6 +115,10 @@ class Continuation {
   Newton::Outcome fall_onto(const Demand& here, const Demand& there, const Iterate& at, Iterate& trial);
   bool lead(const Demand& here, const Demand& there, Iterate& trial);
   bool leads_too_far(const Demand& here, const Demand& there, const Iterate& at);
+  SegmentCheck::Verdict check_segment(const Demand& there, double length, bool changed, const Iterate& at,
+                                      const Iterate& trial);
+  void check_path(const Demand& there, double length, bool changed, const Iterate& at, const Iterate& trial,
+                  StepEnd& end);
   [[nodiscard]] StepEnd judge(Newton::Outcome outcome, const Demand& there, double length, const Iterate& at,
                               const Iterate& trial);
   bool turned_back(const Iterate& at, const Iterate& trial);

@@ -79,6 +79,14 @@ void follow(const Tangent& tangent, double share, const System& system, const De
     if (!active[a] && system.measures().given_load(a)) multipliers[a] = system.measures().given(a, there.actuation[a]);
 }
 
+/// A shape moved along a tangent as by first order, and what is held to its place.
+Points moved_straight(const System& system, const Tangent& tangent, const Demand& there, const Points& from) {
+  Points straight = from;
+  system.freedoms().move(tangent.step, 1, straight);
+  system.placement().hold(there, straight);
+  return straight;
+}
+
 }  // namespace
 
 double predict(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
@@ -88,6 +96,12 @@ double predict(const System& system, const Demand& here, const Demand& there, co
   system.advance(tangent.step, 1, work, at.positions, team, &there);
   follow(tangent, 1, system, there, active, at.multipliers);
   return system.largest_move(before, at.positions);
+}
+
+Points first_order_moves(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
+                         Workspace& work, Team& team, const Iterate& at) {
+  const Tangent tangent(system, here, there, active, work, team, at);
+  return moved_straight(system, tangent, there, at.positions) - at.positions;
 }
 
 ClearPrediction predict_clear(const System& system, const Demand& here, const Demand& there,
@@ -111,11 +125,7 @@ ClearPrediction predict_clear(const System& system, const Demand& here, const De
     const double share = clear_share(system, from, way, end, work, at.positions, team);
     if (first) {
       clear.predicted = at.positions;
-      if (system.friction()) {
-        clear.straight = from;
-        system.freedoms().move(tangent.step, 1, clear.straight);
-        system.placement().hold(there, clear.straight);
-      }
+      clear.straight = moved_straight(system, tangent, there, from);
     }
     if (share >= end) break;
     clear.cut = true;

@@ -11,6 +11,10 @@ namespace softkin::physical {
 double predict(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
                Workspace& work, Team& team, Iterate& at);
 
+/// The same change of shape to first order alone, without what turns add: #V by 3 [mm].
+[[nodiscard]] Points first_order_moves(const System& system, const Demand& here, const Demand& there,
+                                       const std::vector<bool>& active, Workspace& work, Team& team, const Iterate& at);
+
 struct ClearPrediction {
   Points predicted, straight;     // as predict() gives it; without what turns add
   std::optional<double> move_mm;  // the largest of a vertex, as far as it is clear; none where a shorter way is better:

@@ -1,0 +1,114 @@
+#include <algorithm>
+#include <softkin/statics/physical/segment_check.hpp>
+#include <utility>
+
+namespace softkin::physical {
+
+namespace {
+
+/// Of the secant, that the tangent at the begin may miss its end by for that alone to be enough; that the tangent at
+/// either end may miss the other end by, and both together, where both are known.
+constexpr double most_missed_ahead = 0.1, most_missed = 0.4, most_missed_together = 0.2;
+/// Segments are halved so many times, with so many corrections in all.
+constexpr int most_halvings = 7, most_corrections = 60;
+/// A middle may be so far from its equilibrium, over the secant.
+constexpr double accuracy = 1e-3;
+/// Of a segment, over which supports move for the tangent of its middle.
+constexpr double difference = 1e-3;
+
+}  // namespace
+
+SegmentCheck::SegmentCheck(Settler& settler, StepTracer& tracer, const Equilibria::Options& options, const Demand& from,
+                           const Demand& to)
+    : ArcLength(settler, tracer, options, {from, to}) {}
+
+double SegmentCheck::size(const Points& moves) const {
+  return system_.largest_move(Points::Zero(moves.rows(), 3), moves);
+}
+
+bool SegmentCheck::predicts(const System& system, const Points& predicted, const Points& secant) {
+  const Points none = Points::Zero(secant.rows(), 3);
+  return system.largest_move(predicted, secant) <= most_missed_ahead * system.largest_move(none, secant);
+}
+
+bool SegmentCheck::agree(const SegmentEnd& low, const SegmentEnd& high) const {
+  const double length = high.factor - low.factor;
+  const Points secant = high.at->positions - low.at->positions;
+  const Points ahead = length * low.rate - secant, behind = length * high.rate - secant;
+  const double whole = size(secant);
+  return size(ahead) <= most_missed_ahead * whole ||
+         (size(ahead) <= most_missed * whole && size(behind) <= most_missed * whole &&
+          size(ahead + behind) <= most_missed_together * whole);
+}
+
+SegmentCheck::Verdict SegmentCheck::check(const SegmentEnd& low, const SegmentEnd& high) {
+  const double energy = report_.energy, gradient_norm = report_.gradient_norm, step_mm = report_.step_mm;
+  iterations_ = report_.iterations;
+  const Verdict verdict = check_halves(low, high, most_halvings);
+  report_.energy = energy;
+  report_.gradient_norm = gradient_norm;
+  report_.step_mm = step_mm;
+  return verdict;
+}
+
+SegmentCheck::Verdict SegmentCheck::check_halves(const SegmentEnd& low, const SegmentEnd& high, int depth) {
+  const double least = least_checked * system_.model().diagonal_mm;
+  const bool is_short = system_.largest_move(low.at->positions, high.at->positions) <= least &&
+                        (high.factor - low.factor) * size(low.rate) <= least;
+  if (is_short || agree(low, high)) return Verdict::confirmed;
+  if (depth == 0 || report_.iterations - iterations_ > most_corrections) return Verdict::unclear;
+  Point found;
+  const Verdict verdict = find_middle(low, high, found);
+  if (verdict != Verdict::confirmed) return verdict;
+  const SegmentEnd middle{&found.at, found.share, rate(found, difference * (high.factor - low.factor)), found.negative};
+  const Verdict first = check_halves(low, middle, depth - 1);
+  return first == Verdict::confirmed ? check_halves(middle, high, depth - 1) : first;
+}
+
+/// Change of the positions by the load factor, over a small change of that.
+Points SegmentCheck::rate(const Point& point, double change) const {
+  Points ahead = point.at.positions;
+  system_.freedoms().move(point.ahead, change / point.slope, ahead);
+  system_.placement().hold(demand(point.share + change), ahead);
+  return (ahead - point.at.positions) / change;
+}
+
+/// The equilibrium on the plane across the secant, half way along the cubic through both ends whose tangents are no
+/// longer than the secant.
+SegmentCheck::Verdict SegmentCheck::find_middle(const SegmentEnd& low, const SegmentEnd& high, Point& middle) {
+  const double length = high.factor - low.factor;
+  const Points secant = high.at->positions - low.at->positions;
+  const double whole = size(secant);
+  const auto shortened = [&](const SegmentEnd& end) { return std::min(1.0, whole / (length * size(end.rate))); };
+  const double begins = shortened(low), ends = shortened(high);
+  Point from{.at = *low.at, .share = low.factor};
+  middle = from;
+  middle.share = 0.5 * (low.factor + high.factor) + length * (begins - ends) / 8;
+  middle.at.positions =
+      0.5 * (low.at->positions + high.at->positions) + length * (begins * low.rate - ends * high.rate) / 8;
+  middle.at.multipliers = 0.5 * (low.at->multipliers + high.at->multipliers);
+  const Demand there = demand(middle.share);
+  system_.placement().hold(there, middle.at.positions);
+  settler_.give_loads(there, middle.at);
+  from.ahead.resize(system_.freedoms().size());
+  system_.freedoms().reduce(secant, middle.at.positions, from.ahead);
+  if (!(from.ahead.norm() > 0)) return Verdict::unclear;
+  from.ahead.normalize();
+  tracer_.begin(low.factor, high.factor, length, "check");
+  const Points begun = middle.at.positions;
+  const bool found = correct(from, 0.5 * whole, accuracy * whole, middle);
+  const bool held = found && holds(middle);
+  const bool stable = middle.negative <= std::max(low.negative, high.negative);
+  const bool between = low.factor < middle.share && middle.share < high.factor && middle.slope > 0;
+  tracer_.end(held && stable && between,
+              !found                ? why_
+              : !held               ? "a cable slackens or pulls in the middle"
+              : !stable || !between ? "a limit point is passed"
+                                    : "",
+              0.5 * whole, system_.largest_move(begun, middle.at.positions));
+  if (interrupted_) return Verdict::interrupted;
+  if (!held) return Verdict::unclear;
+  return stable && between ? Verdict::confirmed : Verdict::passes_limit_point;
+}
+
+}  // namespace softkin::physical

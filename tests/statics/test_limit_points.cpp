@@ -1,0 +1,198 @@
+#include <functional>
+#include <softkin/statics/deformation.hpp>
+
+#include "statics/physical_samples.hpp"
+
+/// However large the load that is requested, the answer is the end of the path of equilibria, a limit, or a
+/// snap-through that is reported.
+
+namespace softkin {
+
+namespace {
+
+using namespace testing;
+
+/// A clamped arch of 100 x 10 x 2 mm that rises by 6 mm; under a load from above it has a limit point.
+RobotSpec low_arch() {
+  RobotSpec spec = physical_robot(block_mesh({20, 1, 1}, {100, 10, 2}));
+  for (Index v = 0; v < spec.mesh.vertices.rows(); ++v)
+    spec.mesh.vertices(v, 2) += 6 * std::sin(EIGEN_PI * spec.mesh.vertices(v, 0) / 100);
+  spec.mesh_options.quadratic = true;
+  spec.fixed.push_back({{std::string("x_high"), {}}});
+  spec.markers = {{"top", {Vec3(50, 5, 7), {}}}};
+  return spec;
+}
+
+StaticsOptions to_stable() {
+  StaticsOptions options;
+  options.stable = true;
+  return options;
+}
+
+/// A robot under a multiple of a load, which a command or the description says.
+struct LoadedRobot {
+  RobotSpec spec;
+  Actuation command;
+};
+using Loading = std::function<LoadedRobot(double)>;
+
+Equilibrium solve_loaded(const Loading& loading, double factor, const StaticsOptions& options = {}) {
+  const LoadedRobot robot = loading(factor);
+  const Model model = compile(robot.spec);
+  const Statics statics(model);
+  return statics.solve(robot.command, statics.rest(), options);
+}
+
+/// The limit load does not depend on how much is requested, and neither does what is said of it.
+void expect_one_limit(const Loading& loading, double beyond, double snap_mm) {
+  const Equilibrium near = solve_loaded(loading, beyond);
+  ASSERT_EQ(near.report.status, Status::limit);
+  const double limit = beyond * near.report.reached;
+  // just below it the load is carried, just above it is not
+  const Equilibrium below = solve_loaded(loading, 0.98 * limit), above = solve_loaded(loading, 1.02 * limit);
+  EXPECT_EQ(below.report.status, Status::converged) << below.report.remark;
+  EXPECT_EQ(below.report.physical.snapped_mm, 0);
+  EXPECT_EQ(above.report.status, Status::limit);
+  for (const double times : {1.3, 3.0, 12.0, 14.0, 16.0, 100.0}) {
+    const Equilibrium far = solve_loaded(loading, times * limit);
+    EXPECT_EQ(far.report.status, Status::limit) << times << " times the limit load: " << far.report.remark;
+    EXPECT_NEAR(times * far.report.reached, 1, 0.02) << times;
+    if (times > 20) continue;
+    const Equilibrium through = solve_loaded(loading, times * limit, to_stable());
+    EXPECT_EQ(through.report.status, Status::converged) << times << ": " << through.report.remark;
+    EXPECT_GT(through.report.physical.snapped_mm, snap_mm) << times;
+    EXPECT_EQ(through.report.physical.unstable_modes, 0) << times;
+  }
+}
+
+}  // namespace
+
+TEST(LimitPoints, DeadForceOnAnArch) {
+  expect_one_limit(
+      [](double factor) {
+        RobotSpec spec = low_arch();
+        spec.loads.forces = {{"p", {Vec3(50, 5, 7), {}}, {0, 0, -0.006 * factor}}};
+        return LoadedRobot{spec, Actuation(0)};
+      },
+      1.8, 6.5);
+}
+
+TEST(LimitPoints, CommandedForceOnAnArch) {
+  expect_one_limit(
+      [](double factor) {
+        RobotSpec spec = low_arch();
+        spec.loads.forces = {
+            {"p", {Vec3(50, 5, 7), {}}, {0, 0, 0}, std::array<Vec3, 2>{Vec3(0, 0, -50), Vec3::Zero()}}};
+        return LoadedRobot{spec, values({-0.006 * factor})};
+      },
+      1.8, 6.5);
+}
+
+TEST(LimitPoints, TractionOnAnArch) {
+  expect_one_limit(
+      [](double factor) {
+        RobotSpec spec = low_arch();
+        TractionSpec traction;
+        traction.name = "q";
+        traction.where = {std::string("z_high"), {}};
+        traction.kilopascals = Vec3(0, 0, -0.01 * factor);
+        spec.loads.tractions = {traction};
+        return LoadedRobot{spec, Actuation(0)};
+      },
+      3, 6.5);
+}
+
+TEST(LimitPoints, FollowingPressureOnAnArch) {
+  expect_one_limit(
+      [](double factor) {
+        RobotSpec spec = low_arch();
+        TractionSpec traction;
+        traction.name = "q";
+        traction.where = {std::string("z_high"), {}};
+        traction.follows = true;
+        traction.range_kPa = {0, 100};
+        spec.loads.tractions = {traction};
+        return LoadedRobot{spec, values({0.01 * factor})};
+      },
+      3, 6.5);
+}
+
+TEST(LimitPoints, WeightOfAnArch) {
+  expect_one_limit(
+      [](double factor) {
+        RobotSpec spec = low_arch();
+        spec.materials[0].density = 1000;
+        spec.loads.gravity = Vec3(0, 0, -60000 * factor);
+        return LoadedRobot{spec, Actuation(0)};
+      },
+      3, 6.5);
+}
+
+TEST(LimitPoints, SeveralCommandsAtOnceOnAnArch) {
+  expect_one_limit(
+      [](double factor) {
+        RobotSpec spec = low_arch();
+        spec.loads.forces = {{"p",
+                              {Vec3(40, 5, 2 + 6 * std::sin(0.4 * EIGEN_PI)), {}},
+                              {0, 0, 0},
+                              std::array<Vec3, 2>{Vec3(0, 0, -50), Vec3::Zero()}},
+                             {"q",
+                              {Vec3(60, 5, 2 + 6 * std::sin(0.6 * EIGEN_PI)), {}},
+                              {0, 0, 0},
+                              std::array<Vec3, 2>{Vec3(0, 0, -50), Vec3::Zero()}}};
+        return LoadedRobot{spec, values({-0.004 * factor, -0.004 * factor})};
+      },
+      3, 6.5);
+}
+
+/// Rows of a path are steps like others, and so is one from a shape that was kept.
+TEST(LimitPoints, RowsOfAPathAndALaterStart) {
+  RobotSpec spec = low_arch();
+  spec.loads.forces = {{"p", {Vec3(50, 5, 7), {}}, {0, 0, 0}, std::array<Vec3, 2>{Vec3(0, 0, -50), Vec3::Zero()}}};
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Equilibrium half = statics.solve(values({-0.005}), statics.rest());
+  ASSERT_EQ(half.report.status, Status::converged) << half.report.remark;
+  for (const double force : {-0.02, -0.13, -0.15, -1.0}) {
+    const Equilibrium on = statics.solve(values({force}), half.state);
+    EXPECT_EQ(on.report.status, Status::limit) << force;
+    EXPECT_NEAR(on.state.actuation[0], -0.0098, 2e-4) << force;
+    State kept = half.state;  // as a file has it, without what the solver remembers
+    const Statics fresh(model);
+    EXPECT_EQ(fresh.solve(values({force}), kept).report.status, Status::limit) << force;
+  }
+  // on the far branch a large step is as good as several
+  const Equilibrium through = statics.solve(values({-0.02}), half.state, to_stable());
+  ASSERT_EQ(through.report.status, Status::converged) << through.report.remark;
+  const Equilibrium once = statics.solve(values({-0.3}), through.state);
+  State row = through.state;
+  for (const double force : {-0.05, -0.1, -0.2, -0.3}) row = statics.solve(values({force}), row).state;
+  EXPECT_EQ(once.report.status, Status::converged) << once.report.remark;
+  EXPECT_EQ(once.report.physical.snapped_mm, 0);
+  EXPECT_LT(largest_move(once.state.positions, row.positions), 1e-3);
+}
+
+/// Where nothing snaps a large step is right, and is not cut into pieces.
+TEST(LimitPoints, LargeStepsWithoutALimitPointAreOne) {
+  const auto one_step = [](const RobotSpec& spec, const Actuation& command, double turned_mm) {
+    const Model model = compile(spec);
+    const Statics statics(model);
+    const Equilibrium found = statics.solve(command, statics.rest());
+    EXPECT_EQ(found.report.status, Status::converged) << found.report.remark;
+    EXPECT_EQ(found.report.continuation_steps, 1);
+    EXPECT_GT(largest_move(found.state.positions, model.rest), turned_mm);
+  };
+  one_step(bending_finger(), values({2.5}), 5);
+  RobotSpec beam = cable_beam();
+  beam.actuators = {by_load(beam.actuators[0]), by_load(beam.actuators[1])};
+  one_step(beam, values({5, 1}), 10);
+  RobotSpec heavy = physical_robot(block_mesh({12, 2, 2}, {60, 10, 10}));
+  heavy.materials[0].density = 1000;
+  heavy.loads.gravity = Vec3(0, 0, -3000);
+  one_step(heavy, Actuation(0), 10);
+  RobotSpec pulled = physical_robot(block_mesh({12, 2, 2}, {60, 10, 10}));
+  pulled.loads.forces = {{"tip", {std::string("x_high"), {}}, {0, 0, -1}}};
+  one_step(pulled, Actuation(0), 10);
+}
+
+}  // namespace softkin
