@@ -121,6 +121,30 @@ TEST(PhysicalLimits, SeveralLoadsEndAtTheMaximum) {
   EXPECT_NEAR(beyond.state.actuation[0], most, 0.01 * most);
 }
 
+/// Along the curve of equilibria, too, an iteration is recorded with its step in mm and its residual in N: forces that are
+/// 1024 times as large, as are all moduli, take the same steps, bit by bit, and have 1024 times the residual.
+TEST(PhysicalLimits, RecordsStepsInMillimetresAndResidualsInNewtons) {
+  const auto history = [](double factor) {
+    RobotSpec spec = balloon(factor * 0.03, false);
+    spec.actuators = {by_load(spec.actuators[0]), by_load(cable("tendon", {{0, 0, 12.5}, {12.5, 0, 0}}))};
+    spec.actuators[0].high *= factor;
+    spec.actuators[1].high *= factor;
+    const Model model = compile(spec);
+    const Statics statics(model);
+    StaticsOptions options;
+    options.keep_history = true;
+    const Equilibrium found = statics.solve(values({factor * 100, factor * 1e-4}), statics.rest(), options);
+    EXPECT_NE(found.report.remark.find("turns back there"), std::string::npos) << found.report.remark;
+    return found.report.history;
+  };
+  const std::vector<IterationRecord> soft = history(1), hard = history(1024);
+  ASSERT_EQ(soft.size(), hard.size());
+  for (std::size_t i = 0; i < soft.size(); ++i) {
+    EXPECT_NEAR(hard[i].step_mm, soft[i].step_mm, 1e-6 * soft[i].step_mm) << i;
+    EXPECT_NEAR(hard[i].gradient_norm, 1024 * soft[i].gradient_norm, 1e-6 * hard[i].gradient_norm) << i;
+  }
+}
+
 /// A little less than what several loads reach together is borne, a little more is not, asked for each anew.
 TEST(PhysicalLimits, TheCurveTurnsBackWhereNoMoreIsBorne) {
   RobotSpec spec = balloon(0.03, false);

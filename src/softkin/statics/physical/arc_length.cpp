@@ -118,7 +118,8 @@ bool ArcLength::correct(const Point& from, double whole, double tolerance, Point
     report_.step_mm = move;
     report_.gradient_norm = balance.force.norm();
     report_.energy = balance.energy;
-    if (options_.keep_history) report_.history.push_back({balance.energy, report_.gradient_norm, move});
+    if (options_.keep_history)
+      report_.history.push_back({.energy = balance.energy, .step_mm = move, .gradient_norm = report_.gradient_norm});
     if (move < tolerance) return true;
   }
   return false;
