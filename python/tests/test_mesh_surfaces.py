@@ -104,7 +104,7 @@ def test_triangles_without_area_and_doubled_ones_go(tmp_path):
         ("a.ply", ply(CUBE, "ascii").replace(b"\n3 0 1 3", b"\n3 0 1"), "a.ply:20: 3 indices are told and 2 are there"),
         ("a.ply", ply(CUBE, "binary_little_endian")[:-5], "the file ends at element 11 of 12 'face'"),
         ("a.off", b"OFF", "a.off: no numbers of vertices and faces"),
-        ("a.off", b"OFF\n3 1 0\n0 0 0\n1 0 0\n", "a.off:2: 3 vertices and 1 faces are told, 2 lines follow"),
+        ("a.off", b"OFF\n3 1 0\n0 0 0\n1 0 0\n", "a.off:2: 3 vertices and 1 faces are announced, 2 lines follow"),
         ("a.off", b"OFF\n2 1 0\n0 0 0\n1 0 0\n3 0 1 2\n", "a.off:5: a face needs 3 vertices from 0 to 1"),
         ("a.off", b"OFF\n2 x\n", "a.off:2: 'x' is no whole number"),
         ("a.off", b"OFF BINARY\n", "a.off:1: 'OFF BINARY': text of three coordinates is read"),

@@ -4,6 +4,7 @@
 #include <softkin/model/mesh/mesh_order.hpp>
 
 #include "model/compile_testing.hpp"
+#include "model/open_walls.hpp"
 #include "model/physical_robots.hpp"
 
 using namespace softkin;
@@ -51,29 +52,7 @@ RobotSpec block_with_chamber(const Chosen& is_chamber, bool quadratic) {
 
 /// The same robot with the chamber empty, and given by those of its faces that are the body's.
 RobotSpec with_wall(RobotSpec spec) {
-  Mesh& mesh = spec.mesh;
-  std::vector<Tetrahedron> inside;
-  const auto found = std::find_if(mesh.regions.begin(), mesh.regions.end(),
-                                  [](const Region& region) { return region.name == "chamber"; });
-  for (const Index i : found->tetrahedra) inside.push_back(mesh.tetrahedra[i]);
-  std::vector<std::array<Index, 3>> outside;  // faces of the block
-  for (Triangle t : boundary_of(mesh.tetrahedra, {}).triangles) {
-    std::sort(t.begin(), t.end());
-    outside.push_back(t);
-  }
-  std::sort(outside.begin(), outside.end());
-  Region wall;
-  wall.name = "wall";
-  wall.dimension = 2;
-  for (Triangle t : boundary_of(inside, {}).triangles) {
-    Triangle key = t;
-    std::sort(key.begin(), key.end());
-    if (std::binary_search(outside.begin(), outside.end(), key)) continue;
-    if (wall.triangles.size() % 3 == 0) std::swap(t[0], t[1]);  // groups of faces are turned at random
-    wall.triangles.push_back(mesh.triangles.size());
-    mesh.triangles.push_back(t);
-  }
-  mesh.regions.push_back(wall);
+  add_open_wall(spec.mesh, "chamber");
   spec.voids = {named("chamber")};
   spec.actuators[0].as<PneumaticSpec>()->region.reset();
   spec.actuators[0].as<PneumaticSpec>()->wall = "wall";

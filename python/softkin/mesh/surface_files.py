@@ -39,7 +39,7 @@ def refuse_lfs_pointer(path: Path, content: bytes | None = None) -> None:
 
 
 def read_surface(path: str | Path) -> Surface:
-    """Reads STL (text, binary), OBJ, PLY (text, binary) or OFF (text), which the content tells, else the extension;
+    """Reads STL (text, binary), OBJ, PLY (text, binary) or OFF (text), recognised by the content, else by the extension;
     polygons become fans of triangles, points at the same place are merged. Lengths as they are in the file. Throws
     InvalidInput with file and line or byte."""
     path = Path(path)
@@ -58,7 +58,7 @@ def read_surface(path: str | Path) -> Surface:
 
 
 def _form(content: bytes) -> str:
-    """The extension of what the content is, where it tells."""
+    """The extension of the form that the content shows, or ""."""
     if len(content) >= 134 and len(content) == 84 + 50 * struct.unpack("<I", content[80:84])[0]:
         return ".stl"
     lines = (line.split(b"#")[0].split() for line in content[:4096].splitlines())
@@ -307,7 +307,7 @@ def _off(path: Path, content: bytes) -> Surface:
     line, words = lines[0]
     vertices, faces = (_whole(path, line, word) for word in (words[:2] if len(words) > 1 else ["", ""]))
     if len(lines) != 1 + vertices + faces:
-        raise InvalidInput(f"{path}:{line}: {vertices} vertices and {faces} faces are told, {len(lines) - 1} lines follow")
+        raise InvalidInput(f"{path}:{line}: {vertices} vertices and {faces} faces are announced, {len(lines) - 1} lines follow")
     points = [_numbers(path, line, words, 3) for line, words in lines[1 : 1 + vertices]]
     polygons: Polygons = []
     for line, words in lines[1 + vertices :]:

@@ -12,7 +12,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::size_t deepest_include = 20, most_includes = 1000;
+constexpr std::size_t max_include_depth = 20, max_includes = 1000;
 
 bool is_include(std::string_view line) {
   return line.starts_with('*') && abaqus_key(line.substr(1, line.find(',') - 1)) == "INCLUDE";
@@ -97,10 +97,10 @@ void AbaqusLines::include(std::string text, AbaqusLine place) {
     if (fs::equivalent(other.path, path, failure))
       fail(place, "*INCLUDE: the file " + excerpt(name) + " includes itself");
   }
-  if (open_.size() > deepest_include)
-    fail(place, "*INCLUDE: more than " + std::to_string(deepest_include) + " files include each other");
-  if (files_.size() > most_includes)
-    fail(place, "*INCLUDE: more than " + std::to_string(most_includes) + " files are included");
+  if (open_.size() > max_include_depth)
+    fail(place, "*INCLUDE: more than " + std::to_string(max_include_depth) + " files include each other");
+  if (files_.size() > max_includes)
+    fail(place, "*INCLUDE: more than " + std::to_string(max_includes) + " files are included");
   files_.push_back(path.string());
   try {
     open_.push_back({path, static_cast<std::uint32_t>(files_.size() - 1), std::make_unique<Scanner>(path)});

@@ -11,7 +11,7 @@ namespace softkin {
 
 namespace {
 
-/// Statements that say nothing of vertices and faces.
+/// Statements that define no vertices and faces.
 constexpr std::string_view passed_over[] = {
     "vt",     "vn",     "vp",     "o",     "g",        "s",        "mg",  "l",          "p",         "mtllib",
     "usemtl", "usemap", "maplib", "bevel", "c_interp", "d_interp", "lod", "shadow_obj", "trace_obj", "fo"};

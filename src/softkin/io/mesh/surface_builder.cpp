@@ -11,9 +11,9 @@ namespace {
 
 using Vec2 = Eigen::Vector2d;
 
-constexpr double most_off_plane = 0.05;    // of a polygon's vertex, over its size
-constexpr double least_part = 1e-12;       // of a polygon's area that a triangle of it has
-constexpr std::size_t most_corners = 500;  // of a polygon that is not convex
+constexpr double max_off_plane = 0.05;    // of a polygon's vertex, over its size
+constexpr double least_part = 1e-12;      // of a polygon's area that a triangle of it has
+constexpr std::size_t max_corners = 500;  // of a polygon that is not convex
 
 Vec3 vector_of(const SurfaceCorner& corner) {
   return {corner[0], corner[1], corner[2]};
@@ -154,7 +154,7 @@ std::vector<FacetCorners> triangulated(std::vector<SurfaceCorner> polygon,
   for (const Vec3& arm : arms) middle += arm / static_cast<double>(count);
   double farthest = 0;
   for (const Vec3& arm : arms) farthest = std::max(farthest, std::abs(normal.dot(arm - middle)));
-  if (farthest > most_off_plane)
+  if (farthest > max_off_plane)
     fail("is not planar: a vertex lies " + number(100 * farthest, 2) +
          " % of its size off its mean plane, more than 5 %: cut it into triangles");
   const Vec3 along = normal.unitOrthogonal(), across = normal.cross(along);
@@ -162,8 +162,8 @@ std::vector<FacetCorners> triangulated(std::vector<SurfaceCorner> polygon,
   for (const Vec3& arm : arms) points.emplace_back(along.dot(arm), across.dot(arm));
   const Polygon flat(std::move(points), area);
   std::vector<Polygon::Corners> triangles = flat.fan();
-  if (triangles.empty() && count > most_corners)
-    fail("is not convex and has more than " + std::to_string(most_corners) + " corners: cut it into triangles");
+  if (triangles.empty() && count > max_corners)
+    fail("is not convex and has more than " + std::to_string(max_corners) + " corners: cut it into triangles");
   if (triangles.empty()) triangles = flat.ears();
   if (triangles.empty()) fail("crosses itself or touches itself: cut it into triangles");
   std::vector<FacetCorners> facets;

@@ -142,7 +142,7 @@ class RimCloser {
           if (is_in_plane(rim_[e], plane)) candidates.push_back(plane);
         }
       if (candidates.empty()) return edges.front();
-      const Plane plane = most_frequent(candidates);
+      const Plane plane = commonest(candidates);
       planes_.push_back(plane);
       std::vector<RimEdge>& taken = edges_in_.emplace_back();
       std::vector<std::size_t> left;
@@ -157,7 +157,7 @@ class RimCloser {
     return rim_.size();
   }
 
-  [[nodiscard]] Plane most_frequent(std::vector<Plane>& planes) const {
+  [[nodiscard]] Plane commonest(std::vector<Plane>& planes) const {
     std::sort(planes.begin(), planes.end(),
               [](const Plane& a, const Plane& b) { return std::pair(a.axis, a.value) < std::pair(b.axis, b.value); });
     std::size_t best = 0, most = 0;
