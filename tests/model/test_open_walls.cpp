@@ -19,7 +19,7 @@ constexpr double side = cell * cells;
 using Chosen = std::function<bool(int, int, int)>;  // is a cell, by its numbers along x, y and z, of the chamber
 
 /// Moves points of the block along its faces and inside of it, its corners nowhere.
-Points bent(Points points, double by) {
+Points warped(Points points, double by) {
   for (Index v = 0; v < points.rows(); ++v) {
     const Vec3 p = points.row(v).transpose() / side;
     for (int axis = 0; axis < 3; ++axis) {
@@ -38,7 +38,7 @@ RobotSpec block_with_chamber(const Chosen& is_chamber, bool quadratic) {
   });
   if (quadratic) {
     mesh = elevated(mesh);
-    mesh.vertices = bent(mesh.vertices, 0.15);  // edges are curved, those of openings too
+    mesh.vertices = warped(mesh.vertices, 0.15);  // edges are curved, those of openings too
   }
   RobotSpec spec = physical_robot(std::move(mesh));
   for (const char* face : {"x_high", "y_low", "y_high", "z_low", "z_high"}) {
@@ -72,8 +72,8 @@ void expect_same_volumes(const Chosen& is_chamber, bool quadratic) {
   EXPECT_NEAR(walled.actuators[0].rest_measure, volume, 1e-10 * volume);
   EXPECT_NEAR(enclosed_volume(walled.rest, cavity_of(walled)), volume, 1e-10 * volume);
   for (const double by : {0.2, -0.3}) {
-    const double moved = enclosed_volume(bent(whole.rest, by), cavity_of(whole));
-    EXPECT_NEAR(enclosed_volume(bent(walled.rest, by), cavity_of(walled)), moved, 1e-10 * moved);
+    const double moved = enclosed_volume(warped(whole.rest, by), cavity_of(whole));
+    EXPECT_NEAR(enclosed_volume(warped(walled.rest, by), cavity_of(walled)), moved, 1e-10 * moved);
   }
 }
 
