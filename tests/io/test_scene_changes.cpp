@@ -132,7 +132,7 @@ TEST(Silicones, StandBesideDensityAndPoissonRatioAlone) {
     }
   };
   refused("material: dragon-skin-10, set: yeo", "did you mean 'yeoh'?");
-  refused("material: sylgard-184, set: yeoh", "softkin has no set 'yeoh' of sylgard-184, but datasheet");
+  refused("material: sylgard-184, set: yeoh", "softkin has no set 'yeoh' of sylgard-184; known: datasheet");
   refused("material: ecoflex-0030", "did you mean 'ecoflex-00-30'?");
   refused("material: dragon-skin-10, youngs_modulus: 1", "key 'youngs_modulus' does not go with 'material'");
   refused("material: dragon-skin-10, law: yeoh", "key 'law' does not go with 'material'");

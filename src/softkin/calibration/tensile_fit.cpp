@@ -146,20 +146,20 @@ BoundedFit bounded_fit(const LawChoice& choice, const Eigen::MatrixXd& columns, 
   result.at_bound = row.dot(result.constants) < bound;
   Eigen::MatrixXd conditions = scale.cwiseProduct(row).transpose();
   Eigen::VectorXd bounds = Eigen::VectorXd::Constant(1, bound);
-  bool is_violated = result.at_bound;
-  if (choice.stable) {
-    const Eigen::MatrixXd stability = stability_rows(choice.law, 1 + points.strain.maxCoeff(), columns.cols());
-    const Eigen::VectorXd size = stability.cwiseAbs() * result.constants.cwiseAbs();
-    if (((stability * result.constants).array() < -1e-9 * size.array()).any()) {
-      is_violated = true;
-      result.free_rms = std::sqrt((columns * result.constants - points.stress).squaredNorm() / points.stress.size());
-      conditions.conservativeResize(1 + stability.rows(), Eigen::NoChange);
-      conditions.bottomRows(stability.rows()) = stability * scale.asDiagonal();
-      bounds.conservativeResize(1 + stability.rows());
-      bounds.tail(stability.rows()).setZero();
-    }
-  }
-  if (is_violated) result.constants = scale.cwiseProduct(constrained_fit(scaled, points.stress, conditions, bounds));
+  const auto constrained = [&] {
+    return Eigen::VectorXd(scale.cwiseProduct(constrained_fit(scaled, points.stress, conditions, bounds)));
+  };
+  if (result.at_bound) result.constants = constrained();
+  if (!choice.stable) return result;
+  const Eigen::MatrixXd stability = stability_rows(choice.law, 1 + points.strain.maxCoeff(), columns.cols());
+  const Eigen::VectorXd size = stability.cwiseAbs() * result.constants.cwiseAbs();
+  if (!((stability * result.constants).array() < -1e-9 * size.array()).any()) return result;
+  result.free_rms = std::sqrt((columns * result.constants - points.stress).squaredNorm() / points.stress.size());
+  conditions.conservativeResize(1 + stability.rows(), Eigen::NoChange);
+  conditions.bottomRows(stability.rows()) = stability * scale.asDiagonal();
+  bounds.conservativeResize(1 + stability.rows());
+  bounds.tail(stability.rows()).setZero();
+  result.constants = constrained();
   return result;
 }
 

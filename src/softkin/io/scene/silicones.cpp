@@ -58,10 +58,7 @@ ElasticSpec Silicone::elastic(const std::string& set, double poisson_ratio, cons
   if (set == default_set) return elastic(poisson_ratio);
   for (const SiliconeSet& each : silicone_sets())
     if (each.material == name && each.name == set) return each.elastic(poisson_ratio);
-  std::string list;
-  for (const std::string& each : sets()) list += (list.empty() ? "" : ", ") + each;
-  throw InvalidInput(
-      origin, "softkin has no set " + excerpt(set) + " of " + name + ", but " + list + suggest_name(set, sets()));
+  throw InvalidInput(origin, "softkin has no set " + excerpt(set) + " of " + name + suggest_name(set, sets()));
 }
 
 std::vector<std::string> Silicone::sets() const {
