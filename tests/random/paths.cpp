@@ -28,7 +28,8 @@ struct End {
 bool depends_on_loads_alone(const RobotSpec& spec, const Model& model) {
   if (model.contact.rubs()) return false;
   for (const Actuator& actuator : model.actuators)
-    if (const auto* cable = actuator.as<CableDrive>(); cable && (cable->friction > 0 || cable->sheath > 0)) return false;
+    if (const auto* cable = actuator.as<CableDrive>(); cable && (cable->friction > 0 || cable->sheath > 0))
+      return false;
   for (const MaterialSpec& material : spec.materials)
     if (!material.viscosity.empty()) return false;
   return true;
@@ -121,13 +122,11 @@ PathRun compare(const RandomCase& robot, int rows, bool verbose) {
   run.step_converged = step.last.report.status == Status::converged;
   run.step_iterations = step.iterations;
   if (verbose) print("one step", step.last.report);
-  const End path =
-      commands ? along_commands(statics, command, options, rows) : along_loads(model, options, rows);
+  const End path = commands ? along_commands(statics, command, options, rows) : along_loads(model, options, rows);
   run.path_converged = path.last.report.status == Status::converged;
   run.path_iterations = path.iterations;
   run.text = told("one step", step) + " | " + told("path", path);
-  run.apart =
-      (step.last.state.positions - path.last.state.positions).rowwise().norm().maxCoeff() / model.diagonal_mm;
+  run.apart = (step.last.state.positions - path.last.state.positions).rowwise().norm().maxCoeff() / model.diagonal_mm;
   const auto reports = [](const End& end) { return end.snapped || end.last.report.status == Status::limit; };
   if (reports(step) || reports(path))
     run.comparison = PathComparison::reported;
@@ -187,8 +186,9 @@ int compare_paths(std::uint64_t first, std::uint64_t count, int rows, int thread
   std::printf("one step and a path of %d rows, %llu seeds:", rows, static_cast<unsigned long long>(count));
   for (int i = 0; i < path_comparisons; ++i)
     std::printf(" %d %s%s", counts[i], name_of(static_cast<PathComparison>(i)), i + 1 < path_comparisons ? "," : "\n");
-  std::printf("%d iterations in one step each, %d along the paths; %d answers that the path finds and one step does not\n",
-              step_iterations, path_iterations, lost);
+  std::printf(
+      "%d iterations in one step each, %d along the paths; %d answers that the path finds and one step does not\n",
+      step_iterations, path_iterations, lost);
   return counts[static_cast<std::size_t>(PathComparison::differs)];
 }
 
