@@ -205,6 +205,7 @@ random:
 	cmake --preset release -DSOFTKIN_TESTS=ON
 	cmake --build --preset release --target softkin_random
 	build/tests/softkin_random --count $(RUNS) --threads $(cores) --out out/random
+	build/tests/softkin_random --paths --count $(RUNS) --threads $(cores)
 
 bench: setup
 	cmake --preset release -DSOFTKIN_TESTS=OFF -DSOFTKIN_BENCH=ON

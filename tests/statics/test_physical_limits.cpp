@@ -107,10 +107,11 @@ TEST(PhysicalLimits, SeveralLoadsEndAtTheMaximum) {
   const Statics statics(model);
   const Equilibrium beyond = statics.solve(values({100, 1e-4}), statics.rest());
   EXPECT_EQ(beyond.report.status, Status::limit);
-  EXPECT_EQ(
-      beyond.report.remark,
-      "beyond this point no equilibrium follows: the curve of equilibria turns back there; where a pressure has its "
-      "maximum, command volumes (control: volume) and lengths (control: length) to go on beyond it");
+  EXPECT_EQ(beyond.report.remark,
+            "beyond this point no equilibrium follows: the curve of equilibria turns back there; --stable (in Python "
+            "stable=True) goes on along it to the next stable shape that bears more, where there is one; where a "
+            "pressure has its "
+            "maximum, command volumes (control: volume) and lengths (control: length) to go on beyond it");
   // 230 and 556 where the limit was bisected by steps beyond it
   EXPECT_LT(beyond.report.iterations, 120);
   EXPECT_LT(beyond.report.factorisations, 200);
