@@ -97,18 +97,21 @@ Example read_example(const fs::path& folder, const std::string& name) {
   example.name = name;
   for (const auto& [word, of] : short_names)
     if (of == name) example.short_name = word;
-  std::istringstream lines(beside_copy(read_file(folder / name / readme)));
+  std::istringstream lines(read_file(folder / name / readme));
   for (std::string line; std::getline(lines, line);) {
     if (line.starts_with("# ") && example.title.empty()) example.title = line.substr(2);
     std::istringstream words(line);
     std::string word;
-    if (!(words >> word) || word != "softkin") continue;
+    if (!(words >> word) || word != "build/softkin") continue;
+    words.str(beside_copy(line));
+    words.clear();
+    words >> word;
     do {
       do
         if (word != "\\") example.command.push_back(word);
       while (words >> word);
       words.clear();  // a command goes on after a line that ends with a backslash
-    } while (word == "\\" && std::getline(lines, line) && (words.str(line), words >> word));
+    } while (word == "\\" && std::getline(lines, line) && (words.str(beside_copy(line)), words >> word));
     break;
   }
   for (const std::string& word : example.command)
