@@ -277,23 +277,6 @@ Continuation::StepEnd Continuation::judge(Newton::Outcome outcome, const Demand&
     end.found = false;
     end.why = because;
   };
-  if (end.found && getenv("SOFTKIN_DEBUG_STEPS") != nullptr) {
-    Iterate back = trial;
-    (void)predict(system_, there, way_.here, settler_.active, work_, team_, back);
-    const Points d0 = step_.predicted - at.positions, d1 = trial.positions - back.positions,
-                 s = trial.positions - at.positions;
-    const auto size = [&](const Points& p) {
-      return system_.largest_move(Points::Zero(p.rows(), 3), p) / system_.model().diagonal_mm;
-    };
-    const double dd = (d0.array() * s.array()).sum() / std::max(1e-300, d0.norm() * s.norm()),
-                 de = (d1.array() * s.array()).sum() / std::max(1e-300, d1.norm() * s.norm());
-    fprintf(stderr,
-            "STEP len %.4g D0 %.4g S %.4g D1 %.4g c0 %.4g trap %.4g cos0 %.3f cos1 %.3f loads %d its %d proj %d shifts "
-            "%d modes %d kinked %d unforetold %d\n",
-            length, size(d0), size(s), size(d1), size(s - d0), size(2 * s - d0 - d1), dd, de, (int)way_.loads_change,
-            report_.iterations, report_.projections, report_.shifts, settler_.newton().unstable_modes(),
-            (int)system_.kinked(), (int)step_.unforetold);
-  }
   if (end.found && way_.loads_change && snapped(step_.move_mm, system_.largest_move(step_.begun, trial.positions)) &&
       jumped(way_.here, there, at, trial))
     reject("the equilibrium lies beyond a jump");
