@@ -53,6 +53,12 @@ void expect_same(const StepRecord& a, const StepRecord& b) {
     EXPECT_EQ(a.forces.reactions[i].force, b.forces.reactions[i].force);
     EXPECT_EQ(a.forces.reactions[i].moment, b.forces.reactions[i].moment);
     EXPECT_EQ(a.forces.reactions[i].center, b.forces.reactions[i].center);
+    ASSERT_EQ(a.forces.reactions[i].chambers.size(), b.forces.reactions[i].chambers.size());
+    for (std::size_t c = 0; c < a.forces.reactions[i].chambers.size(); ++c) {
+      EXPECT_EQ(a.forces.reactions[i].chambers[c].actuator, b.forces.reactions[i].chambers[c].actuator);
+      EXPECT_EQ(a.forces.reactions[i].chambers[c].force, b.forces.reactions[i].chambers[c].force);
+      EXPECT_EQ(a.forces.reactions[i].chambers[c].moment, b.forces.reactions[i].chambers[c].moment);
+    }
   }
   ASSERT_EQ(a.forces.contacts.has_value(), b.forces.contacts.has_value());
   for (std::size_t i = 0; a.forces.contacts && i < a.forces.contacts->size(); ++i) {
@@ -154,12 +160,14 @@ TEST_F(Steps, OfAPathAreReadBack) {
     if (model.formulation == Formulation::physical) {
       EXPECT_TRUE(records[2].forces.stress.has_value());
       EXPECT_EQ(records[2].forces.reactions.size(), 1u);
+      records[2].forces.reactions[0].chambers = {{0, {0.1 + 0.2, -2, 1e-3}, {1, 2, 3}}};
       records[2].physical.unstable_modes = 2;
       records[2].physical.buckled_mm = 1.5;
       records[2].physical.snapped_from = 0.25;
-      expect_damage_refused(job.codec(), records[2],
-                            {"/unstable_modes", "/stress", "/stress/von_mises_MPa/at_mm", "/reactions",
-                             "/reactions/0/force_N", "/residual_N"});
+      expect_damage_refused(
+          job.codec(), records[2],
+          {"/unstable_modes", "/stress", "/stress/von_mises_MPa/at_mm", "/reactions", "/reactions/0/force_N",
+           "/reactions/0/chambers/0/actuator", "/reactions/0/chambers/0/air_force_N", "/residual_N"});
     }
     records[2].shape = "s_0002.vtu";
     records[2].shape_fingerprint = "0123456789abcdef";
