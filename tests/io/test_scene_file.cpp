@@ -12,8 +12,6 @@
 namespace softkin {
 namespace {
 
-using testing::TemporaryFolder;
-
 std::string refusal_of(const std::function<void()>& work) {
   try {
     work();
@@ -24,7 +22,7 @@ std::string refusal_of(const std::function<void()>& work) {
 }
 
 TEST(MissingFile, IsMadeByAScriptAModelOrNamedInTheReadme) {
-  const TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   const std::filesystem::path at = folder / "";
   EXPECT_EQ(source_of_missing(at, at / "a.msh"), "");
   folder.write("README.md", "Put `a.msh` and `b.tet` here.");
@@ -38,7 +36,7 @@ TEST(MissingFile, IsMadeByAScriptAModelOrNamedInTheReadme) {
 }
 
 TEST(MissingFile, IsToldWithWhatMakesIt) {
-  const TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   const std::string scene = folder.write("s.yaml", "softkin: 1\nmesh: {file: a.mesh}\n");
   folder.write("make_a.py", "Path('a.mesh').write_text(mesh())");
   EXPECT_EQ(refusal_of([&] { (void)read_scene(scene); }),
@@ -46,7 +44,7 @@ TEST(MissingFile, IsToldWithWhatMakesIt) {
 }
 
 TEST(SceneFile, OfAnotherKindIsRefusedByItsName) {
-  const TemporaryFolder folder;
+  const testing::TemporaryFolder folder;
   const std::pair<const char*, const char*> cases[] = {
       {"a.stl", "is a surface by its name, not a scene in YAML: 'python -m softkin mesh generate' makes a mesh and a"},
       {"a.STEP", "is a CAD model by its name, not a scene in YAML: 'python -m softkin mesh generate'"},

@@ -13,8 +13,6 @@ namespace softkin {
 
 namespace {
 
-using text_mesh_tests::TemporaryFolder;
-
 RobotSpec magnetic_scene(const std::string& text) {
   return parse_scene("softkin: 1\nunits: {length: cm}\nmesh: {file: a.msh}\nformulation: physical\n" + text, "s.yaml",
                      fake_files());
@@ -34,7 +32,7 @@ std::string refused(const std::string& text) {
 }
 
 std::string refused_file(const std::string& content, bool grid) {
-  const TemporaryFolder folder;
+  const text_mesh_tests::TemporaryFolder folder;
   try {
     const FieldSamples samples = read_field_samples(folder.write("field.csv", content));
     if (grid) (void)grid_of(samples);
@@ -179,7 +177,7 @@ TEST(SceneMagnetism, RefusesWhatIsNoField) {
 }
 
 TEST(SceneMagnetism, AGridFromAFile) {
-  const TemporaryFolder folder;
+  const text_mesh_tests::TemporaryFolder folder;
   const GridField grid = grid_of(read_field_samples(folder.write("field.csv", grid_text(4, 5, 6))));
   EXPECT_EQ(grid.counts, (std::array<Index, 3>{4, 5, 6}));
   EXPECT_EQ(grid.low, Vec3(0, 0, -1));
@@ -205,7 +203,7 @@ TEST(SceneMagnetism, RefusesFilesThatAreNoGrid) {
 }
 
 TEST(SceneMagnetism, SamplesFromTheCellsOfAVtu) {
-  const TemporaryFolder folder;
+  const text_mesh_tests::TemporaryFolder folder;
   VtuContent content;
   content.points.resize(4, 3);
   content.points << 0, 0, 0, 4, 0, 0, 0, 4, 0, 0, 0, 4;

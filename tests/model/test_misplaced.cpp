@@ -37,7 +37,9 @@ void expect_warning(const std::function<void(RobotSpec&)>& change, const std::st
 
 std::function<void(RobotSpec&)> cable(const Vec3& from, const Vec3& to) {
   return [=](RobotSpec& spec) {
-    ActuatorSpec actuator{"tendon", CableSpec{{{from, {}}, {to, {}}}}};
+    CableSpec tendon;
+    for (const Vec3& point : {from, to}) tendon.points.push_back({point, {}});
+    ActuatorSpec actuator{"tendon", tendon};
     actuator.control = Control::load;
     actuator.high = 1;
     actuator.rest = 0;

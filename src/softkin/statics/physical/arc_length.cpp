@@ -15,16 +15,16 @@ constexpr double wanted_miss = 0.1, most_miss = 1, most_grown = 2, most_shrinkin
 /// Each correction but the second is so much shorter than the one before.
 constexpr double least_gain = 0.5;
 /// Of a step, in a row, and of all.
-constexpr int most_corrections = 8, most_missed = 3, most_iterations = 60;
+constexpr int most_corrections = 8, most_failed_steps = 3, most_iterations = 60;
 /// Over the first step: where the curve has a corner steps become ever shorter.
 constexpr double shortest_step = 0.02;
 /// Of the way, on which it is looked what a change of the share upsets.
-constexpr double difference = 1e-3;
+constexpr double factor_difference = 1e-3;
 /// The shape that is kept stands so far before the turn, over the way to the point beyond it: at it the stiffness is
 /// singular.
 constexpr double before_turn = 0.02;
 /// Of steps beyond the turn, where the curve may bend sharply; and how far the share may fall there.
-constexpr int most_iterations_beyond = 300, most_missed_beyond = 8;
+constexpr int most_iterations_beyond = 300, most_failed_beyond = 8;
 constexpr double shortest_step_beyond = 1e-4;
 constexpr double farthest_back = -1;
 
@@ -49,18 +49,18 @@ ArcLength::ArcLength(Settler& settler, StepTracer& tracer, const Equilibria::Opt
 /// balance  of the point
 /// before   the tangent of the last point; null: the share grows
 bool ArcLength::set_rates(const Balance& balance, const Eigen::VectorXd* before, Point& point) {
-  const Demand here = demand(point.share), there = demand(point.share + difference);
+  const Demand here = demand(point.share), there = demand(point.share + factor_difference);
   if (system_.placement().changes(here, there))
     system_.assemble(point.at, here, balance, System::Stiffness::exact, work_, team_);
   Balance upset;
   system_.upset(point.at, here, there, settler_.active, work_, upset, team_);
   work_.saddle.step(upset, point.ahead, point.multipliers, team_);
-  const double length = point.ahead.norm() / difference;
+  const double length = point.ahead.norm() / factor_difference;
   if (!(length > 0) || !std::isfinite(length) || !point.multipliers.allFinite()) return false;
   const double way = before != nullptr && point.ahead.dot(*before) < 0 ? -1 : 1;
   point.slope = way / length;
-  point.ahead *= point.slope / difference;
-  point.multipliers *= point.slope / difference;
+  point.ahead *= point.slope / factor_difference;
+  point.multipliers *= point.slope / factor_difference;
   return true;
 }
 
@@ -178,7 +178,7 @@ ArcLength::End ArcLength::follow(Iterate& at) {
   if (!begin(at, low)) return End::lost;
   const double first = low.share;
   const double length = first_share * (route_.failed - low.share) / low.slope;
-  Pace steps{length, shortest_step * length, report_.iterations + most_iterations, most_missed};
+  Pace steps{length, shortest_step * length, report_.iterations + most_iterations, most_failed_steps};
   End end = End::lost;
   std::optional<Beyond> high;
   std::optional<Point> far;  // beyond the turn
@@ -216,7 +216,7 @@ ArcLength::End ArcLength::follow(Iterate& at) {
 /// On from beyond the turn to a stable equilibrium that bears more than is borne at the turn, or all that is asked.
 ArcLength::End ArcLength::go_beyond(Point last, Iterate& at) {
   Pace steps{last.went, shortest_step_beyond * last.went, report_.iterations + most_iterations_beyond,
-             most_missed_beyond};
+             most_failed_beyond};
   while (std::optional<Point> found = next(last, steps)) {
     if (!holds(*found) || found->share < farthest_back) break;
     if (found->slope > 0 && found->negative == 0 && found->share > route_.done) {

@@ -8,13 +8,13 @@ namespace {
 
 /// Of the secant, that the tangent at the begin may miss its end by for that alone to be enough; that the tangent at
 /// either end may miss the other end by, and both together, where both are known.
-constexpr double most_missed_ahead = 0.1, most_missed = 0.4, most_missed_together = 0.2;
+constexpr double most_missed_ahead = 0.1, most_missed_at_an_end = 0.4, most_missed_together = 0.2;
 /// Segments are halved so many times, with so many corrections in all.
-constexpr int most_halvings = 7, most_corrections = 60;
+constexpr int most_halvings = 7, most_middle_corrections = 60;
 /// A middle may be so far from its equilibrium, over the secant.
-constexpr double accuracy = 1e-3;
+constexpr double middle_accuracy = 1e-3;
 /// Of a segment, over which supports move for the tangent of its middle.
-constexpr double difference = 1e-3;
+constexpr double rate_difference = 1e-3;
 
 }  // namespace
 
@@ -37,7 +37,7 @@ bool SegmentCheck::agree(const SegmentEnd& low, const SegmentEnd& high) const {
   const Points ahead = length * low.rate - secant, behind = length * high.rate - secant;
   const double whole = size(secant);
   return size(ahead) <= most_missed_ahead * whole ||
-         (size(ahead) <= most_missed * whole && size(behind) <= most_missed * whole &&
+         (size(ahead) <= most_missed_at_an_end * whole && size(behind) <= most_missed_at_an_end * whole &&
           size(ahead + behind) <= most_missed_together * whole);
 }
 
@@ -56,11 +56,12 @@ SegmentCheck::Verdict SegmentCheck::check_halves(const SegmentEnd& low, const Se
   const bool is_short = system_.largest_move(low.at->positions, high.at->positions) <= least &&
                         (high.factor - low.factor) * size(low.rate) <= least;
   if (is_short || agree(low, high)) return Verdict::confirmed;
-  if (depth == 0 || report_.iterations - iterations_ > most_corrections) return Verdict::unclear;
+  if (depth == 0 || report_.iterations - iterations_ > most_middle_corrections) return Verdict::unclear;
   Point found;
   const Verdict verdict = find_middle(low, high, found);
   if (verdict != Verdict::confirmed) return verdict;
-  const SegmentEnd middle{&found.at, found.share, rate(found, difference * (high.factor - low.factor)), found.negative};
+  const SegmentEnd middle{&found.at, found.share, rate(found, rate_difference * (high.factor - low.factor)),
+                          found.negative};
   const Verdict first = check_halves(low, middle, depth - 1);
   return first == Verdict::confirmed ? check_halves(middle, high, depth - 1) : first;
 }
@@ -96,7 +97,7 @@ SegmentCheck::Verdict SegmentCheck::find_middle(const SegmentEnd& low, const Seg
   from.ahead.normalize();
   tracer_.begin(low.factor, high.factor, length, "check");
   const Points begun = middle.at.positions;
-  const bool found = correct(from, 0.5 * whole, accuracy * whole, middle);
+  const bool found = correct(from, 0.5 * whole, middle_accuracy * whole, middle);
   const bool held = found && holds(middle);
   const bool stable = middle.negative <= std::max(low.negative, high.negative);
   const bool between = low.factor < middle.share && middle.share < high.factor && middle.slope > 0;
