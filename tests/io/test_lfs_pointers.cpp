@@ -24,7 +24,7 @@ const std::string lfs_pointer =
 
 /// Whatever a file stands for, it is named as what it is.
 TEST(LfsPointers, AreRecognisedByEveryReader) {
-  TemporaryFolder folder;
+  MeshFolder folder;
   const auto expect = [&](const std::string& name, const std::function<void(const std::filesystem::path&)>& read,
                           const std::string& pointer = "") {
     const auto path = folder.write(name, pointer.empty() ? lfs_pointer : tetgen_files.at(name));
@@ -54,7 +54,7 @@ TEST(LfsPointers, AreRecognisedByEveryReader) {
 
 /// A mesh that a scene names.
 TEST(LfsPointers, OfASceneAreNamedWithTheLineOfTheScene) {
-  TemporaryFolder folder;
+  MeshFolder folder;
   folder.write("a.msh", lfs_pointer);
   const auto scene = folder.write("s.yaml", "softkin: 1\nmesh: {file: a.msh}\n");
   try {
@@ -69,7 +69,7 @@ TEST(LfsPointers, OfASceneAreNamedWithTheLineOfTheScene) {
 
 /// A text that only speaks of them is none.
 TEST(LfsPointers, OtherTextsAreNot) {
-  TemporaryFolder folder;
+  MeshFolder folder;
   EXPECT_EQ(read_file(folder.write("a.txt", "# " + lfs_pointer)), "# " + lfs_pointer);
   EXPECT_NO_THROW(refuse_lfs_pointer(folder.write("b.txt", "")));
   EXPECT_THROW(refuse_lfs_pointer(folder.write("c.txt", lfs_pointer)), InvalidInput);

@@ -12,7 +12,7 @@ namespace {
 using namespace text_mesh_tests;
 
 TEST(MeshIo, ExtensionsInAnyCase) {
-  TemporaryFolder folder;
+  MeshFolder folder;
   const Mesh mesh = read_mesh(folder.write("a.INP", abaqus_file));
   for (const char* name : {"b.msh", "b.VTU"}) {
     write_mesh(folder / name, mesh);
@@ -28,7 +28,7 @@ TEST(MeshIo, ExtensionsInAnyCase) {
 }
 
 TEST(MeshIo, BoundaryPointsOutwardsWhateverTheElementsDo) {
-  TemporaryFolder folder;
+  MeshFolder folder;
   write_mesh(folder / "t.stl", read_mesh(folder.write("t.tet", tet_file)));  // its second tet is reversed
   const TriangleSurface surface = read_stl(folder / "t.stl");
   EXPECT_NEAR(enclosed_volume(surface.vertices, surface.triangles), 1.0 / 3, 1e-6);

@@ -118,7 +118,7 @@ TEST(Order2, VtkLegacy) {
 }
 
 TEST(Order2, Medit) {
-  const text_mesh_tests::TemporaryFolder folder;
+  const text_mesh_tests::MeshFolder folder;
   const Mesh mesh = read_medit(folder.write("q.mesh", text_mesh_tests::quadratic_medit_file));
   expect_nodes_on_edges(mesh);
   EXPECT_NEAR(volume(mesh), 8 - 8, 1e-12);
@@ -128,7 +128,7 @@ TEST(Order2, Medit) {
 }
 
 TEST(Order2, MeditMayHoldEmptySectionsOfTheOtherOrder) {
-  const text_mesh_tests::TemporaryFolder folder;
+  const text_mesh_tests::MeshFolder folder;
   const std::string text =
       replaced(text_mesh_tests::quadratic_medit_file, " End", " Tetrahedra\n 0\n Triangles\n 0\n End");
   const Mesh mesh = read_medit(folder.write("q.mesh", text));
@@ -137,7 +137,7 @@ TEST(Order2, MeditMayHoldEmptySectionsOfTheOtherOrder) {
 }
 
 TEST(Order2, Tetgen) {
-  const text_mesh_tests::TemporaryFolder folder;
+  const text_mesh_tests::MeshFolder folder;
   for (const auto& [name, content] : text_mesh_tests::quadratic_tetgen_files) folder.write(name, content);
   const Mesh mesh = read_tetgen(folder / "q.node");
   expect_nodes_on_edges(mesh);
@@ -151,7 +151,7 @@ TEST(Order2, Tetgen) {
 }
 
 TEST(Order2, Abaqus) {
-  const text_mesh_tests::TemporaryFolder folder;
+  const text_mesh_tests::MeshFolder folder;
   const Mesh mesh = read_abaqus(folder.write("q.inp", text_mesh_tests::quadratic_abaqus_file));
   expect_nodes_on_edges(mesh);
   EXPECT_EQ(mesh.tetrahedra, (std::vector<Tetrahedron>{{0, 2, 3, 1}, {0, 1, 2, 10}}));
@@ -162,7 +162,7 @@ TEST(Order2, Abaqus) {
 
 /// Two tetrahedra with curved edges, one of them reversed, their common side in a region, and one vertex in another.
 Mesh curved_mesh() {
-  const text_mesh_tests::TemporaryFolder folder;
+  const text_mesh_tests::MeshFolder folder;
   Mesh mesh = read_abaqus(folder.write("q.inp", text_mesh_tests::quadratic_abaqus_file));
   mesh.vertices.row(8) += Eigen::RowVector3d(0.1, 0.2, 0.3);
   std::swap(mesh.tetrahedra[0][2], mesh.tetrahedra[0][3]);
@@ -174,7 +174,7 @@ Mesh curved_mesh() {
 }
 
 TEST(Order2, WrittenGmshReadsBackTheSame) {
-  const text_mesh_tests::TemporaryFolder folder;
+  const text_mesh_tests::MeshFolder folder;
   const Mesh mesh = curved_mesh();
   for (const bool binary : {false, true}) {
     write_gmsh(folder / "a.msh", mesh, binary);
@@ -187,7 +187,7 @@ TEST(Order2, WrittenGmshReadsBackTheSame) {
 }
 
 TEST(Order2, GmshIsWrittenWithCellsOfOrder2) {
-  const text_mesh_tests::TemporaryFolder folder;
+  const text_mesh_tests::MeshFolder folder;
   Mesh mesh = read_gmsh_text(kQuadratic2);
   write_gmsh(folder / "a.msh", mesh, false);
   const std::string text = vtk_files::slurp(folder / "a.msh");
@@ -196,7 +196,7 @@ TEST(Order2, GmshIsWrittenWithCellsOfOrder2) {
 }
 
 TEST(Order2, WrittenVtuReadsBackTheSame) {
-  const text_mesh_tests::TemporaryFolder folder;
+  const text_mesh_tests::MeshFolder folder;
   const Mesh mesh = curved_mesh();
   write_mesh(folder / "a.vtu", mesh);
   const Mesh read = read_mesh(folder / "a.vtu");
@@ -207,7 +207,7 @@ TEST(Order2, WrittenVtuReadsBackTheSame) {
 }
 
 TEST(Order2, BoundaryHasFourFacetsAFaceAndPointsOutwards) {
-  const text_mesh_tests::TemporaryFolder folder;
+  const text_mesh_tests::MeshFolder folder;
   Mesh mesh = curved_mesh();
   write_mesh(folder / "a.stl", mesh);
   const TriangleSurface surface = read_stl(folder / "a.stl");
@@ -220,7 +220,7 @@ TEST(Order2, BoundaryHasFourFacetsAFaceAndPointsOutwards) {
 }
 
 TEST(Order2, WritersRefuseMixedOrders) {
-  const text_mesh_tests::TemporaryFolder folder;
+  const text_mesh_tests::MeshFolder folder;
   Mesh mesh = curved_mesh();
   mesh.edge_nodes.pop_back();
   Mesh prism = curved_mesh();

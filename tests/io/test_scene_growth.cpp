@@ -78,7 +78,7 @@ TEST(SceneGrowth, ByTemperature) {
 }
 
 TEST(SceneGrowth, DirectionsFromAFile) {
-  const text_mesh_tests::TemporaryFolder folder;
+  const text_mesh_tests::MeshFolder folder;
   const FieldSamples samples =
       read_directions(folder.write("fibres.csv", "x_mm,y_mm,z_mm,dx,dy,dz\n1,2,3,0,1,0\n4,5,6,0,0,-1\n"));
   EXPECT_EQ(samples.values(1, 2), -1);

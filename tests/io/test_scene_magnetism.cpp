@@ -32,7 +32,7 @@ std::string refused(const std::string& text) {
 }
 
 std::string refused_file(const std::string& content, bool grid) {
-  const text_mesh_tests::TemporaryFolder folder;
+  const text_mesh_tests::MeshFolder folder;
   try {
     const FieldSamples samples = read_field_samples(folder.write("field.csv", content));
     if (grid) (void)grid_of(samples);
@@ -177,7 +177,7 @@ TEST(SceneMagnetism, RefusesWhatIsNoField) {
 }
 
 TEST(SceneMagnetism, AGridFromAFile) {
-  const text_mesh_tests::TemporaryFolder folder;
+  const text_mesh_tests::MeshFolder folder;
   const GridField grid = grid_of(read_field_samples(folder.write("field.csv", grid_text(4, 5, 6))));
   EXPECT_EQ(grid.counts, (std::array<Index, 3>{4, 5, 6}));
   EXPECT_EQ(grid.low, Vec3(0, 0, -1));
@@ -203,7 +203,7 @@ TEST(SceneMagnetism, RefusesFilesThatAreNoGrid) {
 }
 
 TEST(SceneMagnetism, SamplesFromTheCellsOfAVtu) {
-  const text_mesh_tests::TemporaryFolder folder;
+  const text_mesh_tests::MeshFolder folder;
   VtuContent content;
   content.points.resize(4, 3);
   content.points << 0, 0, 0, 4, 0, 0, 0, 4, 0, 0, 0, 4;

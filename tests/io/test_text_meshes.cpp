@@ -27,7 +27,7 @@ const Region& region_of_dimension(const Mesh& mesh, const std::string& name, int
 }
 
 TEST(TextMeshes, Medit) {
-  TemporaryFolder folder;
+  MeshFolder folder;
   const Mesh mesh = read_medit(folder.write("a.mesh", medit_file));
   expect_consistent(mesh);
   ASSERT_EQ(mesh.vertices.rows(), 9);
@@ -46,7 +46,7 @@ TEST(TextMeshes, Medit) {
 }
 
 TEST(TextMeshes, MeditOnOneLineWithWindowsEnds) {
-  TemporaryFolder folder;
+  MeshFolder folder;
   const Mesh mesh =
       read_medit(folder.write("a.mesh",
                               "MeshVersionFormatted 1\r\nDimension 3\r\nVertices 4 0 0 0 0 1 0 0 0 0 1 0 0 0 0 1 0\r\n"
@@ -56,7 +56,7 @@ TEST(TextMeshes, MeditOnOneLineWithWindowsEnds) {
 }
 
 TEST(TextMeshes, TetgenFromOne) {
-  TemporaryFolder folder;
+  MeshFolder folder;
   for (const auto& [name, content] : tetgen_files) folder.write(name, content);
   for (const char* name : {"a.node", "a.ele"}) {
     const Mesh mesh = read_tetgen(folder / name);
@@ -74,7 +74,7 @@ TEST(TextMeshes, TetgenFromOne) {
 }
 
 TEST(TextMeshes, TetgenFromZeroWithoutMarkers) {
-  TemporaryFolder folder;
+  MeshFolder folder;
   folder.write("b.node", "4 3\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1");
   const auto elements = folder.write("b.ele", "1\n0 0 1 2 3");
   folder.write("b.face", "1 0\n0 0 1 2\n");
@@ -85,7 +85,7 @@ TEST(TextMeshes, TetgenFromZeroWithoutMarkers) {
 }
 
 TEST(TextMeshes, TetgenTakesTheLastAttribute) {
-  TemporaryFolder folder;
+  MeshFolder folder;
   folder.write("b.node", "4 3 0 0\n0 0 0 0\n1 1 0 0\n2 0 1 0\n3 0 0 1\n");
   const Mesh mesh = read_tetgen(folder.write("b.ele", "1 4 2\n0 0 1 2 3 0.25 6\n"));
   ASSERT_EQ(mesh.regions.size(), 1u);
@@ -93,7 +93,7 @@ TEST(TextMeshes, TetgenTakesTheLastAttribute) {
 }
 
 TEST(TextMeshes, Abaqus) {
-  TemporaryFolder folder;
+  MeshFolder folder;
   const Mesh mesh = read_abaqus(folder.write("a.inp", abaqus_file));
   expect_consistent(mesh);
   ASSERT_EQ(mesh.vertices.rows(), 9);
@@ -120,7 +120,7 @@ TEST(TextMeshes, Abaqus) {
 
 /// A deck in pieces is the deck: keywords, data of a keyword that stands before, files in files and in folders.
 TEST(TextMeshes, AbaqusIncludedFilesAreReadInTheirPlace) {
-  TemporaryFolder whole, parts;
+  MeshFolder whole, parts;
   const Mesh mesh = read_abaqus(whole.write("a.inp", abaqus_file));
   std::vector<std::string> lines;
   for (std::size_t begin = 0, end = 0; begin < abaqus_file.size(); begin = end + 1) {
@@ -154,7 +154,7 @@ TEST(TextMeshes, AbaqusIncludedFilesAreReadInTheirPlace) {
 
 /// As sfepy's: sections are complete by their counts.
 TEST(TextMeshes, MeditWithoutEnd) {
-  TemporaryFolder folder;
+  MeshFolder folder;
   const Mesh whole = read_medit(folder.write("a.mesh", medit_file));
   const std::string text = medit_file.substr(0, medit_file.rfind("End"));
   for (const std::string& content : {text, text.substr(0, text.find_last_not_of(" \n") + 1)}) {
@@ -168,7 +168,7 @@ TEST(TextMeshes, MeditWithoutEnd) {
 
 /// For robots of layers alone.
 TEST(TextMeshes, TrianglesAlone) {
-  TemporaryFolder folder;
+  MeshFolder folder;
   const std::string corners = "0 0 0 0\n1 0 0 0\n0 1 0 0\n1 1 0 0\n";
   const Mesh medit = read_medit(folder.write(
       "a.mesh", "MeshVersionFormatted 2\nDimension 3\nVertices\n4\n" + corners + "Triangles\n2\n1 2 3 5\n2 4 3 6\n"));
@@ -183,7 +183,7 @@ TEST(TextMeshes, TrianglesAlone) {
 
 TEST(TextMeshes, AbaqusFacesAreTheFacesOfTheElement) {
   // every face leaves out the vertices that lie on one side of it, and all faces together close the element
-  TemporaryFolder folder;
+  MeshFolder folder;
   const std::string head =
       "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n5,1,0,1\n6,0,1,1\n*ELEMENT,TYPE=C3D4\n1,1,2,3,4\n"
       "*ELEMENT,TYPE=C3D6\n2,1,2,3,4,5,6\n";
@@ -200,7 +200,7 @@ TEST(TextMeshes, AbaqusFacesAreTheFacesOfTheElement) {
 }
 
 TEST(TextMeshes, AbaqusSurfacesShareFaces) {
-  TemporaryFolder folder;
+  MeshFolder folder;
   const Mesh mesh =
       read_abaqus(folder.write("a.inp",
                                "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n*ELEMENT,TYPE=C3D4\n1,1,2,3,4\n"
@@ -211,7 +211,7 @@ TEST(TextMeshes, AbaqusSurfacesShareFaces) {
 }
 
 TEST(TextMeshes, AbaqusPartAndInstance) {
-  TemporaryFolder folder;
+  MeshFolder folder;
   const Mesh mesh = read_abaqus(folder.write(
       "a.inp",
       "*Heading\n*Part, name=Part-1\n*Node\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n*Element, type=C3D4\n1, 1,2,3,4\n"
@@ -231,7 +231,7 @@ TEST(TextMeshes, AbaqusPartAndInstance) {
 
 /// As Gmsh writes all groups of a model, and meshio and CalculiX their own names of elements.
 TEST(TextMeshes, AbaqusFlatElementsAndLinesAreRegions) {
-  TemporaryFolder folder;
+  MeshFolder folder;
   const Mesh mesh = read_abaqus(
       folder.write("a.inp",
                    "*NODE\n1,0,0,0\n2,1,0,0\n3,0,1,0\n4,0,0,1\n5,1,0,1\n6,0,1,1\n"
@@ -257,7 +257,7 @@ TEST(TextMeshes, AbaqusFlatElementsAndLinesAreRegions) {
 }
 
 TEST(TextMeshes, AbaqusFormulationsOfATetrahedronAreOneShape) {
-  TemporaryFolder folder;
+  MeshFolder folder;
   std::string file = text_mesh_tests::quadratic_abaqus_file;
   const Mesh plain = read_abaqus(folder.write("a.inp", file));
   for (const char* type : {"C3D10M", "C3D10H", "C3D10MH", "C3D10T"}) {
@@ -277,13 +277,13 @@ TEST(TextMeshes, AbaqusSetsOfSetsStaySmall) {
     for (int k = 0; k < 30; ++k) deck += "s" + std::to_string(i - 1) + ",";
     deck += "\n";
   }
-  TemporaryFolder folder;
+  MeshFolder folder;
   const Mesh mesh = read_abaqus(folder.write("a.inp", deck));
   EXPECT_EQ(region_of_dimension(mesh, "s40", 0).vertices, (Indices{0, 2}));
 }
 
 TEST(TextMeshes, TetKeepsDoublesAndOrientation) {
-  TemporaryFolder folder;
+  MeshFolder folder;
   const Mesh mesh = read_tet(folder.write("a.tet", tet_file));
   expect_consistent(mesh);
   ASSERT_EQ(mesh.vertices.rows(), 5);
@@ -295,7 +295,7 @@ TEST(TextMeshes, TetKeepsDoublesAndOrientation) {
 }
 
 TEST(TextMeshes, TetWithSidecars) {
-  TemporaryFolder folder;
+  MeshFolder folder;
   const auto path = folder.write("a.tet", tet_file);
   folder.write("a_chamber.txt", "1:0:0:1:\n2:0:0:0:\n");
   folder.write("a_rigid_handle.txt", "0:1:0\n1:1:0\n2:0:0\n3:0:1\n4:1:1\n");
@@ -309,7 +309,7 @@ TEST(TextMeshes, TetWithSidecars) {
 }
 
 TEST(TextMeshes, TetWithSidecarsAsPublished) {
-  TemporaryFolder folder;
+  MeshFolder folder;
   const auto path = folder.write("soro_body.tet", tet_file);
   folder.write("soro_chamber.txt", "0:1:0:0:\n1:0:0:1:\n");
   folder.write("soro_rigid_handle.txt", "0:1:0:\n1:1:0:\n2:0:0:\n3:0:1:\n4:0:0:\n");
@@ -332,7 +332,7 @@ TEST(TextMeshes, TetWithSidecarsAsPublished) {
 }
 
 TEST(TextMeshes, TetSaysWhichSidecarsItLookedFor) {
-  TemporaryFolder folder;
+  MeshFolder folder;
   const auto plain = folder.write("finger.tet", tet_file), body = folder.write("soro_body.tet", tet_file);
   const Mesh alone = read_tet(plain);
   EXPECT_TRUE(alone.no_sidecars);
@@ -349,7 +349,7 @@ TEST(TextMeshes, TetSaysWhichSidecarsItLookedFor) {
 }
 
 TEST(TextMeshes, Sidecar) {
-  TemporaryFolder folder;
+  MeshFolder folder;
   const Sidecar numbered = read_sidecar(folder.write("a.txt", "0:0:1:\n1:1:1:\n2:0:0:\n"));
   EXPECT_EQ(numbered.rows, 3);
   EXPECT_FALSE(numbered.bare);

@@ -22,7 +22,7 @@ struct BadText {
 };
 
 void expect_refused(Reader read, const std::string& name, const BadText& bad) {
-  TemporaryFolder folder;
+  MeshFolder folder;
   for (const auto& [file, content] : bad.files) folder.write(file, content);
   try {
     (void)read(folder / name);
@@ -247,7 +247,7 @@ TEST(TextRefusals, AbaqusIncludedFiles) {
 }
 
 TEST(TextRefusals, AbaqusIncludedFilesBehindALink) {
-  TemporaryFolder folder, other;
+  MeshFolder folder, other;
   other.write("b.inp", nodes);
   std::filesystem::create_symlink(other / "", folder / "link");
   try {
@@ -335,7 +335,7 @@ std::vector<Sample> samples() {
 }
 
 /// Reads after `content` has taken the place of the damaged file; a mesh that comes out must be consistent.
-bool reads(const TemporaryFolder& folder, const Sample& sample, const std::string& content, Mesh& mesh) {
+bool reads(const MeshFolder& folder, const Sample& sample, const std::string& content, Mesh& mesh) {
   folder.write(sample.damaged, content);
   try {
     mesh = sample.read(folder / sample.name);
@@ -349,7 +349,7 @@ bool reads(const TemporaryFolder& folder, const Sample& sample, const std::strin
 
 TEST(TextRefusals, TruncatedAnywhere) {
   for (const Sample& sample : samples()) {
-    TemporaryFolder folder;
+    MeshFolder folder;
     for (const auto& [name, content] : sample.files) folder.write(name, content);
     const std::string& whole = sample.files.at(sample.damaged);
     Mesh full, mesh;
@@ -374,7 +374,7 @@ TEST(TextRefusals, TruncatedAnywhere) {
 TEST(TextRefusals, FlippedBytes) {
   std::mt19937 random(20200801);
   for (const Sample& sample : samples()) {
-    TemporaryFolder folder;
+    MeshFolder folder;
     for (const auto& [name, content] : sample.files) folder.write(name, content);
     const std::string& whole = sample.files.at(sample.damaged);
     std::size_t refused = 0;

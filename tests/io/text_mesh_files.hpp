@@ -13,20 +13,20 @@
 namespace softkin::text_mesh_tests {
 
 /// A fresh folder that goes with the object.
-class TemporaryFolder {
+class MeshFolder {
  public:
-  TemporaryFolder() {
+  MeshFolder() {
     static std::atomic<int> number{0};
     path_ = std::filesystem::temp_directory_path() /
             ("softkin_text_" + std::to_string(::getpid()) + "_" + std::to_string(number++));
     std::filesystem::create_directory(path_);
   }
-  ~TemporaryFolder() {
+  ~MeshFolder() {
     std::error_code ignored;
     std::filesystem::remove_all(path_, ignored);
   }
-  TemporaryFolder(const TemporaryFolder&) = delete;
-  TemporaryFolder& operator=(const TemporaryFolder&) = delete;
+  MeshFolder(const MeshFolder&) = delete;
+  MeshFolder& operator=(const MeshFolder&) = delete;
 
   std::filesystem::path write(const std::string& name, const std::string& content) const {
     std::filesystem::remove(path_ / name);  // much faster than to overwrite, on some file systems

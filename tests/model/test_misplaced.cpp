@@ -39,7 +39,9 @@ std::function<void(RobotSpec&)> cable(const Vec3& from, const Vec3& to) {
   return [=](RobotSpec& spec) {
     CableSpec tendon;
     for (const Vec3& point : {from, to}) tendon.points.push_back({point, {}});
-    ActuatorSpec actuator{"tendon", tendon};
+    ActuatorSpec actuator;
+    actuator.name = "tendon";
+    actuator.drive = tendon;
     actuator.control = Control::load;
     actuator.high = 1;
     actuator.rest = 0;
