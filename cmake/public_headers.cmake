@@ -44,6 +44,7 @@ set(softkin_public_headers
     io/scene/file_contents.hpp
     io/scene/hardware.hpp
     io/scene/scene.hpp
+    io/scene/scene_file.hpp
     io/table/actuator_curve_file.hpp
     io/table/commands.hpp
     io/table/marker_path.hpp
@@ -96,6 +97,7 @@ set(softkin_public_headers
     runs/records.hpp
     runs/reports.hpp
     runs/shortfall_text.hpp
+    runs/turns.hpp
     runs/workspace_file.hpp)
 
 # Included by these and there for the compiler alone: nothing is promised of them.

@@ -122,8 +122,8 @@ TEST(PhysicalLimits, SeveralLoadsEndAtTheMaximum) {
   EXPECT_NEAR(beyond.state.actuation[0], most, 0.01 * most);
 }
 
-/// Along the curve of equilibria, too, an iteration is recorded with its step in mm and its residual in N: forces that are
-/// 1024 times as large, as are all moduli, take the same steps, bit by bit, and have 1024 times the residual.
+/// Along the curve of equilibria, too, an iteration is recorded with its step in mm and its residual in N: forces that
+/// are 1024 times as large, as are all moduli, take the same steps, bit by bit, and have 1024 times the residual.
 TEST(PhysicalLimits, RecordsStepsInMillimetresAndResidualsInNewtons) {
   const auto history = [](double factor) {
     RobotSpec spec = balloon(factor * 0.03, false);

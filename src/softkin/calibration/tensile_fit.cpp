@@ -106,8 +106,8 @@ Eigen::VectorXd modulus_row(Law law) {
   return Eigen::VectorXd::Ones(1);
 }
 
-/// Conditions on the constants, a row each: the energy of these changes of shape grows faster than linearly, at stretches
-/// up to the largest one. They are linear in the constants.
+/// Conditions on the constants, a row each: the energy of these changes of shape grows faster than linearly, at
+/// stretches up to the largest one. They are linear in the constants.
 Eigen::MatrixXd stability_rows(Law law, double largest_stretch, Index constants) {
   constexpr int steps = 40, directions = 12;
   Eigen::MatrixXd rows(std::size(stretch_modes) * steps * directions, constants);
@@ -311,6 +311,10 @@ const std::vector<LawChoice>& fitted_laws() {
   static const std::vector<LawChoice> all{{Law::neo_hookean}, {Law::mooney_rivlin}, {Law::yeoh},    {Law::gent},
                                           {Law::ogden, 1},    {Law::ogden, 2},      {Law::ogden, 3}};
   return all;
+}
+
+bool has_points_for(const TensileCurve& curve, const LawChoice& choice, double most) {
+  return points_of(curve, most).strain.size() >= number_of_constants(choice);
 }
 
 LawFit fit_law(const TensileCurve& curve, const LawChoice& choice, double most) {

@@ -71,10 +71,10 @@ struct LawFit {
 
 /// Which law to fit.
 struct LawChoice {
-  Law law = Law::neo_hookean;
-  int terms = 0;  // ogden: at most
-  bool stable =
-      true;  // from rest to the largest stretch of the points that are fitted, in every mode of stability_limit
+  Law law = Law::neo_hookean;  // its form
+  int terms = 0;               // ogden: at most
+  /// From rest to the largest stretch of the points that are fitted, in every mode of stability_limit.
+  bool stable = true;
 
   /// "yeoh", "ogden-2"
   [[nodiscard]] std::string name() const;
@@ -89,6 +89,8 @@ struct LawChoice {
 /// throws    InvalidInput on a law that is not fitted, fewer points with strain > 0 than constants, or a stress whose
 ///           fit is not finite
 [[nodiscard]] LawFit fit_law(const TensileCurve& curve, const LawChoice& choice, double most = 0);
+/// Does a curve have as many points up to a strain as this law has constants? most: 0: all points
+[[nodiscard]] bool has_points_for(const TensileCurve& curve, const LawChoice& choice, double most = 0);
 /// The same without the conditions of stability.
 [[nodiscard]] inline LawFit fit_law(const TensileCurve& curve, Law law, double most = 0) {
   return fit_law(curve, LawChoice{law, law == Law::ogden ? max_ogden_terms : 0, false}, most);

@@ -21,7 +21,8 @@ double peak_of(const TensileResults& results) {
                            stress.begin() + static_cast<std::ptrdiff_t>(results.laws.front().fit.points));
 }
 
-/// The first law whose rms is small beside the stresses fitted, else the best; of Ogden's alone where the law is requested.
+/// The first law whose rms is small beside the stresses fitted, else the best; of Ogden's alone where the law is
+/// requested.
 std::string choose(const TensileTask& task, const TensileResults& results) {
   constexpr double enough = 0.01;
   const double largest = peak_of(results);
@@ -231,6 +232,7 @@ TensileResults evaluate(const TensileTask& task, TensileCurve curve) {
     if (results.curve.strain.size() < 5) (void)linear_range(results.curve, task.tolerance_percent / 100);
     for (LawChoice choice : fitted_laws()) {
       choice.stable = task.stable;
+      if (choice.name() != task.law && !has_points_for(results.curve, choice, task.most_strain)) continue;
       const LawFit fit = fit_law(results.curve, choice, task.most_strain);
       const ElasticSpec scene = scene_constants(fit.law, task.poisson_ratio);
       const double largest = 1 + results.curve.strain[fit.points - 1];

@@ -32,7 +32,8 @@ enum class LawConstants { lame, coefficients, limited, ogden };
 
 /// A truth value without a default: a law whose traits leave one out does not compile.
 struct Answer {
-  bool yes;
+  bool yes;  // the value
+  /// Implicit, so that a table of answers is a table of true and false.
   constexpr Answer(bool value) : yes(value) {}
   constexpr operator bool() const { return yes; }
 };

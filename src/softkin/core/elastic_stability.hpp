@@ -7,7 +7,8 @@
 namespace softkin {
 
 /// d^2W / (d ln l_i d ln l_j) of a change of shape without a change of volume [MPa], l_i the principal stretches.
-/// Laws of rubber: neo-hookean, mooney-rivlin, yeoh, gent, ogden; of others that of their shear modulus at small strain.
+/// Laws of rubber: neo-hookean, mooney-rivlin, yeoh, gent, ogden; of others that of their shear modulus at small
+/// strain.
 [[nodiscard]] Mat3 logarithmic_stiffness(const ElasticLaw& law, const Vec3& stretches);
 
 /// Ways in which a sheet of rubber is stretched: along one axis with free sides, along one axis with a fixed width, and

@@ -5,8 +5,8 @@
 
 namespace softkin {
 
-/// Says where a file that is not there comes from, as far as the folder of what needs it shows: a script or a Gmsh model
-/// that makes it, or a README that names it.
+/// Says where a file that is not there comes from, as far as the folder of what needs it shows: a script or a Gmsh
+/// model that makes it, or a README that names it.
 ///
 /// folder   of what needs the file
 /// returns  "'python3 F/make_beam.py' makes it", "F/README.md says where it comes from"; "": the folder shows nothing

@@ -16,8 +16,8 @@ struct VertexField {
   std::vector<float> values;
 };
 
-/// The unit of an actuator's length, area or volume where that is a result besides its load and its command: "× rest" or
-/// "mL"; else "".
+/// The unit of an actuator's length, area or volume where that is a result besides its load and its command: "× rest"
+/// or "mL"; else "".
 [[nodiscard]] std::string page_measure_unit(const Model& model, const Actuator& actuator);
 
 /// What the page (apps/view/web) shows of a robot, its steps and its map, as JSON. Arrays of numbers are

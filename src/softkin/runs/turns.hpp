@@ -16,7 +16,7 @@ class TurnMeter {
   /// start: the line that turns are measured from, of some length
   explicit TurnMeter(const Vec3& start) : start_(start) {}
 
-  /// [degrees]; not finite where the line is not, and the next one is measured from the last that was
+  /// The turn of the next line [degrees]; not finite where the line is not, and the next one is measured from the last that was
   double next(const Vec3& line);
 
  private:
@@ -28,10 +28,14 @@ class TurnMeter {
 struct MarkerLine {
   Index from = -1, to = -1;  // of Model::markers
 
+  /// The line in a shape, from its markers [mm].
   [[nodiscard]] Vec3 in(const std::vector<Vec3>& markers) const;
+  /// The line at rest [mm].
   [[nodiscard]] Vec3 at_rest(const Model& model) const;
 };
 
+/// The line that two names choose; none where there are no names.
+///
 /// names   none, or two markers
 /// source  the option or function that named them, for messages
 /// throws  InvalidInput: no such marker, or two that are at one place at rest
@@ -41,8 +45,11 @@ struct MarkerLine {
 /// The turns of the lines between every two markers, from shape to shape.
 class LineTurns {
  public:
+  /// From rest.
   explicit LineTurns(const Model& model);
 
+  /// The turns in the next shape.
+  ///
   /// markers  of the next shape [mm]
   /// returns  by number(), [degrees]; that of two markers at one place at rest means nothing
   std::vector<double> next(const std::vector<Vec3>& markers);
@@ -61,8 +68,8 @@ class LineTurns {
 /// returns    per marker, 0 to 180 [degrees]; not finite where it is a point of the body, or its vertices are on a line
 [[nodiscard]] std::vector<double> marker_turns(const Model& model, const Points& positions);
 
-/// The same along a path, where a turn may exceed 180 degrees and changes its sign where a marker passes its orientation
-/// at rest: from shape to shape a marker turns by less than 180 degrees, and its axis by less than 90.
+/// The same along a path, where a turn may exceed 180 degrees and changes its sign where a marker passes its
+/// orientation at rest: from shape to shape a marker turns by less than 180 degrees, and its axis by less than 90.
 ///
 /// before            turns of the shape before, of this function or of marker_turns [degrees]
 /// positions_before  of that shape, #V by 3 [mm]

@@ -62,8 +62,8 @@ inline OgdenEnergy ogden_energy(const LawBlock& law, const Stretches& s) {
   return w;
 }
 
-/// (a^b - c^b) / (a - c) / (a c)^((b - 1) / 2) = sinh(b h) / sinh(h), h = ln(a / c) / 2: exact to rounding where a and c
-/// coincide, since it depends on the square of h alone.
+/// (a^b - c^b) / (a - c) / (a c)^((b - 1) / 2) = sinh(b h) / sinh(h), h = ln(a / c) / 2: exact to rounding where a and
+/// c coincide, since it depends on the square of h alone.
 inline double sinh_ratio(double b, double h) {
   if (h * h < 1e-10) return b * (1 + (b * b - 1) * h * h / 6);
   return __builtin_sinh(b * h) / __builtin_sinh(h);

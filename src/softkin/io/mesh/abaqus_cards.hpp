@@ -66,7 +66,8 @@ struct AbaqusCards {
 };
 
 /// Flat files, or one part with at most one instance that is not moved. Keywords that say nothing about the mesh are
-/// passed over. What *INCLUDE names is read in its place: a file in the deck's folder or below it, named relative to it.
+/// passed over. What *INCLUDE names is read in its place: a file in the deck's folder or below it, named relative to
+/// it.
 [[nodiscard]] AbaqusCards read_abaqus_cards(const std::filesystem::path& path);
 
 }  // namespace softkin

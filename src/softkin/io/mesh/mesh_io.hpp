@@ -55,8 +55,8 @@ void write_mesh(const std::filesystem::path& path, const Mesh& mesh);
 void write_gmsh(const std::filesystem::path& path, const Mesh& mesh, bool binary = true);
 
 /// Medit .mesh (INRIA, ASCII). References become regions "ref_N" (tetrahedra, prisms) and "surface_ref_N"
-/// (triangles, quadrilaterals), so that a name stands for one region. TetrahedraP2 and TrianglesP2 are of order 2. End may
-/// be missing.
+/// (triangles, quadrilaterals), so that a name stands for one region. TetrahedraP2 and TrianglesP2 are of order 2. End
+/// may be missing.
 [[nodiscard]] Mesh read_medit(const std::filesystem::path& path);
 
 /// TetGen .node + .ele (path names either; the other stands beside it) and, where present, .face. Numbering from 0 or

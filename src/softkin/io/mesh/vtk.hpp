@@ -56,8 +56,8 @@ struct VtuContent {
   std::vector<Field> arrays{};                              // of the whole: any number of values
 };
 
-/// Writes a .vtu that ParaView, meshio and read_vtu read: arrays in base64, zlib-compressed, fields as Float64. Regions are
-/// the cell array "region" (Int32); the field array "region_NAME" has the number of each as its only value.
+/// Writes a .vtu that ParaView, meshio and read_vtu read: arrays in base64, zlib-compressed, fields as Float64. Regions
+/// are the cell array "region" (Int32); the field array "region_NAME" has the number of each as its only value.
 ///
 /// throws  InvalidInput naming the field, cell or region: no points, a value that is not finite, a length other than
 ///         count * components, a vertex or region outside its range, tetrahedra of two orders or of order 2 beside

@@ -19,8 +19,8 @@ struct LabelWish {
 /// The point of an area that is nearest to a place.
 [[nodiscard]] Eigen::Vector2d nearest_in(const Area& area, const Eigen::Vector2d& place);
 
-/// Upper left corners of labels beside what they name: at the first of some places, nearest ones first, at which a label
-/// covers no other one and nothing that is taken and is inside the picture; where there is none, at that of least
+/// Upper left corners of labels beside what they name: at the first of some places, nearest ones first, at which a
+/// label covers no other one and nothing that is taken and is inside the picture; where there is none, at that of least
 /// overlap.
 ///
 /// taken  such as the marks themselves

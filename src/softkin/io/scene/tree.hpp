@@ -69,8 +69,8 @@ void check_version(const Node& root, const std::string& key, const std::string& 
 [[nodiscard]] std::int64_t integer(const Node& node);
 [[nodiscard]] const std::string& text(const Node& node);
 [[nodiscard]] Vec3 read_vector(const Node& node);  // three numbers
-/// Fails where a map has a key, on which depends which other keys it takes, with a value that is none of the choices: so
-/// that a wrong value is reported before the keys that would go with it.
+/// Fails where a map has a key, on which depends which other keys it takes, with a value that is none of the choices:
+/// so that a wrong value is reported before the keys that would go with it.
 void check_choice(const Node& node, std::string_view key, const Keys& choices);
 /// Position of the value among choices.
 [[nodiscard]] std::size_t choice(const Node& node, const Keys& choices);

@@ -37,11 +37,11 @@ struct TensileLayout {
 
 /// A tensile test as testing machines write it: cells separated by commas, semicolons or tabs, with decimal points or,
 /// where cells are not separated by commas, decimal commas; lines before the header are passed over. Columns of nominal
-/// (engineering) strain and stress are taken before true ones, which are converted at constant volume: strain = exp(true
-/// strain) - 1, stress = true stress / (1 + strain). What was taken and left out is in the notes of the curve.
+/// (engineering) strain and stress are taken before true ones, which are converted at constant volume: strain =
+/// exp(true strain) - 1, stress = true stress / (1 + strain). What was taken and left out is in the notes of the curve.
 ///
-/// throws  InvalidInput naming file and line: no header with a strain and a stress, several columns that may be meant, a
-///         unit that is missing or not known, a cell that is no number, fewer than five rows
+/// throws  InvalidInput naming file and line: no header with a strain and a stress, several columns that may be meant,
+///         a unit that is missing or not known, a cell that is no number, fewer than five rows
 [[nodiscard]] TensileCurve read_tensile_file(const std::filesystem::path& path, const TensileLayout& layout);
 
 /// Is this the file of a testing machine: not a table whose first line names columns as softkin does (strain,

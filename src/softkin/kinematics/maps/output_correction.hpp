@@ -7,9 +7,9 @@
 
 namespace softkin::maps {
 
-/// Moves the vertices of a mapped shape by as little as possible, so that its markers and the lengths, areas and volumes
-/// of its actuators are the map's outputs, which are more accurate than the shape. The vertices that carry a stem move
-/// as a rigid body.
+/// Moves the vertices of a mapped shape by as little as possible, so that its markers and the lengths, areas and
+/// volumes of its actuators are the map's outputs, which are more accurate than the shape. The vertices that carry a
+/// stem move as a rigid body.
 class OutputCorrection {
  public:
   /// model must outlive the object; of data the names of outputs are read.

@@ -30,8 +30,8 @@ class RangeProbe {
   [[nodiscard]] std::string wrong_inputs() const;
   /// The same of all inputs together, at the corner that is nearest to rest.
   [[nodiscard]] std::string wrong_corner() const;
-  /// Of samples of a piece of which some have no equilibrium: the input along which these are farther from rest than the
-  /// others, and half of its range. Needs probe_inputs() or probe_corners().
+  /// Of samples of a piece of which some have no equilibrium: the input along which these are farther from rest than
+  /// the others, and half of its range. Needs probe_inputs() or probe_corners().
   [[nodiscard]] std::string suspected_input(const MapPiece& piece, const std::vector<Sample>& samples) const;
 
  private:

@@ -10,9 +10,9 @@ struct MemoryNeed {
   double values = 0;    // numbers of the factor, and those that wait meanwhile
 };
 
-/// Estimates the factor by nested dissection: elements are halved at the median of their centroids along the longest axis
-/// again and again, and the vertices that two halves share are eliminated after both. It takes about 1e-6 s for each
-/// vertex of each element.
+/// Estimates the factor by nested dissection: elements are halved at the median of their centroids along the longest
+/// axis again and again, and the vertices that two halves share are eliminated after both. It takes about 1e-6 s for
+/// each vertex of each element.
 ///
 /// vertices    #V by 3, at rest [mm]
 /// tetrahedra, edge_nodes, prisms  as of a Mesh

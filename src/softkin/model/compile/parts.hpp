@@ -274,9 +274,9 @@ void doubt_units(Compilation& c);
 /// Physical: refuses, before anything takes long, a mesh whose factor takes far more memory than there is.
 void refuse_too_large(const Compilation& c);
 
-/// Warns of cables, fibres, sensors, obstacles and bodies that are far smaller than the robot, of obstacles that are out
-/// of its reach, of points and shapes next to the origin that would lie in the robot if they were meant in metres, and of
-/// a robot that is held everywhere.
+/// Warns of cables, fibres, sensors, obstacles and bodies that are far smaller than the robot, of obstacles that are
+/// out of its reach, of points and shapes next to the origin that would lie in the robot if they were meant in metres,
+/// and of a robot that is held everywhere.
 void doubt_places(Compilation& c);
 
 /// A point as what carries it along moves: the nearest element, or a face of a sheet where it is nearer.

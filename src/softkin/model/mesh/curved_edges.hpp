@@ -28,9 +28,9 @@ struct CurvedEdges {
 /// everywhere above a tenth of that with straight edges, by its Bezier coefficients; where it would not, nodes inside
 /// are moved along or, if that does not help, nodes are held back.
 ///
-/// A part of the mesh keeps straight edges where its vertices leave open whether a smooth surface is nearer to the body:
-/// those of a notch two elements wide do not determine whether its walls are flat or hollow. It keeps them, too, where
-/// more than a tenth of the nodes would be held back, or a section would be farther from the smooth body's.
+/// A part of the mesh keeps straight edges where its vertices leave open whether a smooth surface is nearer to the
+/// body: those of a notch two elements wide do not determine whether its walls are flat or hollow. It keeps them, too,
+/// where more than a tenth of the nodes would be held back, or a section would be farther from the smooth body's.
 ///
 /// mesh    of order 2; its edge nodes are placed anew
 /// labels  of its tetrahedra: where they differ is a surface too

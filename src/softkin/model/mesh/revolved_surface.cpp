@@ -237,7 +237,8 @@ Index RevolvedSurface::axis_of(std::size_t edge) const {
   return is_circle || is_meridian ? axis : -1;
 }
 
-/// Whether an edge lies within a flat part that is perpendicular to an axis, such as the end or the shoulder of a shaft.
+/// Whether an edge lies within a flat part that is perpendicular to an axis, such as the end or the shoulder of a
+/// shaft.
 bool RevolvedSurface::is_within_flat_end(std::size_t edge) const {
   const auto faces = surface_.faces_at(edge);
   for (Index axis = 0; axis < std::ssize(axes_); ++axis)

@@ -43,10 +43,12 @@ SmoothBulges::SmoothBulges(const Mesh& mesh, const std::vector<Index>& labels, d
       sections_(mesh) {
   find_hollow_creases(crease);
   ranges_.reserve(surface_.edges());
+  has_profile_.assign(sections_.parts(), 0);
   for (std::size_t e = 0; e < surface_.edges(); ++e) {
     BulgeRange range = range_of(e);
     if (range.determined) range.inward = range.outward = range.bulge;
     const auto [low, high] = surface_.ends(e);
+    if (!range.determined || revolved_.bulge(e) || ends_in_hollow_crease(e)) has_profile_[sections_.part_of(low)] = 1;
     const double most = farthest_bulge * (mesh.vertices.row(high) - mesh.vertices.row(low)).norm();
     for (Vec3 BulgeRange::*bulge : {&BulgeRange::bulge, &BulgeRange::inward, &BulgeRange::outward})
       if (Vec3& one = range.*bulge; one.norm() > most) one *= most / one.norm();
@@ -161,7 +163,7 @@ bool SmoothBulges::doubt_failed(const Points& positions) {
   }
   bool any = false;
   for (std::size_t part = 0; part < in_doubt_.size(); ++part) {
-    if (in_doubt_[part]) continue;
+    if (in_doubt_[part] || !has_profile_[part]) continue;
     double whole = 0, missing = 0, wanted = 0;
     bool failed = static_cast<double>(held[part]) > most_held * static_cast<double>(curved[part]);
     const std::size_t first = part * MeshSections::per_part, last = first + MeshSections::per_part;

@@ -37,12 +37,13 @@ class SmoothBulges {
   [[nodiscard]] bool is_in_doubt(std::size_t edge) const;
   /// Puts the parts in doubt whose sections, with the positions that the vertices got in the end, are farther from
   /// those with all bulges than those with straight edges are, and those where more than a tenth of the edges are held
-  /// back: their elements are distorted so much that they bend too little.
+  /// back: their elements are distorted so much that they bend too little. Parts without a surface of revolution and
+  /// without a hollow crease, such as balls, are trusted.
   ///
   /// returns  whether there are any
   bool doubt_failed(const Points& positions);
-  /// The middle of an edge of a part in doubt: of the one that may curve either way by most, else of the one that curves
-  /// most [mm].
+  /// The middle of an edge of a part in doubt: of the one that may curve either way by most, else of the one that
+  /// curves most [mm].
   [[nodiscard]] Vec3 doubtful_place() const;
 
  private:
@@ -62,6 +63,7 @@ class SmoothBulges {
   std::vector<BulgeRange> ranges_;              // by edge
   std::vector<double> straight_, curved_;       // volumes of the sections [mm^3]
   std::vector<char> in_doubt_;                  // parts
+  std::vector<char> has_profile_;               // parts with surfaces of revolution or with hollow creases
 };
 
 }  // namespace softkin

@@ -66,8 +66,8 @@ class ArcLength : protected Follower {
     double share = 0, slope = 0;
   };
 
-  /// Steps along the curve: the length of the next one, the shortest; iterations of all; how many may fail in a row, and
-  /// how many did.
+  /// Steps along the curve: the length of the next one, the shortest; iterations of all; how many may fail in a row,
+  /// and how many did.
   struct Pace {
     double length = 0, shortest = 0;
     int most_iterations = 0, most_missed = 0, missed = 0;

@@ -299,13 +299,13 @@ Continuation::StepEnd Continuation::judge(Newton::Outcome outcome, const Demand&
 SegmentCheck::Verdict Continuation::check_segment(const Demand& there, double length, bool changed, const Iterate& at,
                                                   const Iterate& trial) {
   using Verdict = SegmentCheck::Verdict;
-  if (step_.unforetold || system_.kinked()) return Verdict::confirmed;
+  const bool has_tangent = step_.extrapolated || step_.straight.rows() > 0;  // none leads from flat sheets
+  if (step_.unforetold || !has_tangent || system_.kinked()) return Verdict::confirmed;
   const Points secant = trial.positions - at.positions;
   Points ahead = step_.predicted - at.positions;
   const double farthest = std::max(system_.largest_move(at.positions, trial.positions),
                                    system_.largest_move(at.positions, step_.predicted));
-  if (farthest <= SegmentCheck::least_checked * system_.model().diagonal_mm ||
-      SegmentCheck::predicts(system_, ahead, secant))
+  if (SegmentCheck::is_short(system_, farthest) || SegmentCheck::predicts(system_, ahead, secant))
     return Verdict::confirmed;
   const auto tangent = [&](const Demand& from, const Demand& to, const Iterate& shape) {
     return first_order_moves(system_, from, to, settler_.active, work_, team_, shape);
@@ -359,6 +359,7 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   work_.left_field = false;
   tracer_.begin(whole(way_.done), whole(next), length);
   step_.unforetold = step_.extrapolated = false;
+  step_.straight.resize(0, 3);
   const auto outcome = [&] {
     const auto briefly = settler_.newton().briefly(ends_early(length < follow_below));
     return step(way_.here, there, length, at, trial);

@@ -9,6 +9,8 @@ namespace {
 /// Of the secant, that the tangent at the begin may miss its end by for that alone to be enough; that the tangent at
 /// either end may miss the other end by, and both together, where both are known.
 constexpr double most_missed_ahead = 0.1, most_missed_at_an_end = 0.4, most_missed_together = 0.2;
+/// Segments that move no vertex farther than this share of the diagonal are not checked.
+constexpr double least_checked = 1e-3;
 /// Segments are halved so many times, with so many corrections in all.
 constexpr int most_halvings = 7, most_middle_corrections = 60;
 /// A middle may be so far from its equilibrium, over the secant.
@@ -17,6 +19,10 @@ constexpr double middle_accuracy = 1e-3;
 constexpr double rate_difference = 1e-3;
 
 }  // namespace
+
+bool SegmentCheck::is_short(const System& system, double move_mm) {
+  return move_mm <= least_checked * system.model().diagonal_mm;
+}
 
 SegmentCheck::SegmentCheck(Settler& settler, StepTracer& tracer, const Equilibria::Options& options, const Demand& from,
                            const Demand& to)
@@ -52,10 +58,9 @@ SegmentCheck::Verdict SegmentCheck::check(const SegmentEnd& low, const SegmentEn
 }
 
 SegmentCheck::Verdict SegmentCheck::check_halves(const SegmentEnd& low, const SegmentEnd& high, int depth) {
-  const double least = least_checked * system_.model().diagonal_mm;
-  const bool is_short = system_.largest_move(low.at->positions, high.at->positions) <= least &&
-                        (high.factor - low.factor) * size(low.rate) <= least;
-  if (is_short || agree(low, high)) return Verdict::confirmed;
+  const bool short_segment = is_short(system_, system_.largest_move(low.at->positions, high.at->positions)) &&
+                             is_short(system_, (high.factor - low.factor) * size(low.rate));
+  if (short_segment || agree(low, high)) return Verdict::confirmed;
   if (depth == 0 || report_.iterations - iterations_ > most_middle_corrections) return Verdict::unclear;
   Point found;
   const Verdict verdict = find_middle(low, high, found);

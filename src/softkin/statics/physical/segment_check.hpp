@@ -15,24 +15,24 @@ struct SegmentEnd {
 /// Checks whether two equilibria are the ends of one segment of a load path without a limit point in between: a step
 /// whose corrector converged may have passed one, and then ends on another branch, which may be as stable.
 ///
-/// A segment is confirmed where the tangent at its begin predicts its end, or where the tangents at both ends agree with
-/// its secant. Else the equilibrium in the middle of the shapes, not of the loads, is found across the secant (the load
-/// factor is an unknown, so it exists on an unstable branch, too): if it is unstable, or its load factor is not between
-/// those of the ends, a limit point is passed; else both halves are checked. Half of the loads would not do, since a
-/// limit load may be any fraction of what is requested, while the shapes on the way to and from a limit point are spread
-/// over the whole secant.
+/// A segment is confirmed where the tangent at its begin predicts its end, or where the tangents at both ends agree
+/// with its secant. Else the equilibrium in the middle of the shapes, not of the loads, is found across the secant (the
+/// load factor is an unknown, so it exists on an unstable branch, too): if it is unstable, or its load factor is not
+/// between those of the ends, a limit point is passed; else both halves are checked. Half of the loads would not do,
+/// since a limit load may be any fraction of what is requested, while the shapes on the way to and from a limit point
+/// are spread over the whole secant.
 ///
 /// source  Crisfield 1991, Non-linear finite element analysis of solids and structures 1, chapter 9
 class SegmentCheck : ArcLength {
  public:
-  /// Segments that move no vertex farther than this share of the diagonal are not checked.
-  static constexpr double least_checked = 1e-3;
-
   enum class Verdict { confirmed, passes_limit_point, unclear, interrupted };
 
   /// All must outlive the object.
   SegmentCheck(Settler& settler, StepTracer& tracer, const Equilibria::Options& options, const Demand& from,
                const Demand& to);
+
+  /// Is a segment that moves a vertex by so much too short to be checked?
+  [[nodiscard]] static bool is_short(const System& system, double move_mm);
 
   /// Does the tangent at the begin predict the end?
   [[nodiscard]] static bool predicts(const System& system, const Points& predicted, const Points& secant);
