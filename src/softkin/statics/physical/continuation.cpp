@@ -334,16 +334,14 @@ SegmentCheck::Verdict Continuation::check_segment(const Demand& there, double le
   return verdict;
 }
 
-/// A step that passed a limit point, or of which nothing shows that it did not, is not taken; where loads do not change
-/// it snaps.
+/// A step that passed a limit point of a load, or of which nothing shows that it did not, is not taken.
 void Continuation::check_path(const Demand& there, double length, bool changed, const Iterate& at, const Iterate& trial,
                               StepEnd& end) {
-  if (!way_.loads_change && length <= finest) return;
+  if (!way_.loads_change) return;
   const SegmentCheck::Verdict verdict = check_segment(there, length, changed, at, trial);
   if (verdict == SegmentCheck::Verdict::confirmed) return;
   end.interrupted = verdict == SegmentCheck::Verdict::interrupted;
-  end.snap = !way_.loads_change;
-  end.found = end.snap;
+  end.found = false;
   end.why = verdict == SegmentCheck::Verdict::unclear ? "the tangents at its ends do not agree"
                                                       : "the equilibrium lies beyond a limit point";
 }
