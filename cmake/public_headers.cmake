@@ -105,6 +105,7 @@ set(softkin_included_headers
     core/sheet_law.hpp
     io/table/field_samples.hpp
     io/table/settings.hpp
+    io/table/table.hpp
     io/table/way.hpp
     io/table/workspace_table.hpp
     statics/viscous_clock.hpp

@@ -16,7 +16,8 @@ class TurnMeter {
   /// start: the line that turns are measured from, of some length
   explicit TurnMeter(const Vec3& start) : start_(start) {}
 
-  /// The turn of the next line [degrees]; not finite where the line is not, and the next one is measured from the last that was
+  /// The turn of the next line [degrees]; not finite where the line is not, and the next one is measured from the last
+  /// that was.
   double next(const Vec3& line);
 
  private:
