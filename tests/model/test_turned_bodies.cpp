@@ -134,6 +134,15 @@ TEST(ProfileArc, IsFoundFromTwoChordsThatAreTangentToTheirNeighbours) {
   }
 }
 
+TEST(TurnedBodies, GroovesAreHollowWhereTheMeshDeterminesThem) {
+  for (const auto& [elements, slide] : {std::pair(3, 0.0), std::pair(4, 0.0), std::pair(6, 0.0), std::pair(3, 0.25)}) {
+    const TurnedResult groove = curve_turned(grooved_shaft(elements, 9, slide));
+    EXPECT_NEAR(groove.curved, groove.exact, 6e-3 * groove.exact) << elements;
+    EXPECT_LT(groove.straight, 0.965 * groove.exact);
+    EXPECT_EQ(groove.done.left_straight, 0u);
+  }
+}
+
 /// Three vertices across a groove may be a notch with flat walls, or half a circle.
 TEST(TurnedBodies, NothingCurvesWhereAGrooveMayBeANotch) {
   const TurnedResult groove = curve_turned(grooved_shaft(2, 9));
@@ -143,7 +152,7 @@ TEST(TurnedBodies, NothingCurvesWhereAGrooveMayBeANotch) {
   EXPECT_NEAR(std::abs(groove.done.doubtful_place[0] - 20), 2.5, 1e-9) << "in the groove's walls";
 }
 
-TEST(TurnedBodies, NoAdviceIsGivenWhereAGrooveMayBeANotch) {
+TEST(TurnedBodies, AdviceIsGivenWhereCurvingHelpsAlone) {
   const auto compiled = [](const TurnedBody& body) {
     RobotSpec spec = physical_robot(body.mesh(1));
     spec.fixed = {{{Halfspace{{1e-6, 0, 0}, {-1, 0, 0}}, {}}}};
@@ -154,7 +163,8 @@ TEST(TurnedBodies, NoAdviceIsGivenWhereAGrooveMayBeANotch) {
     return std::any_of(texts.begin(), texts.end(),
                        [&](const std::string& text) { return text.find(part) != std::string::npos; });
   };
-  const Model unknown = compiled(grooved_shaft(2, 9));
+  const Model known = compiled(grooved_shaft(4, 9)), unknown = compiled(grooved_shaft(2, 9));
+  EXPECT_TRUE(has(known.warnings, "The edges are straight where the surface through the vertices is round"));
   EXPECT_FALSE(has(unknown.warnings, "curve: true"));
   EXPECT_TRUE(has(unknown.notes, "'curve: true' would not help"));
   EXPECT_TRUE(has(unknown.notes, "too coarse to determine whether the surface is flat, full or hollow"));
