@@ -58,7 +58,7 @@ TEST(CompileCurve, VolumesAndWeightAreThoseOfTheRoundBody) {
 }
 
 TEST(CompileCurve, WarnsOfStraightEdgesAndOfNothingElse) {
-  EXPECT_TRUE(mentions(compile(round_rod(false)).warnings, "up to 5 % too small"));
+  EXPECT_TRUE(mentions(compile(round_rod(false)).warnings, "about 5 % too small"));
   RobotSpec block = physical_robot(block_mesh({6, 2, 2}, {60, 10, 10}));
   block.mesh_options.quadratic = true;
   EXPECT_FALSE(mentions(compile(block).warnings, "The edges are straight"));

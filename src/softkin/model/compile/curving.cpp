@@ -3,14 +3,16 @@
 #include <softkin/core/text.hpp>
 #include <softkin/model/compile/curving.hpp>
 #include <softkin/model/compile/parts.hpp>
+#include <softkin/model/mesh/mesh_order.hpp>
 #include <softkin/model/mesh/quadratic_elements.hpp>
-#include <softkin/model/mesh/smooth_bulges.hpp>
 
 namespace softkin {
 
 namespace {
 
 constexpr double least_loss = 0.02;      // of a section
+constexpr int slab_count = 10;           // across the robot's longest side
+constexpr double least_slab = 0.03;      // of the volume in a slab that counts
 constexpr double still_straight = 1e-3;  // a node's distance from the middle, over its edge's length
 
 /// The volume of all elements with their curved edges [mm^3].
@@ -41,23 +43,39 @@ std::vector<Region> regions_of(const RobotSpec& spec, const Mesh& mesh) {
   return regions;
 }
 
-/// Why edges were left straight.
-std::string doubt_text(const CurvedEdges& done) {
-  const Vec3& place = done.doubtful_place;
-  const std::string where =
-      "near (" + number(place[0], 4) + ", " + number(place[1], 4) + ", " + number(place[2], 4) + ") mm ";
-  return counted(done.left_straight, "edge stays", "edges stay") + " straight, because " + where +
-         (done.would_fold ? "elements are too coarse to follow the round surface without folding"
-                          : "the mesh is too coarse to determine whether the surface is flat, full or hollow");
-}
+struct Slab {
+  double volume = 0, gain = 0;
+};
 
-/// "up to 5 % too small", "up to 4 % too large", or both.
-std::string section_text(const SectionChange& change) {
-  const auto percent = [](double value) { return "up to " + decimal(100 * std::abs(value), 0) + " % too "; };
-  const bool small = change.most > least_loss, large = change.least < -least_loss;
-  if (small && large) return percent(change.most) + "small and elsewhere " + percent(change.least) + "large";
-  return small ? percent(change.most) + "small, and bend by twice that too easily"
-               : percent(change.least) + "large, and bend by twice that too little";
+/// By what share of themselves slabs across the longest side of the body grow with other positions: that of the one
+/// that changes most.
+double largest_gain(const Model& model, const Points& positions) {
+  Vec3 low = Vec3::Constant(HUGE_VAL), high = -low;
+  for (const Tetrahedron& t : model.elements.tetrahedra)
+    for (const Index v : t) {
+      low = low.cwiseMin(vertex_at(model.rest, v));
+      high = high.cwiseMax(vertex_at(model.rest, v));
+    }
+  Index axis = 0;
+  const double length = (high - low).maxCoeff(&axis);
+  std::array<Slab, slab_count> all;
+  double whole = 0;
+  for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e) {
+    double middle = 0;
+    for (const Index v : model.elements.tetrahedra[e]) middle += model.rest(v, axis) / 4;
+    Slab& slab = all[std::min<std::size_t>(slab_count - 1,
+                                           static_cast<std::size_t>((middle - low[axis]) / length * slab_count))];
+    const double volume = model.elements.tetrahedron_volumes[e];
+    slab.volume += volume;
+    slab.gain +=
+        shape_integrals(nodes_of(positions, model.elements.tetrahedra[e], model.elements.edge_nodes[e])).sum() - volume;
+    whole += volume;
+  }
+  double largest = 0;
+  for (const Slab& slab : all)
+    if (slab.volume > least_slab * whole && std::abs(slab.gain) > std::abs(largest) * slab.volume)
+      largest = slab.gain / slab.volume;
+  return largest;
 }
 
 }  // namespace
@@ -81,12 +99,8 @@ CurvedEdges curve_mesh(const RobotSpec& spec, Mesh& mesh, std::vector<std::strin
       throw InvalidInput(curve.surfaces[g].origin, std::string("no edge of the mesh's surface has both ends on this ") +
                                                        word_of(curve.surfaces[g]) +
                                                        ", within 2 % of the edge's length: check its numbers");
-  if (done.left_straight > 0)
-    notes.push_back("'curve': " + doubt_text(done) +
-                    "; take a finer mesh there, or name the surfaces ('cylinder', 'sphere' or 'file').");
   if (done.moved == 0) {
-    if (done.left_straight == 0)
-      notes.emplace_back("'curve' moved no node: the mesh's surface is flat between its creases.");
+    notes.emplace_back("'curve' moved no node: the mesh's surface is flat between its creases.");
     return done;
   }
   notes.push_back("'curve' moved " + counted(done.moved, "node") + " of edges, by up to " +
@@ -99,22 +113,18 @@ void doubt_straight_edges(Compilation& c) {
   Model& model = c.model;
   if (model.formulation != Formulation::physical || model.elements.edge_nodes.empty()) return;
   if (c.spec.mesh_options.curve || c.spec.mesh_options.curved || !has_straight_edges(c.mesh)) return;
-  const std::vector<Index> labels = labels_of(c.mesh, regions_of(c.spec, c.mesh));
-  CurveSpec smooth;
-  smooth.smooth = true;
-  const SmoothBulges found(c.mesh, labels, smooth.crease_degrees);
-  if (!(std::abs(found.change().largest()) > least_loss)) return;
-  Mesh curved = c.mesh;
-  const CurvedEdges done = curve_edges(curved, labels, smooth);
-  const MeshSections sections(c.mesh);
-  const SectionChange change = section_change(sections.volumes(c.mesh.vertices), sections.volumes(curved.vertices));
-  if (done.left_straight > 0)
-    model.notes.push_back("The edges are straight where the surface may be round, and 'curve: true' would not help: " +
-                          doubt_text(done) + "; take a finer mesh there, or one with curved edges.");
-  if (!(std::abs(change.largest()) > least_loss)) return;
+  const Points bulges =
+      smooth_bulges(c.mesh, labels_of(c.mesh, regions_of(c.spec, c.mesh)), CurveSpec{}.crease_degrees);
+  Points positions = model.rest;
+  for (const auto& [low, high, node] : edges_with_nodes(c.mesh))
+    positions.row(node) = 0.5 * (model.rest.row(low) + model.rest.row(high)) + bulges.row(node);
+  const double gain = largest_gain(model, positions);
+  if (!(std::abs(gain) > least_loss)) return;
+  const std::string share = decimal(100 * std::abs(gain), 0) + " %";
   model.warnings.push_back(
-      "The edges are straight where the surface through the vertices is round: sections of the body are " +
-      section_text(change) +
+      "The edges are straight where the surface through the vertices is round: sections of the body are about " +
+      share +
+      (gain > 0 ? " too small, and bend by twice that too easily" : " too large, and bend by twice that too little") +
       "; take 'mesh: {file: F, order: 2, curve: true}', or a mesh with curved edges (Gmsh: "
       "gmsh.model.mesh.setOrder(2)).");
 }

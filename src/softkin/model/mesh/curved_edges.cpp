@@ -4,7 +4,6 @@
 #include <softkin/model/mesh/edge_bulges.hpp>
 #include <softkin/model/mesh/given_surface.hpp>
 #include <softkin/model/mesh/mesh_order.hpp>
-#include <softkin/model/mesh/smooth_bulges.hpp>
 
 namespace softkin {
 
@@ -22,18 +21,26 @@ struct Claim {
 class Curving {
  public:
   Curving(Mesh& mesh, const std::vector<Index>& labels, const CurveSpec& spec)
-      : mesh_(mesh), spec_(spec), smooth_(mesh, labels, spec.crease_degrees), surface_(smooth_.surface()) {
+      : mesh_(mesh), spec_(spec), surface_(mesh.vertices, mesh.tetrahedra, labels, spec.crease_degrees) {
     for (const GivenSurface& given : spec.surfaces) projections_.emplace_back(given);
+    result_.taken.assign(projections_.size(), 0);
   }
 
   CurvedEdges run() {
-    curve();
-    if (spec_.smooth && projections_.empty() && smooth_.doubt_failed(mesh_.vertices)) {
-      result_ = {};
-      curve();
-      result_.would_fold = true;
+    EdgeBulges bulges(mesh_);
+    const EdgeTable nodes(mesh_);
+    result_.edges = surface_.edges();
+    for (std::size_t e = 0; e < surface_.edges(); ++e) {
+      const auto [low, high] = surface_.ends(e);
+      const double length = (mesh_.vertices.row(low) - mesh_.vertices.row(high)).norm();
+      const Vec3 bulge = bulge_of(e, length);
+      if (bulge.norm() > rounding * length)
+        bulges.aim(nodes.find(low, high), bulge, Vec3::Zero());
+      else
+        bulges.aim(nodes.find(low, high), Vec3::Zero(), plane_of(e));
     }
-    if (result_.left_straight > 0) result_.doubtful_place = smooth_.doubtful_place();
+    bulges.go(surface_);
+    bulges.tell(result_);
     return result_;
   }
 
@@ -52,34 +59,9 @@ class Curving {
   Vec3 bulge_of(std::size_t edge, double length) {
     const std::vector<SmoothSurface::Side> sides = surface_.sides(edge);
     const std::vector<Claim> claims = claims_on(edge, sides, length);
-    if (claims.empty()) return smooth_bulge_of(edge, length);
+    if (claims.empty()) return spec_.smooth ? surface_.bulge(edge) : Vec3(Vec3::Zero());
     for (const Claim& claim : claims) ++result_.taken[claim.surface];
     return projected(edge, sides, claims, length);
-  }
-
-  void curve() {
-    result_.taken.assign(projections_.size(), 0);
-    EdgeBulges bulges(mesh_);
-    const EdgeTable nodes(mesh_);
-    result_.edges = surface_.edges();
-    for (std::size_t e = 0; e < surface_.edges(); ++e) {
-      const auto [low, high] = surface_.ends(e);
-      const double length = (mesh_.vertices.row(low) - mesh_.vertices.row(high)).norm();
-      const Vec3 bulge = bulge_of(e, length);
-      if (bulge.norm() > rounding * length)
-        bulges.aim(nodes.find(low, high), bulge, Vec3::Zero());
-      else
-        bulges.aim(nodes.find(low, high), Vec3::Zero(), plane_of(e));
-    }
-    bulges.go(surface_);
-    bulges.tell(result_);
-  }
-
-  Vec3 smooth_bulge_of(std::size_t edge, double length) {
-    if (!spec_.smooth) return Vec3::Zero();
-    if (!smooth_.is_in_doubt(edge)) return smooth_.bulge(edge);
-    if (smooth_.bulge(edge).norm() > rounding * length) ++result_.left_straight;
-    return Vec3::Zero();
   }
 
   /// Of each side the first given surface that both ends lie on and that is as the side is.
@@ -122,8 +104,7 @@ class Curving {
 
   Mesh& mesh_;
   const CurveSpec& spec_;
-  SmoothBulges smooth_;
-  const SmoothSurface& surface_;
+  SmoothSurface surface_;
   std::vector<Projection> projections_;
   CurvedEdges result_;
 };
@@ -148,6 +129,17 @@ std::vector<Index> labels_of(const Mesh& mesh, const std::vector<Region>& region
 
 CurvedEdges curve_edges(Mesh& mesh, const std::vector<Index>& labels, const CurveSpec& spec) {
   return Curving(mesh, labels, spec).run();
+}
+
+Points smooth_bulges(const Mesh& mesh, const std::vector<Index>& labels, double crease_degrees) {
+  const SmoothSurface surface(mesh.vertices, mesh.tetrahedra, labels, crease_degrees);
+  const EdgeTable nodes(mesh);
+  Points bulges = Points::Zero(mesh.vertices.rows(), 3);
+  for (std::size_t e = 0; e < surface.edges(); ++e) {
+    const auto [low, high] = surface.ends(e);
+    bulges.row(nodes.find(low, high)) = surface.bulge(e).transpose();
+  }
+  return bulges;
 }
 
 double largest_bulge(const Mesh& mesh) {

@@ -13,9 +13,6 @@ struct CurvedEdges {
   double least_share = 1;             // of its way that the one held back most went
   double farthest_mm = 0;             // that a node was moved
   std::vector<std::size_t> taken;     // edges that each given surface took
-  std::size_t left_straight = 0;      // edges of parts whose smooth surface the vertices do not determine
-  Vec3 doubtful_place{0, 0, 0};       // the middle of one of their edges that may curve either way [mm]
-  bool would_fold = false;            // whether some of them stay because elements are too coarse to follow the surface
 };
 
 /// Where the tetrahedra's regions differ: a number for each tetrahedron, the same where it is in the same regions.
@@ -28,13 +25,15 @@ struct CurvedEdges {
 /// everywhere above a tenth of that with straight edges, by its Bezier coefficients; where it would not, nodes inside
 /// are moved along or, if that does not help, nodes are held back.
 ///
-/// A part of the mesh keeps straight edges where its vertices leave open whether a smooth surface is nearer to the
-/// body: those of a notch two elements wide do not determine whether its walls are flat or hollow. It keeps them, too,
-/// where more than a tenth of the nodes would be held back, or a section would be farther from the smooth body's.
-///
 /// mesh    of order 2; its edge nodes are placed anew
 /// labels  of its tetrahedra: where they differ is a surface too
 CurvedEdges curve_edges(Mesh& mesh, const std::vector<Index>& labels, const CurveSpec& spec);
+
+/// How far the nodes of the edges would be moved onto a smooth surface if nothing folded: vertices' rows [mm], 0 for
+/// all but these nodes.
+///
+/// mesh  of order 2
+[[nodiscard]] Points smooth_bulges(const Mesh& mesh, const std::vector<Index>& labels, double crease_degrees);
 
 /// The largest distance of an edge's node from the middle of its ends, over the edge's length.
 [[nodiscard]] double largest_bulge(const Mesh& mesh);

@@ -100,22 +100,6 @@ std::array<Index, 2> SmoothSurface::ends(std::size_t edge) const {
   return {half.low, half.high};
 }
 
-std::vector<Index> SmoothSurface::faces_at(std::size_t edge) const {
-  std::vector<Index> faces;
-  for (std::size_t h = edge_starts_[edge]; h < edge_starts_[edge + 1]; ++h) faces.push_back(halves_[h].id / 3);
-  return faces;
-}
-
-std::vector<SmoothSurface::Turn> SmoothSurface::turns_at(std::size_t edge) const {
-  std::vector<Turn> turns;
-  for (std::size_t h = edge_starts_[edge]; h < edge_starts_[edge + 1]; ++h)
-    for (std::size_t other = h + 1; other < edge_starts_[edge + 1]; ++other) {
-      const Index a = halves_[h].id, b = halves_[other].id;
-      turns.push_back({a / 3, b / 3, turned(a, b) * normals_[a / 3].dot(normals_[b / 3])});
-    }
-  return turns;
-}
-
 double SmoothSurface::turned(Index half, Index other) const {
   return vertex_of(half) == vertex_of(other) ? -1 : 1;  // neighbours that agree pass their edge in opposite directions
 }

@@ -29,19 +29,6 @@ class SmoothSurface {
   /// as on both sides of a thin wall; of several the largest, of none 0.
   [[nodiscard]] Vec3 inner_bulge(Index a, Index b) const;
 
-  [[nodiscard]] const std::vector<Triangle>& faces() const { return faces_; }
-  /// The unit normal of a face, outwards of the element that the face was taken from.
-  [[nodiscard]] const Vec3& face_normal(std::size_t face) const { return normals_[face]; }
-  /// The faces that meet at an edge.
-  [[nodiscard]] std::vector<Index> faces_at(std::size_t edge) const;
-  /// Two faces at an edge and the cosine of the angle by which the surface turns between them.
-  struct Turn {
-    Index face, other;
-    double cosine;
-  };
-  /// The pairs of faces at an edge.
-  [[nodiscard]] std::vector<Turn> turns_at(std::size_t edge) const;
-
   /// One sheet at an edge: the normals of its faces there and the smooth normals at the ends, by ascending ends.
   struct Side {
     Vec3 face, low, high;
