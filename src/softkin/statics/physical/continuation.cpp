@@ -300,7 +300,10 @@ SegmentCheck::Verdict Continuation::check_segment(const Demand& there, double le
                                                   const Iterate& trial) {
   using Verdict = SegmentCheck::Verdict;
   const bool has_tangent = step_.extrapolated || step_.straight.rows() > 0;  // none leads from flat sheets
-  if (step_.unforetold || !has_tangent || system_.kinked()) return Verdict::confirmed;
+  const auto& actuators = system_.model().actuators;
+  const bool has_field = std::any_of(actuators.begin(), actuators.end(),
+                                     [](const Actuator& each) { return each.as<MagneticDrive>() != nullptr; });
+  if (step_.unforetold || !has_tangent || has_field || system_.kinked()) return Verdict::confirmed;
   const Points secant = trial.positions - at.positions;
   Points ahead = step_.predicted - at.positions;
   const double farthest = std::max(system_.largest_move(at.positions, trial.positions),
