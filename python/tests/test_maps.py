@@ -96,8 +96,9 @@ def expect_outputs_of_the_map(robot: softkin.Robot, made: softkin.KinematicMap, 
         name = column.removesuffix("_ratio")
         assert shape.actuators[name].ratio == pytest.approx(float(value), abs=allowed[column])
     for name, state in shape.actuators.items():
-        for kind, load in (("pressure_kPa", state.pressure_kPa), ("tension_N", state.tension_N)):
+        for kind in ("pressure_kPa", "tension_N"):
             if f"{name}_{kind}" in answer.loads:
+                load = getattr(state, kind)
                 expected = float(answer.loads[f"{name}_{kind}"])
                 expected = max(0, expected) if kind == "tension_N" else expected  # as cables do not push
                 assert load == pytest.approx(expected, abs=allowed[f"{name}_{kind}".rsplit("_", 1)[0]])

@@ -119,7 +119,7 @@ struct Strains {
     if (strain > before) return;
     table.fail(row, table.called(name()) + " must ascend, but " + number(table.at(row, name())) + " follows " +
                         number(table.at(row - 1, name())) +
-                        ": give the loading branch of one test, or choose it by --branch");
+                        ": give the loading branch of one test, or choose it by the option 'branch'");
   }
 };
 

@@ -63,7 +63,7 @@ TensileCurve branch_of(const TensileCurve& curve, TensileBranch which) {
   if (left_out > 0)
     kept.notes.push_back(counted(left_out, "row") + " of " + std::to_string(curve.strain.size()) +
                          (left_out == 1 ? " is" : " are") +
-                         " left out: unloading, other cycles, or strains that do not ascend (--branch)");
+                         " left out: unloading, other cycles, or strains that do not ascend (option 'branch')");
   return kept;
 }
 

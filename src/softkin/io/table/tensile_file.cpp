@@ -182,11 +182,13 @@ class TensileText {
     if (seek_header()) return;
     const bool named = !layout_.strain_column.empty() || !layout_.stress_column.empty();
     throw InvalidInput(
-        {file_}, named ? "no line has columns " + quoted(layout_.strain_column, "of a strain") + " and " +
-                             quoted(layout_.stress_column, "of a stress") +
-                             ": write their names as the header of the file has them"
-                       : std::string("no line is a header with a strain (strain, stretch or elongation) and a stress "
-                                     "(stress, force or load): name them by --strain-column and --stress-column"));
+        {file_},
+        named ? "no line has columns " + quoted(layout_.strain_column, "of a strain") + " and " +
+                    quoted(layout_.stress_column, "of a stress") +
+                    ": write their names as the header of the file has them"
+              : std::string(
+                    "no line is a header with a strain (strain, stretch or elongation) and a stress "
+                    "(stress, force or load): name them by the option 'strain-column' and the option 'stress-column'"));
   }
 
   static std::string quoted(const std::string& name, const char* otherwise) {
@@ -212,7 +214,7 @@ class TensileText {
     if (found.size() > 1 && rank(found[0]) == rank(found[1]))
       refuse(header_, std::string("columns ") + excerpt(found[0].name) + " and " + excerpt(found[1].name) +
                           " may both be the " + (length ? "strain" : "stress") + ": name one by " +
-                          (length ? "--strain-column" : "--stress-column"));
+                          (length ? "the option 'strain-column'" : "the option 'stress-column'"));
     return found.front();
   }
 
@@ -258,14 +260,15 @@ class TensileText {
     const bool may_have_none = column.measure != Measure::elongation && length;
     if (!scale && !(may_have_none && given.empty() && !has_brackets(column.name)))
       refuse(header_, "column " + excerpt(column.name) + " has no unit that is known (" + known_units(column.measure) +
-                          "): give it by " + (length ? "--strain-unit" : "--stress-unit"));
+                          "): give it by " + (length ? "the option 'strain-unit'" : "the option 'stress-unit'"));
     column.scale = scale.value_or(1);
     if (column.measure == Measure::elongation && !(layout_.length_mm > 0))
-      refuse(header_, "column " + excerpt(column.name) + " is an elongation: give the specimen's length by --length");
+      refuse(header_,
+             "column " + excerpt(column.name) + " is an elongation: give the specimen's length by the option 'length'");
     if (column.measure == Measure::force && !(layout_.area_mm2 > 0))
       refuse(header_, "column " + excerpt(column.name) +
                           " is a force: give the area of the specimen's cross-section by "
-                          "--area");
+                          "the option 'area'");
     if (column.measure == Measure::elongation) column.scale /= layout_.length_mm;
     if (column.measure == Measure::force) column.scale /= layout_.area_mm2;
   }
@@ -303,7 +306,7 @@ class TensileText {
       if (!(e > -1)) refuse(line, "column " + excerpt(strain.name) + " is a strain of -100 % or less");
       if (e > max_machine_strain)
         refuse(line, "column " + excerpt(strain.name) + " is " + number(100 * e) +
-                         " %, more than 2500 %: is it in percent? Then give --strain-unit %");
+                         " %, more than 2500 %: is it in percent? Then give the option 'strain-unit' as %");
       curve.strain.push_back(e);
       curve.stress.push_back(stress.measure == Measure::true_stress ? force / (1 + e) : force);
       curve.lines.push_back(line + 1);
