@@ -293,6 +293,13 @@ Continuation::StepEnd Continuation::judge(Newton::Outcome outcome, const Demand&
   return end;
 }
 
+/// Has the path no corners, and can its tangents be compared? In a field a robot may turn freely.
+bool Continuation::is_smooth() const {
+  const auto& actuators = system_.model().actuators;
+  return !system_.kinked() && std::none_of(actuators.begin(), actuators.end(),
+                                           [](const Actuator& each) { return each.as<MagneticDrive>() != nullptr; });
+}
+
 /// Is there a limit point between a step's begin and its end?
 ///
 /// changed  do cables that were held slacken, or others pull
@@ -300,10 +307,7 @@ SegmentCheck::Verdict Continuation::check_segment(const Demand& there, double le
                                                   const Iterate& trial) {
   using Verdict = SegmentCheck::Verdict;
   const bool has_tangent = step_.extrapolated || step_.straight.rows() > 0;  // none leads from flat sheets
-  const auto& actuators = system_.model().actuators;
-  const bool has_field = std::any_of(actuators.begin(), actuators.end(),
-                                     [](const Actuator& each) { return each.as<MagneticDrive>() != nullptr; });
-  if (step_.unforetold || !has_tangent || has_field || system_.kinked()) return Verdict::confirmed;
+  if (step_.unforetold || !has_tangent || !is_smooth()) return Verdict::confirmed;
   const Points secant = trial.positions - at.positions;
   Points ahead = step_.predicted - at.positions;
   const double farthest = std::max(system_.largest_move(at.positions, trial.positions),

@@ -135,6 +135,7 @@ class Continuation {
   std::optional<Status> shorten(double length, Iterate& at);
   [[nodiscard]] double shortest_advance() const;
   [[nodiscard]] bool ends_early(bool short_step) const;
+  [[nodiscard]] bool is_smooth() const;
   [[nodiscard]] bool jerky() const { return system_.contact() || way_.releases; }
 
   // the end

@@ -78,7 +78,7 @@ ArcLength::End Continuation::follow_curve(Iterate& at) {
   const Judgement last = settler_.last;
   const ArcLength::End end = curve.follow(at);
   way_.factorised = false;
-  if (end != ArcLength::End::interrupted && curve.done() > way_.done && !curve.jump()) {
+  if (end != ArcLength::End::interrupted && curve.done() > way_.done && !curve.jump() && is_smooth()) {
     const SegmentCheck::Verdict verdict = check_curve(before, last.modes, at, curve.done());
     if (verdict == SegmentCheck::Verdict::interrupted) return ArcLength::End::interrupted;
     if (verdict == SegmentCheck::Verdict::passes_limit_point) {
