@@ -141,8 +141,8 @@ TEST(TensileFile, RefusesWhatIsNotClear) {
   refuses("a;b\n" + rows, "no line is a header with a strain");
   refuses("Strain;Stress\n" + rows, "has no unit that is known");
   refuses("Strain (furlong);Stress (MPa)\n" + rows, "the option 'strain-unit'");
-  refuses("Extension (mm);Stress (MPa)\n" + rows, "--length");
-  refuses("Strain;Load (N)\n" + rows, "--area");
+  refuses("Extension (mm);Stress (MPa)\n" + rows, "the option 'length'");
+  refuses("Strain;Load (N)\n" + rows, "the option 'area'");
   refuses("Strain 1;Strain 2;Stress (MPa)\n0;0;0\n", "name one by the option 'strain-column'");
   refuses("Strain;Stress (MPa)\n0;0\n.1;x\n", "test.csv:3: column 'Stress (MPa)' must hold a finite number, not 'x'");
   refuses("Strain;Stress (MPa)\n0;0\n.1;1\n", "at least five rows");
