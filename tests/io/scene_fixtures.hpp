@@ -28,6 +28,12 @@ inline softkin::SceneFiles fake_files() {
   files.surface = [](const fs::path& path) {
     if (path.extension() != ".stl") throw InvalidInput({path.string(), 7}, "no facet");
     TriangleSurface surface;
+    if (path.filename() == "closed.stl") {  // the corner of a cube
+      surface.vertices.resize(4, 3);
+      surface.vertices << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1;
+      surface.triangles = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {0, 3, 2}};
+      return surface;
+    }
     surface.vertices.resize(3, 3);
     surface.vertices << 0, 0, 0, 1, 0, 0, 0, 0.5, 0;
     surface.triangles = {{0, 1, 2}};

@@ -6,6 +6,7 @@
 #include <softkin/io/file.hpp>
 #include <softkin/model/families.hpp>
 #include <softkin/model/layer.hpp>
+#include <softkin/model/mesh/surface_tree.hpp>
 
 #include "scene_fixtures.hpp"
 #include "support/patience.hpp"
@@ -118,6 +119,41 @@ TEST(Scene, WholeSceneChambersAndSkins) {
   expect_near(bag.as<PneumaticSpec>()->surface->vertices.row(1).transpose(), 1000, 0, 0);
   EXPECT_EQ(bag.as<PneumaticSpec>()->surface->triangles.size(), 1u);
   EXPECT_EQ(bag.origin.text(), "robots/finger.yaml:37");
+}
+
+TEST(Scene, SurfacesAreMovedAndThenRotatedAndVoidsAreNamedByAPoint) {
+  const auto chamber = [](const std::string& keys) {
+    return *parse("softkin: 1\nunits: {length: cm}\nmesh: {file: a.msh}\nactuators: [{name: a, kind: pneumatic, " +
+                  keys + ", range: [1, 2]}]\n")
+                .actuators[0]
+                .as<PneumaticSpec>();
+  };
+  const std::string turn = "rotate: {axis: [0, 0, 1], degrees: 90}";
+  const auto corner = [&](const std::string& surface) {
+    return Vec3(chamber("surface: " + surface).surface->vertices.row(1).transpose());
+  };
+  expect_near(corner("{file: c.stl, move: [1, 0, 0]}"), 20, 0, 0);
+  expect_near(corner("{file: c.stl, move: [1, 0, 0], " + turn + "}"), 0, 20, 0);
+  expect_near(corner("{file: c.stl, unit: mm, move: [1, 0, 0]}"), 11, 0, 0);
+  expect_near(corner("{file: c.stl, rotate: {axis: [0, 0, 1], degrees: 180, about: [1, 1, 0]}}"), 10, 20, 0);
+  const PneumaticSpec at = chamber("void_at: [1, 2, 3]");
+  ASSERT_TRUE(at.void_at);
+  expect_near(*at.void_at, 10, 20, 30);
+  EXPECT_FALSE(at.surface || at.region || at.wall);
+}
+
+TEST(Scene, ARegionLiesInsideAClosedSurface) {
+  const RobotSpec spec = parse_body(
+      "regions:\n  - {name: a, inside: closed.stl}\n"
+      "  - {name: b, inside: {file: closed.stl, unit: mm, move: [0, 0, 1]}}\n");
+  ASSERT_EQ(spec.regions.size(), 2u);
+  const auto contains = [&](int i, const Vec3& point) {
+    return std::get<InsideSurface>(spec.regions[i].selector).surface->contains(point);
+  };
+  EXPECT_TRUE(contains(0, {0.2, 0.2, 0.2}));
+  EXPECT_FALSE(contains(0, {0.4, 0.4, 0.4}));
+  EXPECT_TRUE(contains(1, {0.2, 0.2, 1.2}));
+  EXPECT_FALSE(contains(1, {0.2, 0.2, 0.2}));
 }
 
 TEST(Scene, CavitiesAndErrorsOfTheMesh) {

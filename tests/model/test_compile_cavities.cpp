@@ -83,6 +83,41 @@ TEST(Cavity, ASurfaceSelectsTheFacesOfItsSpace) {
   }
 }
 
+/// The point may lie anywhere in the space, of one body or of one among several robots.
+TEST(Cavity, APointSelectsTheSpaceInWhichItLies) {
+  RobotSpec two = physical_robot(block_mesh({5, 3, 3}, {50, 30, 30}));
+  two.voids = {shaped(Box{{10, 10, 10}, {20, 20, 20}}), shaped(Box{{30, 10, 10}, {40, 20, 20}})};
+  for (const double x : {10.5, 15.0, 30.5, 39.5}) {
+    two.actuators = {bag_of({})};
+    two.actuators[0].as<PneumaticSpec>()->void_at = Vec3(x, 12, 19);
+    RobotSpec surface = two;
+    surface.actuators = {bag_of(box_surface({x < 25 ? 10.0 : 30.0, 10, 10}, {10, 10, 10}))};
+    const Model model = compile(two);
+    EXPECT_EQ(faces_of(model.actuators[0]), faces_of(compile(surface).actuators[0])) << x;
+    EXPECT_NEAR(model.actuators[0].rest_measure, 1000, 1e-9);
+    EXPECT_TRUE(has_note(model, "Actuator 'air' is the empty space of 1000 mm^3 (12 faces) around "));
+  }
+  for (const Vec3& outside : {Vec3(25, 15, 15), Vec3(-100, 0, 0), Vec3(5, 5, 5)}) {
+    two.actuators[0].as<PneumaticSpec>()->void_at = outside;
+    EXPECT_NE(refusal(two).find("lies in no empty space of the body: of 2 empty spaces the nearest, 1000 mm^3"),
+              std::string::npos)
+        << refusal(two);
+  }
+  two.voids.clear();
+  EXPECT_NE(refusal(two).find("the body encloses no empty space"), std::string::npos);
+}
+
+/// A surface of like volume that lies 2 mm off is cut by the elements, and the reason is reported with both distances.
+TEST(Cavity, ASurfaceFarFromItsSpaceIsCutAndTheReasonIsReported) {
+  const TriangleSurface off = cut(box_surface({9, 9, 9}, {10.4, 10.4, 10.4}), 2);
+  const Model model = compile(hollow_robot(off));
+  EXPECT_FALSE(model.actuators[0].as<ChamberDrive>()->surface.empty());
+  EXPECT_TRUE(has_note(model,
+                       "The surface of actuator 'air' lies up to 1.73 mm from the faces of the empty space of "
+                       "1000 mm^3 (12 faces) around (15, 15, 15) mm, more than the 1.5 mm"));
+  EXPECT_TRUE(has_note(model, "take 'void_at' with a point of that space"));
+}
+
 TEST(Cavity, TheOnlySpaceIsFound) {
   const Model model = compile(hollow_robot({}));
   EXPECT_EQ(model.actuators[0].as<ChamberDrive>()->cavity.size(), 12u);

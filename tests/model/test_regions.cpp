@@ -2,6 +2,7 @@
 
 #include <softkin/model/compile/embedding.hpp>
 #include <softkin/model/compile/regions.hpp>
+#include <softkin/model/mesh/surface_tree.hpp>
 
 #include "model/compile_testing.hpp"
 
@@ -60,6 +61,18 @@ TEST(Regions, RoundShapesAndHalfspaces) {
   const Region side = chosen(block(), Halfspace{{30, 0, 0}, {2, 0, 0}});
   EXPECT_EQ(side.vertices.size(), 18u);
   EXPECT_EQ(side.tetrahedra.size(), 24u);
+}
+
+/// As the shape of which the surface is: a box with faces through vertices, and one aslant to all of them.
+TEST(Regions, InsideOfASurfaceChoosesAsItsShapeDoes) {
+  for (const auto& [low, size] :
+       {std::pair(Vec3(0, 0, 0), Vec3(20, 20, 20)), std::pair(Vec3(3, 2, 1), Vec3(30, 11, 12))}) {
+    const TriangleSurface surface = box_surface(low, size);
+    const auto inside = std::make_shared<const SurfaceTree>(surface.vertices, surface.triangles);
+    const Region expected = chosen(block(), Box{low, low + size}), found = chosen(block(), InsideSurface{inside});
+    EXPECT_EQ(found.vertices, expected.vertices);
+    EXPECT_EQ(found.tetrahedra, expected.tetrahedra);
+  }
 }
 
 TEST(Regions, ListsOfVerticesAndElements) {

@@ -55,6 +55,7 @@ struct PneumaticSpec {
   std::optional<std::string> region{};       // of volume: its elements
   std::optional<TriangleSurface> surface{};  // around it [mm]
   std::optional<std::string> wall{};         // region of faces around it
+  std::optional<Vec3> void_at{};             // physical: a point in the empty space of the body that it is [mm]
   std::vector<std::string> connected{};      // physical: two regions or more, of elements or of faces: chambers that
                                              // share what fills them
   std::optional<FillingSpec> filling{};      // of control filling

@@ -284,6 +284,7 @@ class Joiner {
       if (*region) *region = full(**region);
     for (std::string& region : chamber.connected) region = full(region);
     if (chamber.surface) place(chamber.surface->vertices);
+    if (chamber.void_at) chamber.void_at = placed_.place(*chamber.void_at);
   }
   void fill(CableSpec& cable) const {
     for (auto* points : {&cable.points, &cable.apexes})

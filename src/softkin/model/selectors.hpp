@@ -1,11 +1,14 @@
 #pragma once
 
+#include <memory>
 #include <softkin/core/error.hpp>
 #include <softkin/model/mesh/mesh.hpp>
 #include <softkin/model/shapes.hpp>
 #include <variant>
 
 namespace softkin {
+
+class SurfaceTree;  // mesh/surface_tree.hpp
 
 // Selectors choose vertices (inside or on the boundary) and elements (centroid inside); shapes are in mm.
 struct VertexList {
@@ -14,12 +17,17 @@ struct VertexList {
 struct ElementList {              // of the mesh
   std::vector<Index> tetrahedra;  // from 0
 };
+/// What lies inside a closed surface.
+struct InsideSurface {
+  std::shared_ptr<const SurfaceTree> surface;  // [mm]
+};
 /// What a selector chose of a robot before joined() placed it among others.
 struct Chosen {
   std::string kind;  // for messages: "box of robot 'left'"
   Region region;     // what was chosen, in the numbers of the robot's own mesh
 };
-using Selector = std::variant<Box, Sphere, Cylinder, Halfspace, VertexList, ElementList, Chosen>;  // how to choose
+using Selector =
+    std::variant<Box, Sphere, Cylinder, Halfspace, InsideSurface, VertexList, ElementList, Chosen>;  // how to choose
 
 /// A region by name, or a shape in its place.
 struct RegionRef {

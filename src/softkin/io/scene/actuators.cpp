@@ -19,9 +19,9 @@ struct Kind {
 };
 
 const Keys common_keys{"name", "kind", "control", "range", "weight", "distribution"};
-const Keys kind_keys{"region",   "surface",    "connected",    "source",        "liquid", "points",   "apexes",
-                     "spacing",  "prestretch", "curve",        "voltage_share", "factor", "backlash", "offset",
-                     "friction", "sheath",     "keeps_volume", "temperature",   "also"};
+const Keys kind_keys{"region", "surface",  "connected",  "void_at",      "source",        "liquid", "points",
+                     "apexes", "spacing",  "prestretch", "curve",        "voltage_share", "factor", "backlash",
+                     "offset", "friction", "sheath",     "keeps_volume", "temperature",   "also"};
 
 Keys all_kind_keys() {
   Keys all = kind_keys;
@@ -41,7 +41,7 @@ const std::vector<Kind>& kinds() {
   static const std::vector<Kind> all{
       kind<ChamberDrive>(
           PneumaticSpec{},
-          {"region", "surface", "connected", "source", "liquid", "curve", "factor", "offset", "backlash"},
+          {"region", "surface", "connected", "void_at", "source", "liquid", "curve", "factor", "offset", "backlash"},
           {"gas", "liquid"}),
       kind<CableDrive>(CableSpec{},
                        {"points", "apexes", "spacing", "factor", "offset", "backlash", "friction", "sheath"}),
@@ -141,21 +141,21 @@ void read_filling(const Map& map, ActuatorSpec& actuator) {
                       "'control: liquid'");
 }
 
-/// A file, a map of file and unit, or a map with the region of the wall's faces.
-void read_surface(const Context& context, const Node& node, PneumaticSpec& chamber) {
-  if (node.kind != Node::Kind::map) {
-    chamber.surface = read_surface_file(context, node, nullptr);
-    return;
+/// Reads a file, a map that names a file, or a map with the region of the wall's faces.
+void read_wall(const Context& context, const Node& node, PneumaticSpec& chamber) {
+  if (node.kind == Node::Kind::map) {
+    Keys known = surface_keys();
+    known.emplace_back("region");
+    const Map map(node, known);
+    const Node::Entry& entry = map.one_of({"file", "region"});
+    if (entry.key == "region") {
+      for (const std::string key : {"unit", "move", "rotate"})
+        if (const Node* other = map.find(key)) fail(*other, "'" + key + "' is that of a file; a region has the mesh's");
+      chamber.wall = text(*entry.value);
+      return;
+    }
   }
-  const Map map(node, {"file", "unit", "region"});
-  const Node::Entry& entry = map.one_of({"file", "region"});
-  const Node* unit = map.find("unit");
-  if (entry.key == "region") {
-    if (unit) fail(*unit, "'unit' is that of a file; a region has the mesh's");
-    chamber.wall = text(*entry.value);
-  } else {
-    chamber.surface = read_surface_file(context, *entry.value, unit);
-  }
+  chamber.surface = read_surface(context, node);
 }
 
 /// None of them: the only empty space in the body.
@@ -163,14 +163,16 @@ void read_chamber(const Context& context, const Map& map, PneumaticSpec& chamber
   const Node* region = map.find("region");
   const Node* surface = map.find("surface");
   const Node* connected = map.find("connected");
-  if ((region || connected) && surface) (void)map.one_of({"region", "surface", "connected"});  // fails, naming both
-  if (region && connected) (void)map.one_of({"region", "connected"});
+  const Node* place = map.find("void_at");
+  if ((region != nullptr) + (surface != nullptr) + (connected != nullptr) + (place != nullptr) > 1)
+    (void)map.one_of({"region", "surface", "connected", "void_at"});  // fails and names them
   if (connected) {
     for (const auto& item : list(*connected)) chamber.connected.push_back(text(*item));
     if (chamber.connected.size() < 2) fail(*connected, connected->name + " must hold at least 2 regions");
   }
   if (region) chamber.region = text(*region);
-  if (surface) read_surface(context, *surface, chamber);
+  if (surface) read_wall(context, *surface, chamber);
+  if (place) chamber.void_at = read_position(context, *place);
 }
 
 void read_cable(const Context& context, const Map& map, CableSpec& cable) {
@@ -289,6 +291,24 @@ TriangleSurface read_surface_file(const Context& context, const Node& file, cons
   const double to_mm = unit ? mm_per(length_units()[choice(*unit, length_units())]) : context.to_mm;
   TriangleSurface surface = load_file(context, file, context.files.surface);
   surface.vertices *= to_mm;
+  if (!surface.vertices.allFinite()) fail(file, "the surface's coordinates are too large");
+  return surface;
+}
+
+const Keys& surface_keys() {
+  static const Keys keys{"file", "unit", "move", "rotate"};
+  return keys;
+}
+
+TriangleSurface read_surface(const Context& context, const Node& node) {
+  if (node.kind != Node::Kind::map) return read_surface_file(context, node, nullptr);
+  const Map map(node, surface_keys());
+  return read_moved_surface(context, map.at("file"), map);
+}
+
+TriangleSurface read_moved_surface(const Context& context, const Node& file, const Map& map) {
+  TriangleSurface surface = read_surface_file(context, file, map.find("unit"));
+  move_and_rotate(context, map, surface.vertices);
   if (!surface.vertices.allFinite()) fail(file, "the surface's coordinates are too large");
   return surface;
 }

@@ -9,20 +9,13 @@ Capsule read_capsule(const Context& context, const Node& node) {
   return {start, end, radius};
 }
 
-/// A file, or a map of file and unit.
-TriangleSurface read_obstacle_surface(const Context& context, const Node& node) {
-  if (node.kind != Node::Kind::map) return read_surface_file(context, node, nullptr);
-  const Map map(node, {"file", "unit"});
-  return read_surface_file(context, map.at("file"), map.find("unit"));
-}
-
 ObstacleShape read_shape(const Context& context, const std::string& key, const Node& node) {
   if (key == "box") return read_box(context, node);
   if (key == "sphere") return read_sphere(context, node);
   if (key == "cylinder") return read_cylinder(context, node);
   if (key == "capsule") return read_capsule(context, node);
   if (key == "halfspace") return read_halfspace(context, node);
-  return read_obstacle_surface(context, node);
+  return read_surface(context, node);
 }
 
 /// "x", "y" and "z".

@@ -14,13 +14,14 @@ void read_crease(const Node& node, CurveSpec& curve) {
 }
 
 void read_curve_surface(const Context& context, const Node& node, CurveSpec& curve) {
-  const Map map(node, {"crease", "file", "unit", "cylinder", "sphere"});
+  const Map map(node, {"crease", "file", "unit", "move", "rotate", "cylinder", "sphere"});
   const Node::Entry& found = map.one_of({"crease", "file", "cylinder", "sphere"});
-  if (map.find("unit") && found.key != "file") fail(*map.find("unit"), "'unit' is that of a 'file' alone");
+  for (const std::string key : {"unit", "move", "rotate"})
+    if (map.find(key) && found.key != "file") fail(*map.find(key), "'" + key + "' is that of a 'file' alone");
   if (found.key == "crease") return read_crease(*found.value, curve);
   GivenSurface surface{Sphere{}, found.origin};
   if (found.key == "file")
-    surface.shape = read_surface_file(context, *found.value, map.find("unit"));
+    surface.shape = read_moved_surface(context, *found.value, map);
   else if (found.key == "cylinder")
     surface.shape = read_cylinder(context, *found.value);
   else

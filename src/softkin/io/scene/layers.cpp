@@ -76,7 +76,8 @@ std::shared_ptr<const LayerSpec> read_layer(const Context& context, const Node& 
   if (where.key == "region")
     layer->where = read_region_name(*where.value);
   else
-    layer->where = read_surface_file(context, *where.value, map.find("unit"));
+    layer->where = where.value->kind == Node::Kind::map ? read_surface(context, *where.value)
+                                                        : read_surface_file(context, *where.value, map.find("unit"));
   layer->thickness_mm = read_positive_length(context, map.at("thickness"));
   read_stiffness(map, *layer);
   if (const Node* direction = map.find("direction")) {

@@ -32,8 +32,7 @@ MeshFile read_file_of(const Context& context, const Map& map) {
   Points& vertices = read.mesh.vertices;
   vertices *= context.to_mm;
   if (const Node* scale = map.find("scale")) vertices *= positive(*scale);
-  if (const Node* move = map.find("move")) vertices.rowwise() += read_position(context, *move).transpose();
-  if (const Node* turn = map.find("rotate")) rotate(context, *turn, vertices);
+  move_and_rotate(context, map, vertices);
   if (!vertices.allFinite()) fail(file, "the mesh's coordinates are too large");
   if (order && !read.quadratic && !read.mesh.edge_nodes.empty())
     fail(*order, "'order' is 1, but the tetrahedra of the mesh are of order 2");
@@ -72,6 +71,11 @@ void add_curve(std::optional<CurveSpec>& all, std::optional<CurveSpec>& next) {
 }
 
 }  // namespace
+
+void move_and_rotate(const Context& context, const Map& map, Points& vertices) {
+  if (const Node* move = map.find("move")) vertices.rowwise() += read_position(context, *move).transpose();
+  if (const Node* turn = map.find("rotate")) rotate(context, *turn, vertices);
+}
 
 void read_mesh_of(const Context& context, const Map& scene, RobotSpec& spec) {
   const Node* several = scene.find("meshes");

@@ -55,6 +55,14 @@ auto load_file(const Context& context, const Node& node, const Load& load) {
 ///
 /// unit  its key; nullptr: the scene's
 [[nodiscard]] TriangleSurface read_surface_file(const Context& context, const Node& file, const Node* unit);
+/// Keys of a map that names a surface's file.
+[[nodiscard]] const Keys& surface_keys();
+/// Reads a surface from a file that is named alone, or in a map of surface_keys() that moves and rotates it.
+[[nodiscard]] TriangleSurface read_surface(const Context& context, const Node& node);
+/// The same of a file whose `unit`, `move` and `rotate` stand in a map with other keys.
+[[nodiscard]] TriangleSurface read_moved_surface(const Context& context, const Node& file, const Map& map);
+/// Moves vertices by the key `move` of a map, then rotates them by its key `rotate`; each may be missing.
+void move_and_rotate(const Context& context, const Map& map, Points& vertices);
 [[nodiscard]] PointRef read_point(const Context& context, const Node& node);
 /// Keys that say where something is: a region's name, or a shape in its place.
 [[nodiscard]] const Keys& place_keys();

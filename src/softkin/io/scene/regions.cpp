@@ -3,6 +3,8 @@
 #include <cmath>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/scene/parts.hpp>
+#include <softkin/model/mesh/shells.hpp>
+#include <softkin/model/mesh/surface_tree.hpp>
 
 namespace softkin::scene {
 
@@ -52,11 +54,23 @@ Selector read_sidecar_column(const Context& context, const Node& node) {
   return VertexList{chosen};
 }
 
+/// Reads a closed surface.
+InsideSurface read_inside(const Context& context, const Node& node) {
+  TriangleSurface surface = read_surface(context, node);
+  try {
+    surface.triangles = turned_outwards(surface.vertices, std::move(surface.triangles));
+  } catch (const InvalidInput& error) {
+    fail(node, node.name + " needs a closed surface: " + error.what());
+  }
+  return {std::make_shared<const SurfaceTree>(surface.vertices, surface.triangles)};
+}
+
 Selector read_selector(const Context& context, const std::string& key, const Node& node) {
   if (key == "box") return read_box(context, node);
   if (key == "sphere") return read_sphere(context, node);
   if (key == "cylinder") return read_cylinder(context, node);
   if (key == "halfspace") return read_halfspace(context, node);
+  if (key == "inside") return read_inside(context, node);
   if (key == "vertices") return VertexList{read_indices(node, context.vertices, "vertices")};
   if (key == "elements") return ElementList{read_indices(node, context.tetrahedra, "tetrahedra")};
   return read_sidecar_column(context, node);
@@ -150,7 +164,7 @@ RegionRef read_place(const Context& context, const Map& map) {
 }
 
 std::vector<RegionSpec> read_regions(const Context& context, const Node& node) {
-  const Keys shapes{"box", "sphere", "cylinder", "halfspace", "vertices", "elements", "sidecar"};
+  const Keys shapes{"box", "sphere", "cylinder", "halfspace", "inside", "vertices", "elements", "sidecar"};
   Keys known = shapes;
   known.insert(known.begin(), "name");
   std::vector<RegionSpec> regions;

@@ -89,10 +89,14 @@ struct CheckedDrive {
     check_curve(spec, CurveInput::pressure, "pressure", "volume", "voltages");
     check_connected(spec, chamber.connected, formulation);
     const int given = chamber.region.has_value() + chamber.surface.has_value() + chamber.wall.has_value() +
-                      !chamber.connected.empty();
+                      chamber.void_at.has_value() + !chamber.connected.empty();
     if (given > 1)
-      refuse(spec, chamber.connected.empty() ? "needs a region or a surface, one of the two"
-                                             : "needs a region, a surface or connected chambers, one of them");
+      refuse(spec, chamber.connected.empty() && !chamber.void_at
+                       ? "needs a region or a surface, one of the two"
+                       : "needs a region, a surface, a point of an empty space or connected chambers, one of them");
+    if (chamber.void_at && formulation != Formulation::physical)
+      refuse(spec, "names an empty space: the target-shape formulation needs the chamber meshed and named as `region`");
+    if (chamber.void_at && !chamber.void_at->allFinite()) refuse(spec, "has a point `void_at` that is not finite");
     if (given == 0 && formulation != Formulation::physical)
       refuse(spec, "needs a region or a surface: the target-shape formulation needs the chamber meshed");
   }

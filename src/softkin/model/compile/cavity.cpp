@@ -4,6 +4,7 @@
 #include <softkin/model/compile/layers.hpp>
 #include <softkin/model/compile/parts.hpp>
 #include <softkin/model/mesh/boundary.hpp>
+#include <softkin/model/mesh/surface_tree.hpp>
 
 namespace softkin {
 
@@ -74,6 +75,32 @@ void take_only_space(Compilation& c, const ActuatorSpec& spec, Actuator& actuato
   take_empty_space(c, spec, numbers[0], actuator);
   c.model.notes.push_back("Actuator '" + spec.name + "' is the only empty space in " + body + ", " +
                           text_of(spaces[0]) + ".");
+}
+
+/// "No empty space of the body", or how far the nearest one is.
+std::string spaces_text(const Compilation& c, const std::vector<EmptySpace>& spaces, const Vec3& point) {
+  if (spaces.empty()) return "the body encloses no empty space";
+  std::size_t nearest = 0;
+  double least = HUGE_VAL;
+  for (std::size_t i = 0; i < spaces.size(); ++i)
+    if (const double away = SurfaceTree(c.model.rest, spaces[i].triangles).distance(point); away < least) {
+      least = away;
+      nearest = i;
+    }
+  return "of " + counted(spaces.size(), "empty space") + " the nearest, " + text_of(spaces[nearest]) + ", begins " +
+         number(least, 3) + " mm from there";
+}
+
+void take_space_at(Compilation& c, const ActuatorSpec& spec, const Vec3& point, Actuator& actuator) {
+  const std::vector<EmptySpace>& spaces = empty_spaces(c);
+  for (std::size_t i = 0; i < spaces.size(); ++i) {
+    if (!spaces[i].bounds.contains(point) || !SurfaceTree(c.model.rest, spaces[i].triangles).contains(point)) continue;
+    take_empty_space(c, spec, i, actuator);
+    c.model.notes.push_back("Actuator '" + spec.name + "' is the empty space of " + text_of(spaces[i]) + ".");
+    return;
+  }
+  refuse(spec, "has a point `void_at`, " + point_text(point) + " mm, that lies in no empty space of the body: " +
+                   spaces_text(c, spaces, point) + "; give a point inside the cavity");
 }
 
 std::array<Index, 3> sorted(Triangle corners) {
@@ -220,6 +247,7 @@ void take_empty_space(Compilation& c, const ActuatorSpec& spec, std::size_t spac
 void compile_cavity(Compilation& c, const ActuatorSpec& spec, const PneumaticSpec& given,
                     const std::vector<Index>& elements, Actuator& actuator) {
   if (given.surface) return select_cavity(c, spec, *given.surface, actuator);
+  if (given.void_at) return take_space_at(c, spec, *given.void_at, actuator);
   if (!given.region && !given.wall) return take_only_space(c, spec, actuator);
   auto& chamber = std::get<ChamberDrive>(actuator.drive);
   std::vector<CavityFace> closing;

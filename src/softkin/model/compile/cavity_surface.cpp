@@ -79,9 +79,11 @@ double distance(const Points& vertices, const std::vector<Triangle>& triangles, 
 struct Match {
   std::size_t space = 0;
   double distance = 0;  // [mm]
+  double most = 0;      // that it may be [mm]
+  [[nodiscard]] bool is_near() const { return distance <= most; }
 };
 
-/// The empty space that a shell of the surface bounds, if any.
+/// The empty space that a shell of the surface bounds, or the nearest one of a like volume; none where there is none.
 std::optional<Match> matching_space(Compilation& c, const TriangleSurface& surface, const Shell& shell) {
   const std::vector<EmptySpace>& spaces = empty_spaces(c);
   const std::vector<Triangle> triangles = triangles_of(surface, shell);
@@ -94,21 +96,36 @@ std::optional<Match> matching_space(Compilation& c, const TriangleSurface& surfa
     const double size = 6 * space.volume / area_of(c.model.rest, space.triangles);
     const double apart = std::max(distance(surface.vertices, triangles, SurfaceTree(c.model.rest, space.triangles)),
                                   distance(c.model.rest, space.triangles, SurfaceTree(surface.vertices, triangles)));
-    if (apart > std::min(most_apart * edge, most_aside * size)) continue;
-    if (!best || apart < best->distance) best = {i, apart};
+    const Match match{i, apart, std::min(most_apart * edge, most_aside * size)};
+    if (!best || std::pair(!match.is_near(), apart) < std::pair(!best->is_near(), best->distance)) best = match;
   }
   return best;
 }
 
 /// The spaces that the surface's shells bound; nothing where one of them bounds none.
-std::vector<Match> matching_spaces(Compilation& c, const TriangleSurface& surface, const std::vector<Shell>& shells) {
+///
+/// too_far  the spaces that shells would bound if they lay nearer
+std::vector<Match> matching_spaces(Compilation& c, const TriangleSurface& surface, const std::vector<Shell>& shells,
+                                   std::vector<Match>& too_far) {
   std::vector<Match> matches;
+  bool all = true;
   for (const Shell& shell : shells) {
     const auto match = matching_space(c, surface, shell);
-    if (!match) return {};
-    matches.push_back(*match);
+    all = all && match && match->is_near();
+    if (match) (match->is_near() ? matches : too_far).push_back(*match);
   }
-  return matches;
+  return all ? matches : std::vector<Match>{};
+}
+
+/// Reports why a surface is cut by the elements although the body has an empty space like it.
+void note_distance(Compilation& c, const ActuatorSpec& spec, const Match& match) {
+  const EmptySpace& space = empty_spaces(c)[match.space];
+  c.model.notes.push_back("The surface of actuator '" + spec.name + "' lies up to " + number(match.distance, 3) +
+                          " mm from the faces of the empty space of " + softkin::text_of(space) + ", more than the " +
+                          number(match.most, 3) +
+                          " mm (a quarter of an edge, at most 0.15 of the space's width) within which it bounds that "
+                          "space. So it is cut at every element, which takes long: take 'void_at' with a point of "
+                          "that space, such as its centre, or a surface that follows its faces.");
 }
 
 void check_size(const Compilation& c, const ActuatorSpec& spec, const TriangleSurface& surface) {
@@ -210,7 +227,8 @@ void select_cavity(Compilation& c, const ActuatorSpec& spec, const TriangleSurfa
   TriangleSurface surface = checked_surface(spec, given);
   check_size(c, spec, given);
   const std::vector<Shell> shells = shells_of(surface.vertices, surface.triangles);
-  const std::vector<Match> matches = matching_spaces(c, surface, shells);
+  std::vector<Match> too_far;
+  const std::vector<Match> matches = matching_spaces(c, surface, shells, too_far);
   for (const Match& match : matches) {
     take_empty_space(c, spec, match.space, actuator);
     c.model.notes.push_back("The surface of actuator '" + spec.name + "' bounds the empty space of " +
@@ -219,6 +237,7 @@ void select_cavity(Compilation& c, const ActuatorSpec& spec, const TriangleSurfa
                             " mm from them.");
   }
   if (!matches.empty()) return;
+  for (const Match& match : too_far) note_distance(c, spec, match);
   for (const Shell& shell : shells) refuse_inside_space(c, spec, shell);
   check_filling(c, spec, surface);
   std::get<ChamberDrive>(actuator.drive).surface = std::move(surface.triangles);

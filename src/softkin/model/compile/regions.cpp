@@ -30,6 +30,9 @@ struct HoldsPoint {
   bool operator()(const Halfspace& halfspace) const {
     return (point - halfspace.point).dot(halfspace.normal.normalized()) >= -tolerance;
   }
+  bool operator()(const InsideSurface& inside) const {
+    return inside.surface->contains(point) || inside.surface->distance(point) <= tolerance;
+  }
   bool operator()(const VertexList&) const { return false; }
   bool operator()(const ElementList&) const { return false; }
   bool operator()(const Chosen&) const { return false; }
@@ -41,6 +44,7 @@ struct Complaint {
   const char* operator()(const Shape& shape) const {
     return complaint_about(shape);
   }
+  const char* operator()(const InsideSurface&) const { return nullptr; }
   const char* operator()(const VertexList&) const { return nullptr; }
   const char* operator()(const ElementList&) const { return nullptr; }
   const char* operator()(const Chosen&) const { return nullptr; }
@@ -50,7 +54,7 @@ struct Complaint {
 std::string kind_of(const Selector& selector) {
   if (const auto* chosen = std::get_if<Chosen>(&selector)) return chosen->kind;
   static const std::array<const char*, std::variant_size_v<Selector> - 1> kinds{
-      "box", "sphere", "cylinder", "halfspace", "list of vertices", "list of elements"};
+      "box", "sphere", "cylinder", "halfspace", "inside of a surface", "list of vertices", "list of elements"};
   return kinds[selector.index()];
 }
 
