@@ -1,7 +1,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "model/round_mesh.hpp"
+#include "model/turned_body.hpp"
 #include "statics/physical_samples.hpp"
 
 /// Round bodies of few elements with straight and with curved edges, against beams and Lame's solutions.
@@ -145,6 +145,35 @@ double sinking_dome(int sides, int cuts, int layers, bool curved) {
   return outer_mm - marker_at(model, settled(statics, {}, tight(1e-12)))[2];
 }
 
+bool has_curved_note(const Model& model) {
+  return std::any_of(model.notes.begin(), model.notes.end(),
+                     [](const std::string& note) { return note.find("'curve' moved") != std::string::npos; });
+}
+
+/// How far the end of a turned body that is held at x = 0 sinks and stretches under small forces [mm].
+std::pair<double, double> moves_of(const TurnedBody& body, int finer, bool curved) {
+  constexpr double force = 1e-5;
+  RobotSpec spec = round_robot(body.mesh(1, finer), round_nu, curved);
+  spec.fixed.push_back({{Halfspace{{1e-6, 0, 0}, {-1, 0, 0}}, {}}});
+  const double length = spec.mesh.vertices.col(0).maxCoeff();
+  Region end;
+  end.name = "end";
+  end.dimension = 2;
+  for (const Triangle& t : boundary_of(spec.mesh.tetrahedra, {}).triangles)
+    if (std::all_of(t.begin(), t.end(), [&](Index v) { return spec.mesh.vertices(v, 0) > length - 1e-9; })) {
+      end.triangles.push_back(spec.mesh.triangles.size());
+      spec.mesh.triangles.push_back(t);
+    }
+  spec.mesh.regions.push_back(end);
+  spec.loads.forces.push_back({"load", {std::string("end"), {}}, {force, 0, -force}});
+  spec.markers.push_back({"tip", {std::string("end"), {}}});
+  const Model model = compile(spec);
+  EXPECT_EQ(curved, has_curved_note(model));
+  const Statics statics(model);
+  const Vec3 moved = marker_at(model, settled(statics, {}, tight(1e-11))) - model.markers[0].point.at(model.rest);
+  return {-moved[2], moved[0]};
+}
+
 }  // namespace
 
 TEST(PhysicalCurved, ARodBendsAsABeam) {
@@ -172,6 +201,26 @@ TEST(PhysicalCurved, ABallWidensAsLameSays) {
     EXPECT_GT(std::abs(straight - 1), 0.05) << cuts << layers;
     RecordProperty("ball_" + std::to_string(cuts) + std::to_string(layers),
                    std::to_string(straight) + " " + std::to_string(curved));
+  }
+}
+
+/// Grooves, shoulders and beads that the mesh resolves: the end moves as that of a mesh with eight times as many elements.
+TEST(PhysicalCurved, TurnedBodiesBendAndStretchAsThoseOfFinerMeshes) {
+  const ProfilePiece before = profile_line({0, 10}, {15, 10}, 3);
+  std::vector<TurnedBody> bodies(3);
+  bodies[0].pieces = {before, profile_arc_piece({21, 16}, 6 * std::numbers::sqrt2, 1.25 * round_pi, 1.75 * round_pi, 4),
+                      profile_line({27, 10}, {35, 10}, 2)};
+  bodies[1].pieces = {before, profile_arc_piece({18, 8}, 3, round_pi, 1.5 * round_pi, 3),
+                      profile_line({18, 5}, {35, 5}, 3)};
+  const double angle = 0.05 * round_pi, across = 5 * std::cos(angle), radius = 6 + 5 * std::sin(angle);
+  bodies[2].pieces = {profile_line({0, radius}, {20 - across, radius}, 3),
+                      profile_arc_piece({20, 6}, 5, round_pi - angle, angle, 5),
+                      profile_line({20 + across, radius}, {35, radius}, 2)};
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
+    const auto fine = moves_of(bodies[i], 2, true), straight = moves_of(bodies[i], 1, false),
+               curved = moves_of(bodies[i], 1, true);
+    EXPECT_LT(std::abs(curved.first / fine.first - 1), 0.25 * std::abs(straight.first / fine.first - 1)) << i;
+    EXPECT_LT(std::abs(curved.second / fine.second - 1), 0.25 * std::abs(straight.second / fine.second - 1)) << i;
   }
 }
 

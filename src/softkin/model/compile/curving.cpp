@@ -11,6 +11,7 @@ namespace softkin {
 namespace {
 
 constexpr double least_loss = 0.02;      // of a section
+constexpr double most_doubt = 0.3;       // of what all sections lose
 constexpr int slab_count = 10;           // across the robot's longest side
 constexpr double least_slab = 0.03;      // of the volume in a slab that counts
 constexpr double still_straight = 1e-3;  // a node's distance from the middle, over its edge's length
@@ -43,13 +44,12 @@ std::vector<Region> regions_of(const RobotSpec& spec, const Mesh& mesh) {
   return regions;
 }
 
+/// The volume of a slab across the longest side of the body, and by how much it grows with other positions [mm^3].
 struct Slab {
   double volume = 0, gain = 0;
 };
 
-/// By what share of themselves slabs across the longest side of the body grow with other positions: that of the one
-/// that changes most.
-double largest_gain(const Model& model, const Points& positions) {
+std::array<Slab, slab_count> slabs_of(const Model& model, const Points& positions) {
   Vec3 low = Vec3::Constant(HUGE_VAL), high = -low;
   for (const Tetrahedron& t : model.elements.tetrahedra)
     for (const Index v : t) {
@@ -59,7 +59,6 @@ double largest_gain(const Model& model, const Points& positions) {
   Index axis = 0;
   const double length = (high - low).maxCoeff(&axis);
   std::array<Slab, slab_count> all;
-  double whole = 0;
   for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e) {
     double middle = 0;
     for (const Index v : model.elements.tetrahedra[e]) middle += model.rest(v, axis) / 4;
@@ -69,12 +68,33 @@ double largest_gain(const Model& model, const Points& positions) {
     slab.volume += volume;
     slab.gain +=
         shape_integrals(nodes_of(positions, model.elements.tetrahedra[e], model.elements.edge_nodes[e])).sum() - volume;
-    whole += volume;
   }
-  double largest = 0;
-  for (const Slab& slab : all)
-    if (slab.volume > least_slab * whole && std::abs(slab.gain) > std::abs(largest) * slab.volume)
-      largest = slab.gain / slab.volume;
+  return all;
+}
+
+/// By what share of itself the slab that changes most would grow with round edges; 0 where that is not sure: where the
+/// surface has hollows that the mesh is too coarse to tell the depth of.
+double sure_gain(const Compilation& c) {
+  const Model& model = c.model;
+  const SmoothBulges bulges =
+      smooth_bulges(c.mesh, labels_of(c.mesh, regions_of(c.spec, c.mesh)), CurveSpec{}.crease_degrees);
+  if (bulges.hollow_crease) return 0;
+  const auto slabs_with = [&](const Points& moves) {
+    Points positions = model.rest;
+    for (const auto& [low, high, node] : edges_with_nodes(c.mesh))
+      positions.row(node) = 0.5 * (model.rest.row(low) + model.rest.row(high)) + moves.row(node);
+    return slabs_of(model, positions);
+  };
+  const auto likely = slabs_with(bulges.likely), most = slabs_with(bulges.most);
+  double whole = 0, largest = 0, gains = 0, doubt = 0;
+  for (int s = 0; s < slab_count; ++s) {
+    whole += likely[s].volume;
+    gains += std::abs(likely[s].gain);
+    doubt += std::abs(most[s].gain - likely[s].gain);
+  }
+  if (doubt > most_doubt * gains) return 0;
+  for (const auto& [volume, gain] : likely)
+    if (volume > least_slab * whole && std::abs(gain) > std::abs(largest) * volume) largest = gain / volume;
   return largest;
 }
 
@@ -106,6 +126,10 @@ CurvedEdges curve_mesh(const RobotSpec& spec, Mesh& mesh, std::vector<std::strin
   notes.push_back("'curve' moved " + counted(done.moved, "node") + " of edges, by up to " +
                   number(done.farthest_mm, 3) + " mm; the volume of all elements changed by " +
                   number(100 * (curved_volume(mesh) / before - 1), 3) + " %" + held_text(done));
+  if (done.undetermined > 0)
+    notes.push_back("The mesh is too coarse to tell how the surface runs at " + counted(done.undetermined, "edge") +
+                    ", such as around " + point_text(done.undetermined_at) +
+                    " mm, where it turns from hollow to full within an element: refine there.");
   return done;
 }
 
@@ -113,12 +137,7 @@ void doubt_straight_edges(Compilation& c) {
   Model& model = c.model;
   if (model.formulation != Formulation::physical || model.elements.edge_nodes.empty()) return;
   if (c.spec.mesh_options.curve || c.spec.mesh_options.curved || !has_straight_edges(c.mesh)) return;
-  const Points bulges =
-      smooth_bulges(c.mesh, labels_of(c.mesh, regions_of(c.spec, c.mesh)), CurveSpec{}.crease_degrees);
-  Points positions = model.rest;
-  for (const auto& [low, high, node] : edges_with_nodes(c.mesh))
-    positions.row(node) = 0.5 * (model.rest.row(low) + model.rest.row(high)) + bulges.row(node);
-  const double gain = largest_gain(model, positions);
+  const double gain = sure_gain(c);
   if (!(std::abs(gain) > least_loss)) return;
   const std::string share = decimal(100 * std::abs(gain), 0) + " %";
   model.warnings.push_back(

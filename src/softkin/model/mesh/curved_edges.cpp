@@ -11,6 +11,7 @@ namespace {
 
 constexpr double on_surface = 0.02;  // of an edge's length: as near its ends lie on a given surface
 constexpr double rounding = 1e-9;    // of an edge's length: a bulge below is none
+constexpr double much_doubt = 0.05;  // of an edge's length, between the likely bulge and the largest
 
 /// A given surface that an edge is to lie on, and which of the edge's sides is its.
 struct Claim {
@@ -59,9 +60,19 @@ class Curving {
   Vec3 bulge_of(std::size_t edge, double length) {
     const std::vector<SmoothSurface::Side> sides = surface_.sides(edge);
     const std::vector<Claim> claims = claims_on(edge, sides, length);
-    if (claims.empty()) return spec_.smooth ? surface_.bulge(edge) : Vec3(Vec3::Zero());
+    if (claims.empty()) return spec_.smooth ? smooth_bulge(edge, length) : Vec3(Vec3::Zero());
     for (const Claim& claim : claims) ++result_.taken[claim.surface];
     return projected(edge, sides, claims, length);
+  }
+
+  Vec3 smooth_bulge(std::size_t edge, double length) {
+    const SmoothSurface::Bulge bulge = surface_.bulge(edge);
+    if ((bulge.most - bulge.likely).norm() > much_doubt * length) {
+      const auto [low, high] = surface_.ends(edge);
+      result_.undetermined_at = 0.5 * (vertex_at(mesh_.vertices, low) + vertex_at(mesh_.vertices, high));
+      ++result_.undetermined;
+    }
+    return bulge.likely;
   }
 
   /// Of each side the first given surface that both ends lie on and that is as the side is.
@@ -131,13 +142,18 @@ CurvedEdges curve_edges(Mesh& mesh, const std::vector<Index>& labels, const Curv
   return Curving(mesh, labels, spec).run();
 }
 
-Points smooth_bulges(const Mesh& mesh, const std::vector<Index>& labels, double crease_degrees) {
+SmoothBulges smooth_bulges(const Mesh& mesh, const std::vector<Index>& labels, double crease_degrees) {
   const SmoothSurface surface(mesh.vertices, mesh.tetrahedra, labels, crease_degrees);
   const EdgeTable nodes(mesh);
-  Points bulges = Points::Zero(mesh.vertices.rows(), 3);
+  const Points none = Points::Zero(mesh.vertices.rows(), 3);
+  SmoothBulges bulges{none, none, false};
   for (std::size_t e = 0; e < surface.edges(); ++e) {
     const auto [low, high] = surface.ends(e);
-    bulges.row(nodes.find(low, high)) = surface.bulge(e).transpose();
+    const Index node = nodes.find(low, high);
+    const SmoothSurface::Bulge bulge = surface.bulge(e);
+    bulges.likely.row(node) = bulge.likely.transpose();
+    bulges.most.row(node) = bulge.most.transpose();
+    bulges.hollow_crease = bulges.hollow_crease || surface.is_hollow_crease(e);
   }
   return bulges;
 }

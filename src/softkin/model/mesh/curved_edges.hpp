@@ -13,6 +13,8 @@ struct CurvedEdges {
   double least_share = 1;             // of its way that the one held back most went
   double farthest_mm = 0;             // that a node was moved
   std::vector<std::size_t> taken;     // edges that each given surface took
+  std::size_t undetermined = 0;       // edges whose curvature on the smooth surface differs much at its two ends
+  Vec3 undetermined_at{0, 0, 0};      // the middle of one of them [mm]
 };
 
 /// Where the tetrahedra's regions differ: a number for each tetrahedron, the same where it is in the same regions.
@@ -30,10 +32,14 @@ struct CurvedEdges {
 CurvedEdges curve_edges(Mesh& mesh, const std::vector<Index>& labels, const CurveSpec& spec);
 
 /// How far the nodes of the edges would be moved onto a smooth surface if nothing folded: vertices' rows [mm], 0 for
-/// all but these nodes.
-///
+/// all but these nodes; by SmoothSurface::Bulge.
+struct SmoothBulges {
+  Points likely, most;
+  bool hollow_crease = false;  // has the surface one
+};
+
 /// mesh  of order 2
-[[nodiscard]] Points smooth_bulges(const Mesh& mesh, const std::vector<Index>& labels, double crease_degrees);
+[[nodiscard]] SmoothBulges smooth_bulges(const Mesh& mesh, const std::vector<Index>& labels, double crease_degrees);
 
 /// The largest distance of an edge's node from the middle of its ends, over the edge's length.
 [[nodiscard]] double largest_bulge(const Mesh& mesh);

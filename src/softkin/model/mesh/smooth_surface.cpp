@@ -30,21 +30,24 @@ Vec3 tangent(const Vec3& chord, const Vec3& normal, const Vec3* other) {
 
 /// From the middle of a chord to that of an arc with these tangents at its ends: c / 4 (tan(a / 2) + tan(b / 2)) for
 /// the angles a and b in the plane in which the surface turns, and the chord's extent c in it; exact for circles and,
-/// where the chord runs aslant to that plane, for cylinders.
+/// where the chord runs aslant to that plane, for cylinders. In place of the mean of both ends is their harmonic one.
 ///
 /// in_plane  the chord's extent in the plane over its length
-Vec3 arc_bulge(const Vec3& chord, const Vec3& at_start, const Vec3& at_end, double in_plane) {
+SmoothSurface::Bulge arc_bulge(const Vec3& chord, const Vec3& at_start, const Vec3& at_end, double in_plane) {
   const double length = chord.norm();
   const Vec3 along = chord / length;
   const auto across = [&](const Vec3& t) {
     const Vec3 rise = t - t.dot(along) * along;
-    return Vec3(rise / (1 + std::sqrt(std::max(0.25, 1 - rise.squaredNorm() / (in_plane * in_plane)))));
+    return Vec3(length / 2 * rise / (1 + std::sqrt(std::max(0.25, 1 - rise.squaredNorm() / (in_plane * in_plane)))));
   };
-  return length / 4 * (across(at_start) - across(at_end));
+  const Vec3 start = across(at_start), end = -across(at_end);
+  const double a = start.norm(), b = end.norm();
+  const bool one_sided = start.dot(end) > 0;
+  return {one_sided ? Vec3((b * start + a * end) / (a + b)) : Vec3(Vec3::Zero()), a > b ? start : end};
 }
 
 /// The arc between two places of one sheet with these normals.
-Vec3 sheet_bulge(const Vec3& chord, const Vec3& at_start, const Vec3& at_end) {
+SmoothSurface::Bulge sheet_bulge(const Vec3& chord, const Vec3& at_start, const Vec3& at_end) {
   constexpr double least_turning = 0.02, least_share = 0.3;
   const Vec3 along = chord.normalized(), axis = at_start.cross(at_end);
   double in_plane = 1;
@@ -77,6 +80,7 @@ void SmoothSurface::find_faces(const std::vector<Tetrahedron>& tetrahedra, const
     if (!(normal.norm() > 0)) return;
     faces_.push_back(begin->vertices);
     normals_.push_back(normal.normalized());
+    outer_.push_back(end == begin + 1);
   });
 }
 
@@ -303,12 +307,12 @@ std::vector<SmoothSurface::Side> SmoothSurface::sides(std::size_t edge) const {
   return sides;
 }
 
-Vec3 SmoothSurface::bulge(std::size_t edge) const {
+SmoothSurface::Bulge SmoothSurface::bulge(std::size_t edge) const {
   const auto [low, high] = ends(edge);
   const Vec3 chord = vertex_at(vertices_, high) - vertex_at(vertices_, low);
-  if (!(chord.norm() > 0)) return Vec3::Zero();
+  if (!(chord.norm() > 0)) return {};
   const std::vector<Side> found = sides(edge);
-  if (edge_starts_[edge + 1] == edge_starts_[edge] + 1) return Vec3::Zero();  // of one face: nothing tells
+  if (edge_starts_[edge + 1] == edge_starts_[edge] + 1) return {};  // of one face: nothing tells
   const Side& one = found[0];
   const Side* other = nullptr;  // of several the one that crosses most
   for (std::size_t s = 1; s < found.size(); ++s)
@@ -316,6 +320,15 @@ Vec3 SmoothSurface::bulge(std::size_t edge) const {
   if (!other) return sheet_bulge(chord, one.low, one.high);
   const Vec3 along = chord.normalized();
   return arc_bulge(chord, tangent(along, one.low, &other->low), tangent(along, one.high, &other->high), 1);
+}
+
+bool SmoothSurface::is_hollow_crease(std::size_t edge) const {
+  const std::size_t begin = edge_starts_[edge];
+  if (edge_starts_[edge + 1] != begin + 2) return false;
+  const Index half = halves_[begin].id, other = halves_[begin + 1].id;
+  if (partner_[half] >= 0 || !outer_[half / 3] || !outer_[other / 3]) return false;
+  const Index apex = faces_[other / 3][(other % 3 + 2) % 3];
+  return (vertex_at(vertices_, apex) - vertex_at(vertices_, vertex_of(half))).dot(normals_[half / 3]) > 0;
 }
 
 Vec3 SmoothSurface::inner_bulge(Index a, Index b) const {
@@ -329,7 +342,7 @@ Vec3 SmoothSurface::inner_bulge(Index a, Index b) const {
     for (auto j = first_of(b); j != sectors_of_vertex_.end() && j->first == b; ++j) {
       const Vec3 &at_a = sectors_[i->second].normal, &at_b = sectors_[j->second].normal;
       if (std::abs(at_a.dot(at_b)) < parallel_sheets) continue;
-      const Vec3 bulge = sheet_bulge(chord, at_a, at_b);
+      const Vec3 bulge = sheet_bulge(chord, at_a, at_b).likely;
       if (bulge.squaredNorm() > largest.squaredNorm()) largest = bulge;
     }
   return largest;

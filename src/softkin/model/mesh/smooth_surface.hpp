@@ -22,9 +22,22 @@ class SmoothSurface {
   /// Its ends, ascending.
   [[nodiscard]] std::array<Index, 2> ends(std::size_t edge) const;
 
-  /// From the middle of the chord to that of the edge on the smooth surface [mm]: on the arc that has the surface's
-  /// tangents at both ends; on a crease the tangents of the two sheets' intersection. 0 where nothing curves.
-  [[nodiscard]] Vec3 bulge(std::size_t edge) const;
+  /// From the middle of a chord to that of the edge on the smooth surface [mm].
+  ///
+  /// likely  on an arc whose curvature is the harmonic mean of those that the surface's tangents at both ends tell; 0
+  ///         where they differ in sign, as where a groove of few elements meets its rim
+  /// most    of the larger one of both curvatures; far from the likely one where the mesh is too coarse to tell
+  struct Bulge {
+    Vec3 likely{0, 0, 0}, most{0, 0, 0};
+  };
+  /// On a crease tangents are those of the two sheets' intersection. 0 where nothing curves.
+  ///
+  /// source  F. N. Fritsch, J. Butland, A method for constructing local monotone piecewise cubic interpolants, 1984, of
+  ///         the mean
+  [[nodiscard]] Bulge bulge(std::size_t edge) const;
+  /// Is it a crease of the body's surface into the body, as at the bottom of a notch or of a groove that is two elements
+  /// wide?
+  [[nodiscard]] bool is_hollow_crease(std::size_t edge) const;
   /// The same of an edge through the inside, or across a side, whose ends both lie on sheets that are nearly parallel,
   /// as on both sides of a thin wall; of several the largest, of none 0.
   [[nodiscard]] Vec3 inner_bulge(Index a, Index b) const;
@@ -67,7 +80,8 @@ class SmoothSurface {
   const Points& vertices_;
   std::vector<Triangle> faces_;
   std::vector<Vec3> normals_;
-  std::vector<bool> flat_;  // of faces
+  std::vector<bool> outer_;  // of faces: of one element
+  std::vector<bool> flat_;   // of faces
   std::vector<Half> halves_;
   std::vector<std::size_t> edge_starts_;  // in halves_, and the end
   std::vector<Index> partner_;            // of half edges: the one of the same sheet, or -1
