@@ -12,6 +12,9 @@ namespace {
 constexpr double first_share = 0.5;
 /// What a step is to miss the curve by, over its length, and what it may; bounds of the next step over the last one.
 constexpr double wanted_miss = 0.1, most_miss = 1, most_grown = 2, most_shrinking = 0.1, least_shrinking = 0.4;
+/// Newton's step in the middle of a step, over its length; and by what the slopes of the share at both ends may differ
+/// from those of a parabola, over their sum: on another branch it is more.
+constexpr double most_off_balance = 0.05, most_off_parabola = 0.3;
 /// Each correction but the second is so much shorter than the one before.
 constexpr double least_gain = 0.5;
 /// Of a step, in a row, and of all.
@@ -149,7 +152,11 @@ std::optional<ArcLength::Point> ArcLength::go(const Point& from, double length) 
   settler_.give_loads(there, next.at);
   const Points predicted = next.at.positions;
   const double whole = system_.freedoms().size_of(length * from.ahead, from.at.positions).largest;
-  const bool found = correct(from, whole, options_.tolerance_mm, next);
+  bool found = correct(from, whole, options_.tolerance_mm, next);
+  if (found && !is_balanced_between(from, next, length)) {
+    found = false;
+    why_ = "between its ends is no curve of equilibria";
+  }
   tracer_.end(found, found ? "" : why_, system_.largest_move(from.at.positions, predicted),
               system_.largest_move(predicted, next.at.positions));
   if (!found) return std::nullopt;
@@ -158,6 +165,31 @@ std::optional<ArcLength::Point> ArcLength::go(const Point& from, double length) 
   next.went = length;
   if (system_.tendons().any()) system_.tendons().slide(next.at.positions, next.at.eyelets);
   return next;
+}
+
+/// Is the middle of the cubic through two points, with their tangents, nearly on the curve? A corrector that converges
+/// may have come to another branch. By the factorisation at hand, near the far end.
+bool ArcLength::is_balanced_between(const Point& low, const Point& high, double length) {
+  const double rise = (high.share - low.share) / length;
+  if (std::abs(low.slope + high.slope - 2 * rise) > most_off_parabola * (std::abs(low.slope) + std::abs(high.slope)))
+    return false;
+  Point middle{.at = low.at, .share = 0.5 * (low.share + high.share) + length * (low.slope - high.slope) / 8};
+  middle.at.positions = 0.5 * (low.at.positions + high.at.positions);
+  system_.freedoms().move(low.ahead - high.ahead, length / 8, middle.at.positions);
+  middle.at.multipliers =
+      0.5 * (low.at.multipliers + high.at.multipliers) + length * (low.multipliers - high.multipliers) / 8;
+  const Demand there = demand(middle.share);
+  system_.placement().hold(there, middle.at.positions);
+  settler_.give_loads(there, middle.at);
+  Balance balance;
+  system_.evaluate(middle.at, there, settler_.active, work_, balance, team_);
+  if (balance.forbidden || !balance.force.allFinite()) return false;
+  Eigen::VectorXd step, change;
+  work_.saddle.step(balance, step, change, team_);
+  const Eigen::VectorXd across = low.ahead + high.ahead;
+  step -= across.dot(step) / across.dot(high.ahead) * high.ahead;
+  return system_.freedoms().size_of(step, middle.at.positions).largest <=
+         most_off_balance * system_.largest_move(low.at.positions, high.at.positions);
 }
 
 /// The point at the end of a step, which is made shorter where it leads nowhere; none: nor do those.

@@ -277,7 +277,8 @@ Continuation::StepEnd Continuation::judge(Newton::Outcome outcome, const Demand&
     end.found = false;
     end.why = because;
   };
-  if (end.found && way_.loads_change && snapped(step_.move_mm, system_.largest_move(step_.begun, trial.positions)) &&
+  if (end.found && way_.loads_change &&
+      snapped(step_.move_mm, system_.largest_move(step_.predicted, trial.positions)) &&
       jumped(way_.here, there, at, trial))
     reject("the equilibrium lies beyond a jump");
   end.snap = end.found && !way_.loads_change && (turned_back(at, trial) || jumped(way_.here, there, at, trial));
@@ -308,33 +309,37 @@ SegmentCheck::Verdict Continuation::check_segment(const Demand& there, double le
   using Verdict = SegmentCheck::Verdict;
   const bool has_tangent = step_.extrapolated || step_.straight.rows() > 0;  // none leads from flat sheets
   if (step_.unforetold || !has_tangent || !is_smooth()) return Verdict::confirmed;
-  const Points secant = trial.positions - at.positions;
-  Points ahead = step_.predicted - at.positions;
   const double farthest = std::max(system_.largest_move(at.positions, trial.positions),
                                    system_.largest_move(at.positions, step_.predicted));
-  if (SegmentCheck::is_short(system_, farthest) || SegmentCheck::predicts(system_, ahead, secant))
-    return Verdict::confirmed;
+  if (SegmentCheck::is_short(system_, farthest)) return Verdict::confirmed;
   const auto tangent = [&](const Demand& from, const Demand& to, const Iterate& shape) {
     return first_order_moves(system_, from, to, settler_.active, work_, team_, shape);
   };
-  if (step_.extrapolated || changed) {
-    if (settler_.prepare(way_.here, at) < 0) return Verdict::unclear;
-    ahead = tangent(way_.here, there, at);
-    if (settler_.prepare(there, trial) < 0) return Verdict::unclear;
-  } else {
-    ahead = step_.straight - at.positions;
-  }
   SegmentCheck check(settler_, tracer_, options_, way_.from, way_.to);
   const int modes = settler_.newton().unstable_modes();
-  const SegmentEnd low{&at, way_.done, ahead / length, settler_.last.modes};
-  const SegmentEnd high{&trial, way_.done + length, -tangent(there, way_.here, trial) / length, modes};
+  SegmentEnd low{&at, way_.done, {}, settler_.last.modes}, high{&trial, way_.done + length, {}, modes};
+  const bool knows_ahead = !step_.extrapolated && !changed;
+  if (knows_ahead) low.rate = (step_.straight - at.positions) / length;
   // the factor at hand is of a shape nearby, and mostly good enough
-  const auto agree = [&] {
+  bool confirmed = knows_ahead && check.is_predicted(low, high, step_.predicted - at.positions);
+  Balance balance;
+  const auto evaluate_there = [&] { system_.evaluate(trial, there, settler_.active, work_, balance, team_); };
+  if (!confirmed) {
+    if (!knows_ahead) {
+      if (settler_.prepare(way_.here, at) < 0) return Verdict::unclear;
+      low.rate = tangent(way_.here, there, at) / length;
+      if (settler_.prepare(there, trial) < 0) return Verdict::unclear;
+    } else {
+      evaluate_there();
+    }
+    high.rate = -tangent(there, way_.here, trial) / length;
+    const Points secant = trial.positions - at.positions;
     step_.jump_mm = 0.5 * length * system_.largest_move(low.rate, secant / length) +
                     0.5 * length * system_.largest_move(high.rate, secant / length);
-    return check.agree(low, high);
-  };
-  if (agree()) return Verdict::confirmed;
+    confirmed = check.agree(low, high);
+  }
+  evaluate_there();
+  if (confirmed) return Verdict::confirmed;
   Verdict verdict = check.check(low, high);
   if (changed && verdict == Verdict::unclear) verdict = Verdict::confirmed;  // where a cable slackens tangents turn
   way_.factorised = verdict == Verdict::confirmed && settler_.prepare(there, trial) >= 0;

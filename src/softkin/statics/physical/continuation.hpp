@@ -105,7 +105,6 @@ class Continuation {
   bool loads_at_last(const Iterate& at);
   void go_together(Iterate& at);
   ArcLength::End follow_curve(Iterate& at);
-  SegmentCheck::Verdict check_curve(const Iterate& begun, int modes, const Iterate& at, double share);
   Climb::End climb(Climb::End (Climb::*along)(Iterate&), Index load, Iterate& at);
 
   // a step

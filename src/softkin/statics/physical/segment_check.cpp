@@ -9,6 +9,8 @@ namespace {
 /// Of the secant, that the tangent at the begin may miss its end by for that alone to be enough; that the tangent at
 /// either end may miss the other end by, and both together, where both are known.
 constexpr double most_missed_ahead = 0.1, most_missed_at_an_end = 0.4, most_missed_together = 0.2;
+/// Newton's step in the middle of the curve by the tangents may be so long, over the secant.
+constexpr double most_off_balance = 0.05;
 /// Segments that move no vertex farther than this share of the diagonal are not checked.
 constexpr double least_checked = 1e-3;
 /// Segments are halved so many times, with so many corrections in all.
@@ -32,19 +34,41 @@ double SegmentCheck::size(const Points& moves) const {
   return system_.largest_move(Points::Zero(moves.rows(), 3), moves);
 }
 
-bool SegmentCheck::predicts(const System& system, const Points& predicted, const Points& secant) {
-  const Points none = Points::Zero(secant.rows(), 3);
-  return system.largest_move(predicted, secant) <= most_missed_ahead * system.largest_move(none, secant);
+/// Newton's step in the middle of a segment is short; a step of the factorisation at hand.
+///
+/// aside  of the middle of the curve, from that of the secant
+bool SegmentCheck::is_balanced_between(const SegmentEnd& low, const SegmentEnd& high, const Points& aside) {
+  const Demand there = demand(0.5 * (low.factor + high.factor));
+  Iterate middle = *low.at;
+  middle.positions = 0.5 * (low.at->positions + high.at->positions) + aside;
+  middle.multipliers = 0.5 * (low.at->multipliers + high.at->multipliers);
+  system_.placement().hold(there, middle.positions);
+  settler_.give_loads(there, middle);
+  Balance balance;
+  system_.evaluate(middle, there, settler_.active, work_, balance, team_);
+  if (balance.forbidden || balance.inverted || !balance.force.allFinite()) return false;
+  Eigen::VectorXd step, change;
+  work_.saddle.step(balance, step, change, team_);
+  return system_.freedoms().size_of(step, middle.positions).largest <=
+         most_off_balance * size(high.at->positions - low.at->positions);
 }
 
-bool SegmentCheck::agree(const SegmentEnd& low, const SegmentEnd& high) const {
+bool SegmentCheck::is_predicted(const SegmentEnd& low, const SegmentEnd& high, const Points& predicted) {
+  const Points secant = high.at->positions - low.at->positions;
+  return size(predicted - secant) <= most_missed_ahead * size(secant) &&
+         is_balanced_between(low, high, ((high.factor - low.factor) * low.rate - secant) / 4);
+}
+
+bool SegmentCheck::agree(const SegmentEnd& low, const SegmentEnd& high) {
   const double length = high.factor - low.factor;
   const Points secant = high.at->positions - low.at->positions;
   const Points ahead = length * low.rate - secant, behind = length * high.rate - secant;
   const double whole = size(secant);
-  return size(ahead) <= most_missed_ahead * whole ||
-         (size(ahead) <= most_missed_at_an_end * whole && size(behind) <= most_missed_at_an_end * whole &&
-          size(ahead + behind) <= most_missed_together * whole);
+  const bool tangents_agree =
+      size(ahead) <= most_missed_ahead * whole ||
+      (size(ahead) <= most_missed_at_an_end * whole && size(behind) <= most_missed_at_an_end * whole &&
+       size(ahead + behind) <= most_missed_together * whole);
+  return tangents_agree && is_balanced_between(low, high, (ahead - behind) / 8);
 }
 
 SegmentCheck::Verdict SegmentCheck::check(const SegmentEnd& low, const SegmentEnd& high) {

@@ -16,7 +16,8 @@ struct SegmentEnd {
 /// whose corrector converged may have passed one, and then ends on another branch, which may be as stable.
 ///
 /// A segment is confirmed where the tangent at its begin predicts its end, or where the tangents at both ends agree
-/// with its secant. Else the equilibrium in the middle of the shapes, not of the loads, is found across the secant (the
+/// with its secant, and where besides the middle of the curve by these tangents is nearly an equilibrium: under many times
+/// a limit load tangents may agree by chance. Else the equilibrium in the middle of the shapes, not of the loads, is found across the secant (the
 /// load factor is an unknown, so it exists on an unstable branch, too): if it is unstable, or its load factor is not
 /// between those of the ends, a limit point is passed; else both halves are checked. Half of the loads would not do,
 /// since a limit load may be any fraction of what is requested, while the shapes on the way to and from a limit point
@@ -34,11 +35,14 @@ class SegmentCheck : ArcLength {
   /// Is a segment that moves a vertex by so much too short to be checked?
   [[nodiscard]] static bool is_short(const System& system, double move_mm);
 
-  /// Does the tangent at the begin predict the end?
-  [[nodiscard]] static bool predicts(const System& system, const Points& predicted, const Points& secant);
+  /// Does the tangent at the begin predict the end, and is the middle nearly an equilibrium?
+  ///
+  /// predicted  moves to where the tangent leads, with what turns on the way [mm]
+  [[nodiscard]] bool is_predicted(const SegmentEnd& low, const SegmentEnd& high, const Points& predicted);
 
-  /// Do the tangents at both ends agree with the secant?
-  [[nodiscard]] bool agree(const SegmentEnd& low, const SegmentEnd& high) const;
+  /// Do the tangents at both ends agree with the secant, and is the middle nearly an equilibrium? By the factorisation
+  /// at hand, of a shape nearby; the workspace is left with the evaluation of the middle.
+  [[nodiscard]] bool agree(const SegmentEnd& low, const SegmentEnd& high);
 
   /// The workspace is left with another factorisation where the ends do not agree.
   [[nodiscard]] Verdict check(const SegmentEnd& low, const SegmentEnd& high);
@@ -46,6 +50,7 @@ class SegmentCheck : ArcLength {
  private:
   Verdict check_halves(const SegmentEnd& low, const SegmentEnd& high, int depth);
   Verdict find_middle(const SegmentEnd& low, const SegmentEnd& high, Point& middle);
+  [[nodiscard]] bool is_balanced_between(const SegmentEnd& low, const SegmentEnd& high, const Points& aside);
   [[nodiscard]] Points rate(const Point& point, double change) const;
   [[nodiscard]] double size(const Points& moves) const;
 

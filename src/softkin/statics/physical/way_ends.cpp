@@ -74,20 +74,8 @@ ArcLength::End Continuation::follow_curve(Iterate& at) {
   ArcLength curve(
       settler_, tracer_, options_,
       {way_.from, way_.to, way_.done, way_.failed.share > way_.done ? way_.failed.share : 1, options_.stable});
-  const Iterate before = at;
-  const Judgement last = settler_.last;
   const ArcLength::End end = curve.follow(at);
   way_.factorised = false;
-  if (end != ArcLength::End::interrupted && curve.done() > way_.done && !curve.jump() && is_smooth()) {
-    const SegmentCheck::Verdict verdict = check_curve(before, last.modes, at, curve.done());
-    if (verdict == SegmentCheck::Verdict::interrupted) return ArcLength::End::interrupted;
-    if (verdict == SegmentCheck::Verdict::passes_limit_point) {
-      settler_.take(at, Iterate(before));
-      settler_.last = last;
-      way_.next_look = 2 * way_.misses;
-      return ArcLength::End::lost;
-    }
-  }
   const double gone = curve.done() - way_.done;
   way_.next_look = gone > 0 ? way_.misses + 1 : 2 * way_.misses;
   if (gone > 0) pass(between(way_.from, way_.to, curve.done()), curve.done());
@@ -96,22 +84,6 @@ ArcLength::End Continuation::follow_curve(Iterate& at) {
   if (const auto& jump = curve.jump()) tell_snap(jump->move_mm, whole(jump->share), report_);
   if (end == ArcLength::End::passed) way_.advance = std::max(way_.advance, gone);
   return end;
-}
-
-/// A long step along the curve may pass a limit point, too. Near one tangents do not agree, which says nothing here.
-///
-/// at  the equilibrium at a share of the way, from `begun`
-SegmentCheck::Verdict Continuation::check_curve(const Iterate& begun, int modes, const Iterate& at, double share) {
-  const Demand there = between(way_.from, way_.to, share);
-  const double length = share - way_.done;
-  const int modes_there = settler_.last.modes;
-  const auto rate = [&](const Demand& from, const Demand& to, const Iterate& shape) {
-    (void)settler_.prepare(from, shape);
-    return first_order_moves(system_, from, to, settler_.active, work_, team_, shape);
-  };
-  const SegmentEnd low{&begun, way_.done, rate(way_.here, there, begun) / length, modes};
-  const SegmentEnd high{&at, share, -rate(there, way_.here, at) / length, modes_there};
-  return SegmentCheck(settler_, tracer_, options_, way_.from, way_.to).check(low, high);
 }
 
 /// Why a way ends where it does.
