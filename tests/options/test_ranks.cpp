@@ -176,7 +176,7 @@ class StartedRanks {
   pid_t process_ = -1;
 };
 
-const std::vector<std::string> many{"--samples", "1500", "--sampling", "sobol"};
+const std::vector<std::string> many{"--samples", "6000", "--sampling", "sobol"};
 
 std::vector<std::string> resumed() {
   std::vector<std::string> options = many;
@@ -205,7 +205,7 @@ void expect_resumed(int ranks, const std::function<void(const StartedRanks&)>& e
   EXPECT_LT(read_text(folder.output).size(), whole.size());
   const ProgramResult result = folder.run(ranks, resumed());
   EXPECT_EQ(result.exit_code, 0) << result.output;
-  EXPECT_NE(result.output.find(" of 1500 samples were done before: going on"), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find(" of 6000 samples were done before: going on"), std::string::npos) << result.output;
   EXPECT_EQ(read_text(folder.output), whole);
 }
 

@@ -78,7 +78,7 @@ bool is_own_table(std::string_view text) {
                                Header{"track,waypoint,place,reference_", ",error_mm,file"},
                                Header{"p_gauge_kpa,p_abs_kpa,ratio,unloading,", ",line"},
                                Header{"run,line,t_s,stretch,stress_mpa,", ",off"},
-                               Header{"line,strain,stress_mpa,linear_mpa,", ",yeoh_mpa"},
+                               Header{"line,strain,stress_mpa,", "_mpa"},
                                Header{"pose,line,column,measured,computed,difference,kept", ""},
                                Header{"reading,line,t_s,", ",chi_square,freedoms,left_out,status"},
                                Header{"line,l1_mm,dl_mm,dl1_mm", "_off_mm"}};
