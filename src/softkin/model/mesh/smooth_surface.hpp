@@ -32,11 +32,10 @@ class SmoothSurface {
   };
   /// On a crease tangents are those of the two sheets' intersection. 0 where nothing curves.
   ///
-  /// source  F. N. Fritsch, J. Butland, A method for constructing local monotone piecewise cubic interpolants, 1984, of
-  ///         the mean
+  /// source  the mean: F. N. Fritsch, J. Butland, A method for constructing local monotone piecewise cubic
+  ///         interpolants, 1984
   [[nodiscard]] Bulge bulge(std::size_t edge) const;
-  /// Is it a crease of the body's surface into the body, as at the bottom of a notch or of a groove that is two elements
-  /// wide?
+  /// Is it a crease of the body's surface into the body, as at the bottom of a notch or of a groove of two elements?
   [[nodiscard]] bool is_hollow_crease(std::size_t edge) const;
   /// The same of an edge through the inside, or across a side, whose ends both lie on sheets that are nearly parallel,
   /// as on both sides of a thin wall; of several the largest, of none 0.

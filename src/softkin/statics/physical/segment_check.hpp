@@ -16,12 +16,12 @@ struct SegmentEnd {
 /// whose corrector converged may have passed one, and then ends on another branch, which may be as stable.
 ///
 /// A segment is confirmed where the tangent at its begin predicts its end, or where the tangents at both ends agree
-/// with its secant, and where besides the middle of the curve by these tangents is nearly an equilibrium: under many times
-/// a limit load tangents may agree by chance. Else the equilibrium in the middle of the shapes, not of the loads, is found across the secant (the
-/// load factor is an unknown, so it exists on an unstable branch, too): if it is unstable, or its load factor is not
-/// between those of the ends, a limit point is passed; else both halves are checked. Half of the loads would not do,
-/// since a limit load may be any fraction of what is requested, while the shapes on the way to and from a limit point
-/// are spread over the whole secant.
+/// with its secant, and where besides the middle of the curve by these tangents is nearly an equilibrium: under many
+/// times a limit load tangents may agree by chance. Else the equilibrium in the middle of the shapes, not of the loads,
+/// is found across the secant (the load factor is an unknown, so it exists on an unstable branch, too): if it is
+/// unstable, or its load factor is not between those of the ends, a limit point is passed; else both halves are
+/// checked. Half of the loads would not do, since a limit load may be any fraction of what is requested, while the
+/// shapes on the way to and from a limit point are spread over the whole secant.
 ///
 /// source  Crisfield 1991, Non-linear finite element analysis of solids and structures 1, chapter 9
 class SegmentCheck : ArcLength {
