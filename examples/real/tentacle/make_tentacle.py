@@ -1,8 +1,10 @@
-"""Makes the mesh of the tentacle, and the table of its measured poses.
+"""Makes the mesh of the tentacle, and the tables of its measured poses.
 
-    python3 make_tentacle.py [FOLDER]
+    python3 make_tentacle.py [FOLDER] [--coarse]
 
 FOLDER holds poses.csv as measured (README.md says where it comes from); without it the mesh alone is made.
+If FOLDER also holds two_tendons.csv, the script writes both_tendons.csv: all poses, with two markers for the two positions of p2.
+--coarse makes a mesh of 306 elements for trials.
 """
 
 import csv
@@ -21,9 +23,12 @@ def radius(z: float) -> float:
     return 6.42 + (4.80 - 6.42) * (z - 305) / 55
 
 
-def disc(around: int) -> tuple[list[tuple[float, float]], list[tuple[int, int, int]]]:
-    """A unit disc: its middle, a ring halfway and one outside; counterclockwise triangles."""
+def disc(around: int, coarse: bool) -> tuple[list[tuple[float, float]], list[tuple[int, int, int]]]:
+    """A unit disc: its middle, a ring halfway (not if coarse) and one outside; counterclockwise triangles."""
     points = [(0.0, 0.0)]
+    if coarse:
+        points += [(math.cos(2 * math.pi * k / around), math.sin(2 * math.pi * k / around)) for k in range(around)]
+        return points, [(0, 1 + k, 1 + (k + 1) % around) for k in range(around)]
     for ring, share in ((1, 0.55), (2, 1.0)):
         points += [(share * math.cos(2 * math.pi * k / around), share * math.sin(2 * math.pi * k / around)) for k in range(around)]
     triangles = []
@@ -33,9 +38,9 @@ def disc(around: int) -> tuple[list[tuple[float, float]], list[tuple[int, int, i
     return points, triangles
 
 
-def mesh(levels: list[float], around: int) -> str:
+def mesh(levels: list[float], around: int, coarse: bool = False) -> str:
     """Prisms between the levels, each as three tetrahedra whose diagonals fit those of their neighbours."""
-    points, triangles = disc(around)
+    points, triangles = disc(around, coarse)
     vertices = [(radius(z) * x, radius(z) * y, -z) for z in levels for x, y in points]
     tetrahedra = []
     for level in range(len(levels) - 1):
@@ -70,10 +75,32 @@ def poses(folder: Path) -> str:
     return "\n".join([*lines, ""])
 
 
+def both_tendons(folder: Path) -> str:
+    """Returns the poses of one and of two tendons. Marker p2 has two positions on the body: p2, and p2a in the second sitting and with both tendons."""
+    second_sitting = (1, 3, 5, 8, 10, 12)
+    markers = [f"{m}_{axis}_mm" for m in ("p1", "p2", "p2a", "p3", "p4") for axis in "xyz"]
+    lines = [",".join(["t1_N", "t2_N", *markers])]
+    for name in ("poses.csv", "two_tendons.csv"):
+        with open(folder / name, newline="") as file:
+            for number, row in enumerate(csv.DictReader(line for line in file if not line.startswith("#")), 1):
+                p2 = "p2a" if name == "two_tendons.csv" or number in second_sitting else "p2"
+                cells = {f"{p2 if m == 'p2' else m}_{axis}_mm": row[f"{m}_{axis}_mm"] for m in ("p1", "p2", "p3", "p4") for axis in "xyz"}
+                pulls = [f"{float(row[f'torque{t}_Nm']) / PULLEY_M:.6g}" for t in (1, 2)]
+                lines.append(",".join(pulls + [cells.get(marker, "") for marker in markers]))
+    return "\n".join([*lines, ""])
+
+
+COARSE = [0, 22, 44, 66, 87, 108, 129.1, 152, 174, 197, 219.5, 240, 260, 280, 292.5, 305, 332, 360]
+
+
 if __name__ == "__main__":
     levels = [0, 12, 24, 36, 48, 60, 72, 84, 96, 108, 119, 129.1, 139, 151, 163, 175, 187, 199, 210, 219.5, 229, 240, 252, 262, 271, 280, 289, 297, 305, 315, 326, 338, 349, 360]
-    (HERE / "tentacle.mesh").write_text(mesh(levels, 8))
+    folders = [Path(argument) for argument in sys.argv[1:] if argument != "--coarse"]
+    (HERE / "tentacle.mesh").write_text(mesh(COARSE, 6, coarse=True) if "--coarse" in sys.argv else mesh(levels, 8))
     print("tentacle.mesh")
-    if len(sys.argv) > 1:
-        (HERE / "poses.csv").write_text(poses(Path(sys.argv[1])))
+    if folders:
+        (HERE / "poses.csv").write_text(poses(folders[0]))
         print("poses.csv")
+    if folders and (folders[0] / "two_tendons.csv").exists():
+        (HERE / "both_tendons.csv").write_text(both_tendons(folders[0]))
+        print("both_tendons.csv")
