@@ -312,27 +312,30 @@ SegmentCheck::Verdict Continuation::check_segment(const Demand& there, double le
   const double farthest = std::max(system_.largest_move(at.positions, trial.positions),
                                    system_.largest_move(at.positions, step_.predicted));
   if (SegmentCheck::is_short(system_, farthest)) return Verdict::confirmed;
-  const auto tangent = [&](const Demand& from, const Demand& to, const Iterate& shape) {
-    return first_order_moves(system_, from, to, settler_.active, work_, team_, shape);
+  // what is held on an arc moves along its tangent on a small part of the step alone
+  const bool turns = system_.placement().largest_turn(way_.from, way_.to) > 0;
+  const double part = turns ? 1e-3 : 1;
+  const auto rate = [&](const Demand& from, const Demand& to, double change, const Iterate& shape) -> Points {
+    return first_order_moves(system_, from, between(from, to, part), settler_.active, work_, team_, shape) /
+           (part * change);
   };
   SegmentCheck check(settler_, tracer_, options_, way_.from, way_.to);
   const int modes = settler_.newton().unstable_modes();
   SegmentEnd low{&at, way_.done, {}, settler_.last.modes}, high{&trial, way_.done + length, {}, modes};
-  const bool knows_ahead = !step_.extrapolated && !changed;
-  if (knows_ahead) low.rate = (step_.straight - at.positions) / length;
+  if (!step_.extrapolated) low.rate = (step_.straight - at.positions) / length;
   // the factor at hand is of a shape nearby, and mostly good enough
-  bool confirmed = knows_ahead && check.is_predicted(low, high, step_.predicted - at.positions);
+  bool confirmed = check.is_predicted(low, high, step_.predicted - at.positions);
   Balance balance;
   const auto evaluate_there = [&] { system_.evaluate(trial, there, settler_.active, work_, balance, team_); };
   if (!confirmed) {
-    if (!knows_ahead) {
+    if (step_.extrapolated || changed || turns) {
       if (settler_.prepare(way_.here, at) < 0) return Verdict::unclear;
-      low.rate = tangent(way_.here, there, at) / length;
+      low.rate = rate(way_.here, there, length, at);
       if (settler_.prepare(there, trial) < 0) return Verdict::unclear;
     } else {
       evaluate_there();
     }
-    high.rate = -tangent(there, way_.here, trial) / length;
+    high.rate = rate(there, way_.here, -length, trial);
     const Points secant = trial.positions - at.positions;
     step_.jump_mm = 0.5 * length * system_.largest_move(low.rate, secant / length) +
                     0.5 * length * system_.largest_move(high.rate, secant / length);

@@ -55,8 +55,8 @@ bool SegmentCheck::is_balanced_between(const SegmentEnd& low, const SegmentEnd& 
 
 bool SegmentCheck::is_predicted(const SegmentEnd& low, const SegmentEnd& high, const Points& predicted) {
   const Points secant = high.at->positions - low.at->positions;
-  return size(predicted - secant) <= most_missed_ahead * size(secant) &&
-         is_balanced_between(low, high, ((high.factor - low.factor) * low.rate - secant) / 4);
+  if (size(predicted - secant) > most_missed_ahead * size(secant)) return false;
+  return low.rate.rows() == 0 || is_balanced_between(low, high, ((high.factor - low.factor) * low.rate - secant) / 4);
 }
 
 bool SegmentCheck::agree(const SegmentEnd& low, const SegmentEnd& high) {

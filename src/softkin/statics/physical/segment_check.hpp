@@ -37,6 +37,7 @@ class SegmentCheck : ArcLength {
 
   /// Does the tangent at the begin predict the end, and is the middle nearly an equilibrium?
   ///
+  /// low        without a rate where equilibria around it were extrapolated in place of a tangent: the end is enough
   /// predicted  moves to where the tangent leads, with what turns on the way [mm]
   [[nodiscard]] bool is_predicted(const SegmentEnd& low, const SegmentEnd& high, const Points& predicted);
 
