@@ -50,8 +50,10 @@ class Closing {
     Equilibrium& last = grasp_.last;
     last = statics_.solve(actuation, last.state, options_, told(progress_, doing));
     if (last.report.status == Status::converged) return true;
-    const bool interrupted = last.report.status == Status::interrupted;
-    grasp_.remark = (interrupted ? "interrupted while " + doing : failure + ": " + last.report.remark);
+    const bool unknown = last.report.status == Status::not_converged;
+    grasp_.remark = last.report.status == Status::interrupted
+                        ? "interrupted while " + doing
+                        : (unknown ? "not converged while " + doing : failure) + ": " + last.report.remark;
     return false;
   }
 

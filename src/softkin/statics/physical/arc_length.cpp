@@ -12,9 +12,9 @@ namespace {
 constexpr double first_share = 0.5;
 /// What a step is to miss the curve by, over its length, and what it may; bounds of the next step over the last one.
 constexpr double wanted_miss = 0.1, most_miss = 1, most_grown = 2, most_shrinking = 0.1, least_shrinking = 0.4;
-/// Newton's step in the middle of a step, over its length; and by what the slopes of the share at both ends may differ
+/// Newton's step in the middle of a step, over its length; the accuracy of a point there; and by what the slopes of the share at both ends may differ
 /// from those of a parabola, over their sum: on another branch it is more.
-constexpr double most_off_balance = 0.05, most_off_parabola = 0.3;
+constexpr double most_off_balance = 0.05, middle_accuracy = 1e-3, most_off_parabola = 0.3;
 /// Each correction but the second is so much shorter than the one before.
 constexpr double least_gain = 0.5;
 /// Of a step, in a row, and of all.
@@ -153,10 +153,12 @@ std::optional<ArcLength::Point> ArcLength::go(const Point& from, double length) 
   const Points predicted = next.at.positions;
   const double whole = system_.freedoms().size_of(length * from.ahead, from.at.positions).largest;
   bool found = correct(from, whole, options_.tolerance_mm, next);
-  if (found && !is_balanced_between(from, next, length)) {
+  const double missed = missed_;
+  if (found && !is_curve_between(from, next, length)) {
     found = false;
     why_ = "between its ends is no curve of equilibria";
   }
+  missed_ = missed;
   tracer_.end(found, found ? "" : why_, system_.largest_move(from.at.positions, predicted),
               system_.largest_move(predicted, next.at.positions));
   if (!found) return std::nullopt;
@@ -168,8 +170,9 @@ std::optional<ArcLength::Point> ArcLength::go(const Point& from, double length) 
 }
 
 /// Is the middle of the cubic through two points, with their tangents, nearly on the curve? A corrector that converges
-/// may have come to another branch. By the factorisation at hand, near the far end.
-bool ArcLength::is_balanced_between(const Point& low, const Point& high, double length) {
+/// may have come to another branch. By Newton's step of the factorisation at hand, near the far end; where that is
+/// long, as it is where something thin is stretched, by the point of the curve there.
+bool ArcLength::is_curve_between(const Point& low, const Point& high, double length) {
   const double rise = (high.share - low.share) / length;
   if (std::abs(low.slope + high.slope - 2 * rise) > most_off_parabola * (std::abs(low.slope) + std::abs(high.slope)))
     return false;
@@ -186,10 +189,13 @@ bool ArcLength::is_balanced_between(const Point& low, const Point& high, double 
   if (balance.forbidden || !balance.force.allFinite()) return false;
   Eigen::VectorXd step, change;
   work_.saddle.step(balance, step, change, team_);
-  const Eigen::VectorXd across = low.ahead + high.ahead;
-  step -= across.dot(step) / across.dot(high.ahead) * high.ahead;
-  return system_.freedoms().size_of(step, middle.at.positions).largest <=
-         most_off_balance * system_.largest_move(low.at.positions, high.at.positions);
+  Point across{.at = low.at, .share = low.share, .ahead = (low.ahead + high.ahead).normalized()};
+  step -= across.ahead.dot(step) / across.ahead.dot(high.ahead) * high.ahead;
+  const double whole = system_.largest_move(low.at.positions, high.at.positions), most = most_off_balance * whole;
+  if (system_.freedoms().size_of(step, middle.at.positions).largest <= most) return true;
+  const Points begun = middle.at.positions;
+  return correct(across, 0.5 * whole, middle_accuracy * whole, middle) &&
+         system_.largest_move(begun, middle.at.positions) <= most;
 }
 
 /// The point at the end of a step, which is made shorter where it leads nowhere; none: nor do those.

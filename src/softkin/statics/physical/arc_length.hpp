@@ -77,7 +77,7 @@ class ArcLength : protected Follower {
   bool begin(const Iterate& at, Point& point);
   std::optional<Point> next(const Point& from, Pace& pace);
   std::optional<Point> go(const Point& from, double length);
-  bool is_balanced_between(const Point& low, const Point& high, double length);
+  bool is_curve_between(const Point& low, const Point& high, double length);
   [[nodiscard]] double largest_between(const Point& low, const Beyond& high);
   double jump_to(const Point& before, const Point& found, const Iterate& at);
   bool keep(const Point& found, Iterate& at);

@@ -59,16 +59,19 @@ bool SegmentCheck::is_predicted(const SegmentEnd& low, const SegmentEnd& high, c
   return low.rate.rows() == 0 || is_balanced_between(low, high, ((high.factor - low.factor) * low.rate - secant) / 4);
 }
 
-bool SegmentCheck::agree(const SegmentEnd& low, const SegmentEnd& high) {
+bool SegmentCheck::tangents_agree(const SegmentEnd& low, const SegmentEnd& high) const {
   const double length = high.factor - low.factor;
   const Points secant = high.at->positions - low.at->positions;
   const Points ahead = length * low.rate - secant, behind = length * high.rate - secant;
   const double whole = size(secant);
-  const bool tangents_agree =
-      size(ahead) <= most_missed_ahead * whole ||
-      (size(ahead) <= most_missed_at_an_end * whole && size(behind) <= most_missed_at_an_end * whole &&
-       size(ahead + behind) <= most_missed_together * whole);
-  return tangents_agree && is_balanced_between(low, high, (ahead - behind) / 8);
+  return size(ahead) <= most_missed_ahead * whole ||
+         (size(ahead) <= most_missed_at_an_end * whole && size(behind) <= most_missed_at_an_end * whole &&
+          size(ahead + behind) <= most_missed_together * whole);
+}
+
+bool SegmentCheck::agree(const SegmentEnd& low, const SegmentEnd& high) {
+  return tangents_agree(low, high) &&
+         is_balanced_between(low, high, (high.factor - low.factor) / 8 * (low.rate - high.rate));
 }
 
 SegmentCheck::Verdict SegmentCheck::check(const SegmentEnd& low, const SegmentEnd& high) {
@@ -84,11 +87,13 @@ SegmentCheck::Verdict SegmentCheck::check(const SegmentEnd& low, const SegmentEn
 SegmentCheck::Verdict SegmentCheck::check_halves(const SegmentEnd& low, const SegmentEnd& high, int depth) {
   const bool short_segment = is_short(system_, system_.largest_move(low.at->positions, high.at->positions)) &&
                              is_short(system_, (high.factor - low.factor) * size(low.rate));
-  if (short_segment || agree(low, high)) return Verdict::confirmed;
+  if (short_segment || (depth < most_halvings && agree(low, high))) return Verdict::confirmed;
   if (depth == 0 || report_.iterations - iterations_ > most_middle_corrections) return Verdict::unclear;
   Point found;
   const Verdict verdict = find_middle(low, high, found);
   if (verdict != Verdict::confirmed) return verdict;
+  if (corrected_ <= most_off_balance * size(high.at->positions - low.at->positions) && tangents_agree(low, high))
+    return Verdict::confirmed;
   const SegmentEnd middle{&found.at, found.share, rate(found, rate_difference * (high.factor - low.factor)),
                           found.negative};
   const Verdict first = check_halves(low, middle, depth - 1);
@@ -126,19 +131,24 @@ SegmentCheck::Verdict SegmentCheck::find_middle(const SegmentEnd& low, const Seg
   from.ahead.normalize();
   tracer_.begin(low.factor, high.factor, length, "check");
   const Points begun = middle.at.positions;
-  const bool found = correct(from, 0.5 * whole, middle_accuracy * whole, middle);
-  const bool held = found && holds(middle);
-  const bool stable = middle.negative <= std::max(low.negative, high.negative);
-  const bool between = low.factor < middle.share && middle.share < high.factor && middle.slope > 0;
-  tracer_.end(held && stable && between,
-              !found                ? why_
-              : !held               ? "a cable slackens or pulls in the middle"
-              : !stable || !between ? "a limit point is passed"
-                                    : "",
-              0.5 * whole, system_.largest_move(begun, middle.at.positions));
+  bool found = correct(from, 0.5 * whole, middle_accuracy * whole, middle);
+  const auto is_passed = [&] {
+    return middle.negative > std::max(low.negative, high.negative) || !(middle.slope > 0) ||
+           !(low.factor < middle.share && middle.share < high.factor);
+  };
+  // what is stiff buckles where it is pressed by a shape that is not quite the equilibrium
+  if (found && is_passed()) found = correct(from, 0.5 * whole, options_.tolerance_mm, middle);
+  corrected_ = system_.largest_move(begun, middle.at.positions);
+  const bool held = found && holds(middle), passed = found && is_passed();
+  tracer_.end(held && !passed,
+              !found   ? why_
+              : !held  ? "a cable slackens or pulls in the middle"
+              : passed ? "a limit point is passed"
+                       : "",
+              0.5 * whole, corrected_);
   if (interrupted_) return Verdict::interrupted;
   if (!held) return Verdict::unclear;
-  return stable && between ? Verdict::confirmed : Verdict::passes_limit_point;
+  return passed ? Verdict::passes_limit_point : Verdict::confirmed;
 }
 
 }  // namespace softkin::physical

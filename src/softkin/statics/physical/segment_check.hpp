@@ -51,11 +51,13 @@ class SegmentCheck : ArcLength {
  private:
   Verdict check_halves(const SegmentEnd& low, const SegmentEnd& high, int depth);
   Verdict find_middle(const SegmentEnd& low, const SegmentEnd& high, Point& middle);
+  [[nodiscard]] bool tangents_agree(const SegmentEnd& low, const SegmentEnd& high) const;
   [[nodiscard]] bool is_balanced_between(const SegmentEnd& low, const SegmentEnd& high, const Points& aside);
   [[nodiscard]] Points rate(const Point& point, double change) const;
   [[nodiscard]] double size(const Points& moves) const;
 
   int iterations_ = 0;
+  double corrected_ = 0;  // by what the last middle moved from the cubic [mm]
 };
 
 }  // namespace softkin::physical

@@ -170,7 +170,7 @@ std::optional<Status> Continuation::out_of_patience(const Iterate& at) {
   if (way_.done - way_.marked >= least || (!jerky() && way_.done > much_gained * way_.marked)) {
     way_.marked = way_.done;
     way_.marked_iterations = report_.iterations;
-  } else if (way_.done < 1 && report_.iterations - way_.marked_iterations >= most) {
+  } else if (way_.done < 1 && !options_.stable && report_.iterations - way_.marked_iterations >= most) {
     return limit(way_.done,
                  "the way there goes on in ever smaller steps: " + std::to_string(most) +
                      " iterations brought less than " + number(100 * least, 2) + " % of it",
