@@ -149,7 +149,7 @@ TEST(LimitPoints, WeightOfAnArch) {
       3, 6.5);
 }
 
-/// A chamber above the arch and one below it, closed by lids and by the planes that hold the sides; both pressures grow.
+/// A chamber above the arch and one below it, closed by lids and by the planes that hold the sides.
 TEST(LimitPoints, TwoChambersOnAnArch) {
   expect_one_limit(
       [](double factor) {

@@ -12,8 +12,8 @@ namespace {
 constexpr double first_share = 0.5;
 /// What a step is to miss the curve by, over its length, and what it may; bounds of the next step over the last one.
 constexpr double wanted_miss = 0.1, most_miss = 1, most_grown = 2, most_shrinking = 0.1, least_shrinking = 0.4;
-/// Newton's step in the middle of a step, over its length; the accuracy of a point there; and by what the slopes of the share at both ends may differ
-/// from those of a parabola, over their sum: on another branch it is more.
+/// Newton's step in the middle of a step, over its length; the accuracy of a point there; and by what the slopes of the
+/// share at both ends may differ from those of a parabola, over their sum: on another branch it is more.
 constexpr double most_off_balance = 0.05, middle_accuracy = 1e-3, most_off_parabola = 0.3;
 /// Each correction but the second is so much shorter than the one before.
 constexpr double least_gain = 0.5;
