@@ -204,7 +204,7 @@ TEST(PhysicalCurved, ABallWidensAsLameSays) {
   }
 }
 
-/// Grooves, shoulders and beads that the mesh resolves: the end moves as that of a mesh of eight times as many elements.
+/// Grooves, shoulders and beads that the mesh resolves: ends move as those of meshes of eight times as many elements.
 TEST(PhysicalCurved, TurnedBodiesBendAndStretchAsThoseOfFinerMeshes) {
   const ProfilePiece before = profile_line({0, 10}, {15, 10}, 3);
   std::vector<TurnedBody> bodies(3);
