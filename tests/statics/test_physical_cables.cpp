@@ -230,4 +230,28 @@ TEST(PhysicalCables, InAChannelBendsABeamIntoAnArc) {
   EXPECT_EQ(solved(compile(spec)).report.status, Status::limit);
 }
 
+/// A negative offset of 0.5 N leaves the bottom cable slack up to a command of 0.5 N: until then the command changes
+/// nothing, which tangents and derivatives know, and the path through that corner takes few iterations.
+TEST(PhysicalCables, ACommandBelowANegativeOffsetDoesNothing) {
+  RobotSpec spec = cable_beam();
+  for (ActuatorSpec& each : spec.actuators) each = by_load(each);
+  spec.actuators[1].offset = -0.5;
+  const Model model = compile(spec);
+  const Statics statics(model);
+  const Equilibrium slack = settled(statics, values({0.4, 0.3})), none = settled(statics, values({0.4, 0}));
+  EXPECT_LT(distance(slack.state.positions, none.state.positions), 1e-9);
+  const Sensitivity slopes = statics.sensitivity(slack.state);
+  EXPECT_EQ(slopes.positions[1].cwiseAbs().maxCoeff(), 0);
+  EXPECT_EQ(slopes.multipliers(1, 1), 0);
+  const Equilibrium pulled = settled(statics, values({0.4, 0.9}));
+  RobotSpec acting = spec;
+  acting.actuators[1].offset = 0;
+  const Model other = compile(acting);
+  const Statics direct(other);
+  const Equilibrium expected = settled(direct, values({0.4, 0.4}));
+  EXPECT_LT(distance(pulled.state.positions, expected.state.positions), 1e-7);
+  EXPECT_LE(pulled.report.iterations, 4 * expected.report.iterations);
+  EXPECT_GT(statics.sensitivity(pulled.state).positions[1].cwiseAbs().maxCoeff(), 0);
+}
+
 }  // namespace softkin

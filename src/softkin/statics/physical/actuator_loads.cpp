@@ -64,7 +64,9 @@ void ActuatorLoads::add_change(const Iterate& at, const Demand& from, const Dema
           measures_.target(a, from.actuation, at.multipliers[a]) - measures_.target(a, to.actuation, at.multipliers[a]);
     } else if (!measures_.constrains(a)) {
       pull(a, at, slopes[a]);
-      force += measures_.sign(a) * measures_.rate(a) * change * slopes[a];
+      // what a negative offset leaves slack does not pull more
+      force +=
+          measures_.sign(a) * (measures_.given(a, to.actuation[a]) - measures_.given(a, from.actuation[a])) * slopes[a];
     }
   }
 }
@@ -81,11 +83,11 @@ void ActuatorLoads::pull(Index actuator, const Iterate& at, Points& force) const
     (void)measures_.value(actuator, at.positions, &force);
 }
 
-void ActuatorLoads::derivative(Index actuator, const Iterate& at, Points& force) const {
+void ActuatorLoads::derivative(Index actuator, const Iterate& at, double command, Points& force) const {
   force.setZero(at.positions.rows(), 3);
   if (!measures_.measures(actuator)) return;
   pull(actuator, at, force);
-  force *= measures_.sign(actuator) * measures_.rate(actuator);
+  force *= measures_.sign(actuator) * measures_.rate(actuator, command);
 }
 
 }  // namespace softkin::physical

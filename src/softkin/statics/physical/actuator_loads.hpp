@@ -41,7 +41,7 @@ class ActuatorLoads {
   /// What a measure's multiplier pulls or pushes with, but for its sign, #V by 3.
   void pull(Index actuator, const Iterate& at, Points& force) const;
   /// Derivative of the gradient by a tension or pressure that is commanded [N per unit of command]; zero by others.
-  void derivative(Index actuator, const Iterate& at, Points& force) const;
+  void derivative(Index actuator, const Iterate& at, double command, Points& force) const;
 
  private:
   /// What a sealed chamber misses, and what its filling stores.

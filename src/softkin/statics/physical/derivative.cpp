@@ -165,7 +165,7 @@ Sensitivity Derivative::of(const Iterate& at, const Demand& demand) {
     result.positions.push_back(positions(at, a));
     result.multipliers.col(a) = multipliers(a);
     if (system_.measures().given_load(a))
-      result.multipliers(a, a) = system_.measures().rate(a) / system_.measures().unit(a);
+      result.multipliers(a, a) = system_.measures().rate(a, demand.actuation[a]) / system_.measures().unit(a);
   }
   const bool moves = std::any_of(moves_.begin(), moves_.end(), [](const Points& move) { return move.rows() > 0; });
   if (!system_.contact() && !moves)
@@ -217,7 +217,8 @@ ParameterSensitivity Derivative::of(const Iterate& at, const Demand& demand, con
     result.multipliers.col(p) = multipliers(p);
     for (Index a = 0; a < system_.actuators(); ++a)
       if (system_.measures().given_load(a))
-        result.multipliers(a, p) += changes[p][a] * system_.measures().rate(a) / system_.measures().unit(a);
+        result.multipliers(a, p) +=
+            changes[p][a] * system_.measures().rate(a, demand.actuation[a]) / system_.measures().unit(a);
     if (reactions)
       result.reactions.push_back(this->reactions(at, demand, p, std::move(forces[p]), result.multipliers.col(p)));
   }

@@ -132,7 +132,7 @@ double Climb::slope_at(const Demand& load, const Measured& point) {
   if (settler_.prepare(here, point.at) >= 0) {
     Iterate beside = point.at;
     (void)predict(system_, here, there, settler_.active, work_, team_, beside);
-    slope = (beside.multipliers[load_] - point.at.multipliers[load_]) / system_.measures().rate(load_) /
+    slope = (beside.multipliers[load_] - point.at.multipliers[load_]) / system_.measures().rate(load_, point.load) /
             (first_step * point.measure);
   }
   settler_.active[load_] = false;

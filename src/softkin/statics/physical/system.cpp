@@ -316,7 +316,7 @@ void System::multiply(const Iterate& at, const Eigen::MatrixXd& vectors, Workspa
 
 void System::command_force(const Iterate& at, const Demand& demand, Index actuator, Workspace& work, Points& force,
                            Team& team) const {
-  actuator_loads_.derivative(actuator, at, force);
+  actuator_loads_.derivative(actuator, at, demand.actuation[actuator], force);
   each_term(work, [&](const Term& term, Term::Scratch& scratch) {
     term.add_derivative(actuator, demand, at.positions, scratch, force, team);
   });

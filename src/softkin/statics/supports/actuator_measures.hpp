@@ -35,14 +35,21 @@ class ActuatorMeasures {
   /// push.
   [[nodiscard]] double given(Index actuator, double command) const {
     const Role& role = roles_[actuator];
-    const double load = role.factor * command + role.offset;
-    return role.unit * (role.only_pulls && load < 0 && command >= 0 ? 0 : load);
+    return is_slack(actuator, command) ? 0 : role.unit * (role.factor * command + role.offset);
   }
-  /// The other way round, and the derivative of the first.
+  /// Does a negative offset leave a cable slack under this tension?
+  [[nodiscard]] bool is_slack(Index actuator, double command) const {
+    const Role& role = roles_[actuator];
+    return role.only_pulls && command >= 0 && role.factor * command + role.offset < 0;
+  }
+  /// The other way round.
   [[nodiscard]] double command(Index actuator, double multiplier) const {
     return (multiplier / roles_[actuator].unit - roles_[actuator].offset) / roles_[actuator].factor;
   }
-  [[nodiscard]] double rate(Index actuator) const { return roles_[actuator].unit * roles_[actuator].factor; }
+  /// The derivative of given() by the command.
+  [[nodiscard]] double rate(Index actuator, double command) const {
+    return is_slack(actuator, command) ? 0 : roles_[actuator].unit * roles_[actuator].factor;
+  }
   /// A cable, which gives way where it would push.
   [[nodiscard]] bool only_pulls(Index actuator) const { return roles_[actuator].only_pulls; }
   /// Demanded measure [mm, mm^3] by a command; that of a sealed chamber follows from its multiplier, too.
