@@ -93,7 +93,7 @@ async function checkStreamed(page, server) {
       return wanted.every((value, n) => Math.abs(parseFloat(cells[2 * n + 1]) - value) < 0.01);
     }, [shown]);
   }
-  await until(page, 'live-words', /^Readings are streamed/);
+  await until(page, 'live-words', /^Another program streams readings/);
   assert.ok(await page.locator('#readings input').first().isDisabled());
   assert.equal(await page.locator('#readings input').first().inputValue(), rows[1][2]);
   await page.screenshot({path: out('estimate_streamed.png')});

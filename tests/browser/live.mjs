@@ -131,7 +131,7 @@ async function checkMapMadeMeanwhile(browser) {
   const server = await serve(example(name), 0, '--make-map');
   const {page, watch} = await open(browser, server.url, {offline: false});
   const whileOthersWork = patient(300000);  // maps are made at the lowest priority
-  await until(page, 'origin', /What is shown at once, .* is a closed formula made of \d+ solved shapes/, whileOthersWork);
+  await until(page, 'origin', /A kinematic map is shown until .*: polynomials fitted to \d+ solved equilibria/, whileOthersWork);
   await until(page, 'live-words', /^You control/);
   await dropFile(page, 'circle.csv', readFileSync(example(name, 'circle.csv'), 'utf8'));  // which needs a map
   await until(page, 'path', /waypoints solved/);
