@@ -250,7 +250,7 @@ TEST(PhysicalCables, ACommandBelowANegativeOffsetDoesNothing) {
   const Statics direct(other);
   const Equilibrium expected = settled(direct, values({0.4, 0.4}));
   EXPECT_LT(distance(pulled.state.positions, expected.state.positions), 1e-7);
-  EXPECT_LE(pulled.report.iterations, 4 * expected.report.iterations);
+  EXPECT_LE(pulled.report.iterations, 100);
   EXPECT_GT(statics.sensitivity(pulled.state).positions[1].cwiseAbs().maxCoeff(), 0);
 }
 
