@@ -294,11 +294,13 @@ Continuation::StepEnd Continuation::judge(Newton::Outcome outcome, const Demand&
   return end;
 }
 
-/// Has the path no corners, and can its tangents be compared? In a field a robot may turn freely.
+/// Has the path no corners, and can its tangents be compared? In a field a robot may turn freely; where tendons rub the
+/// path depends on its steps, which are not made shorter for this.
 bool Continuation::is_smooth() const {
   const auto& actuators = system_.model().actuators;
-  return !system_.kinked() && std::none_of(actuators.begin(), actuators.end(),
-                                           [](const Actuator& each) { return each.as<MagneticDrive>() != nullptr; });
+  return !system_.kinked() && !system_.tendons().any() &&
+         std::none_of(actuators.begin(), actuators.end(),
+                      [](const Actuator& each) { return each.as<MagneticDrive>() != nullptr; });
 }
 
 /// Is there a limit point between a step's begin and its end?
