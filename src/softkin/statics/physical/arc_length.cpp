@@ -169,6 +169,16 @@ std::optional<ArcLength::Point> ArcLength::go(const Point& from, double length) 
   return next;
 }
 
+std::optional<Eigen::VectorXd> ArcLength::step_from(Iterate& shape, const Demand& there, Balance& balance) {
+  system_.placement().hold(there, shape.positions);
+  settler_.give_loads(there, shape);
+  system_.evaluate(shape, there, settler_.active, work_, balance, team_);
+  if (balance.forbidden || !balance.force.allFinite()) return std::nullopt;
+  Eigen::VectorXd step, change;
+  work_.saddle.step(balance, step, change, team_);
+  return step;
+}
+
 /// Is the middle of the cubic through two points, with their tangents, nearly on the curve? A corrector that converges
 /// may have come to another branch. By Newton's step of the factorisation at hand, near the far end; where that is
 /// long, as it is where something thin is stretched, by the point of the curve there.
@@ -181,18 +191,13 @@ bool ArcLength::is_curve_between(const Point& low, const Point& high, double len
   system_.freedoms().move(low.ahead - high.ahead, length / 8, middle.at.positions);
   middle.at.multipliers =
       0.5 * (low.at.multipliers + high.at.multipliers) + length * (low.multipliers - high.multipliers) / 8;
-  const Demand there = demand(middle.share);
-  system_.placement().hold(there, middle.at.positions);
-  settler_.give_loads(there, middle.at);
   Balance balance;
-  system_.evaluate(middle.at, there, settler_.active, work_, balance, team_);
-  if (balance.forbidden || !balance.force.allFinite()) return false;
-  Eigen::VectorXd step, change;
-  work_.saddle.step(balance, step, change, team_);
+  std::optional<Eigen::VectorXd> step = step_from(middle.at, demand(middle.share), balance);
+  if (!step) return false;
   Point across{.at = low.at, .share = low.share, .ahead = (low.ahead + high.ahead).normalized()};
-  step -= across.ahead.dot(step) / across.ahead.dot(high.ahead) * high.ahead;
+  *step -= across.ahead.dot(*step) / across.ahead.dot(high.ahead) * high.ahead;
   const double whole = system_.largest_move(low.at.positions, high.at.positions), most = most_off_balance * whole;
-  if (system_.freedoms().size_of(step, middle.at.positions).largest <= most) return true;
+  if (system_.freedoms().size_of(*step, middle.at.positions).largest <= most) return true;
   const Points begun = middle.at.positions;
   return correct(across, 0.5 * whole, middle_accuracy * whole, middle) &&
          system_.largest_move(begun, middle.at.positions) <= most;

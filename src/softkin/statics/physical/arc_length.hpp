@@ -55,6 +55,8 @@ class ArcLength : protected Follower {
   /// whole_mm  largest move of a vertex by the step, which corrections are compared with
   bool correct(const Point& from, double whole_mm, double tolerance_mm, Point& point);
   [[nodiscard]] bool holds(const Point& point) const;
+  /// Newton's step by the factorisation at hand from a shape that is put under loads; none where it is forbidden.
+  std::optional<Eigen::VectorXd> step_from(Iterate& shape, const Demand& there, Balance& balance);
 
   const char* why_ = "";  // it was not found
   bool interrupted_ = false;

@@ -42,15 +42,11 @@ bool SegmentCheck::is_balanced_between(const SegmentEnd& low, const SegmentEnd& 
   Iterate middle = *low.at;
   middle.positions = 0.5 * (low.at->positions + high.at->positions) + aside;
   middle.multipliers = 0.5 * (low.at->multipliers + high.at->multipliers);
-  system_.placement().hold(there, middle.positions);
-  settler_.give_loads(there, middle);
   Balance balance;
-  system_.evaluate(middle, there, settler_.active, work_, balance, team_);
-  if (balance.forbidden || balance.inverted || !balance.force.allFinite()) return false;
-  Eigen::VectorXd step, change;
-  work_.saddle.step(balance, step, change, team_);
-  return system_.freedoms().size_of(step, middle.positions).largest <=
-         most_off_balance * size(high.at->positions - low.at->positions);
+  const std::optional<Eigen::VectorXd> step = step_from(middle, there, balance);
+  return step && !balance.inverted &&
+         system_.freedoms().size_of(*step, middle.positions).largest <=
+             most_off_balance * size(high.at->positions - low.at->positions);
 }
 
 bool SegmentCheck::is_predicted(const SegmentEnd& low, const SegmentEnd& high, const Points& predicted) {
