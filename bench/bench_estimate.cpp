@@ -228,24 +228,6 @@ EstimatorOptions estimator_options(const Options& options) {
   return own;
 }
 
-void run_draws(const Model& model, const Options& options) {
-  const std::vector<PoseColumn> columns = columns_of(model, options.volume_only);
-  const double deviation = options.volume_only ? 5 : options.noise_mm;  // [mm^3] or [mm]
-  Draws draws(model, columns, options);
-  Estimator estimator(model, {{"touch", true}}, columns, Eigen::VectorXd::Constant(columns.size(), deviation),
-                      estimator_options(options));
-  Errors errors;
-  for (int d = 0; d < options.draws; ++d) {
-    const Truth truth = draws.draw();
-    estimator.forget();
-    errors.add(truth, estimator.update(truth.commands, draws.noisy(truth, deviation)));
-    if ((d + 1) % 50 == 0 && d + 1 < options.draws) errors.print("so far");
-  }
-  errors.print(options.volume_only ? "volume at a pressure, no marker" : "four markers");
-  std::printf("  forces that were drawn again, as the finger has no equilibrium under them: %d\n",
-              draws.without_equilibrium());
-}
-
 /// A line of what was drawn and told.
 void tell_each(int draw, const Truth& truth, const std::vector<std::size_t>& wrong, const Estimate& told) {
   const auto list = [](const std::vector<std::size_t>& groups) {
@@ -262,6 +244,26 @@ void tell_each(int draw, const Truth& truth, const std::vector<std::size_t>& wro
       told.numbers[0].value, told.numbers[1].value, told.numbers[2].value, told.places[0].at_rest[0],
       told.places[0].at_rest[1], off.norm(), told.equilibria, told.seconds);
   std::fflush(stdout);
+}
+
+void run_draws(const Model& model, const Options& options) {
+  const std::vector<PoseColumn> columns = columns_of(model, options.volume_only);
+  const double deviation = options.volume_only ? 5 : options.noise_mm;  // [mm^3] or [mm]
+  Draws draws(model, columns, options);
+  Estimator estimator(model, {{"touch", true}}, columns, Eigen::VectorXd::Constant(columns.size(), deviation),
+                      estimator_options(options));
+  Errors errors;
+  for (int d = 0; d < options.draws; ++d) {
+    const Truth truth = draws.draw();
+    estimator.forget();
+    const Estimate& told = estimator.update(truth.commands, draws.noisy(truth, deviation));
+    errors.add(truth, told);
+    if (options.verbose) tell_each(d, truth, {}, told);
+    if ((d + 1) % 50 == 0 && d + 1 < options.draws) errors.print("so far");
+  }
+  errors.print(options.volume_only ? "volume at a pressure, no marker" : "four markers");
+  std::printf("  forces that were drawn again, as the finger has no equilibrium under them: %d\n",
+              draws.without_equilibrium());
 }
 
 /// Two markers exchanged, or one that is 30 mm off.
@@ -446,7 +448,7 @@ int main(int argc, char** argv) {
   app.add_option("--places", options.places, "Where a search begins to look");
   app.add_option("--starts", options.starts, "Of these that it follows");
   app.add_flag("--quadratic", options.quadratic, "Elements of order 2");
-  app.add_flag("--verbose", options.verbose, "A line for each of the swaps, and for updates that took long");
+  app.add_flag("--verbose", options.verbose, "A line for each draw and swap, and for updates that took long");
   app.add_flag("--volume-only", options.volume_only, "Read the chamber's volume at a pressure instead of markers");
   return run_benchmark(app, argc, argv, [&] {
     const Model model = compile(touched_finger(options.quadratic));

@@ -81,6 +81,22 @@ TEST(LimitPoints, DeadForceOnAnArch) {
       1.8, 6.5);
 }
 
+/// A loose tolerance makes the shapes less exact; it does not end the path earlier.
+TEST(LimitPoints, ALooseToleranceComesAsFar) {
+  RobotSpec spec = low_arch();
+  spec.loads.forces = {{"p", {Vec3(50, 5, 7), {}}, {0, 0, -0.03}}};
+  const Model model = compile(spec);
+  const Statics statics(model);
+  StaticsOptions loose;
+  loose.step_tolerance_mm = 0.02;
+  const Equilibrium exact = statics.solve(Actuation(0), statics.rest());
+  const Equilibrium found = statics.solve(Actuation(0), statics.rest(), loose);
+  EXPECT_EQ(exact.report.status, Status::limit);
+  EXPECT_EQ(found.report.status, Status::limit);
+  EXPECT_GT(exact.report.reached, 0.1);
+  EXPECT_NEAR(found.report.reached / exact.report.reached, 1, 0.02);
+}
+
 TEST(LimitPoints, CommandedForceOnAnArch) {
   expect_one_limit(
       [](double factor) {

@@ -20,8 +20,8 @@ constexpr double far = 0.2;
 /// Shortest step of the continuation, over the way asked for; and where some of it was gone and nothing touches, over
 /// the way and over that, whichever is less: what is asked for may be a thousand times what is borne.
 constexpr double least_advance = 1e-4, least_of_way = 5e-4, least_of_gone = 0.005;
-/// A step that moves no vertex farther than so many tolerances and yet fails leads nowhere.
-constexpr double least_move = 1000;
+/// A step that moves no vertex farther than this share of the diagonal and yet fails leads nowhere.
+constexpr double least_move = 8e-5;
 /// The same where things touch, over the contact distance: what sticks moves by a hundredth of that.
 constexpr double least_contact_move = 1e-4;
 /// What is held turns by no more in one step [degrees].
@@ -306,7 +306,7 @@ bool Continuation::is_smooth() const {
 /// Is there a limit point between a step's begin and its end?
 ///
 /// changed  do cables that were held slacken, or others pull
-SegmentCheck::Verdict Continuation::check_segment(const Demand& there, double length, bool changed, const Iterate& at,
+SegmentCheck::Verdict Continuation::check_segment(double length, bool changed, const Iterate& at,
                                                   const Iterate& trial) {
   using Verdict = SegmentCheck::Verdict;
   const bool has_tangent = step_.extrapolated || step_.straight.rows() > 0;  // none leads from flat sheets
@@ -314,48 +314,21 @@ SegmentCheck::Verdict Continuation::check_segment(const Demand& there, double le
   const double farthest = std::max(system_.largest_move(at.positions, trial.positions),
                                    system_.largest_move(at.positions, step_.predicted));
   if (SegmentCheck::is_short(system_, farthest)) return Verdict::confirmed;
-  // what is held on an arc moves along its tangent on a small part of the step alone
-  const bool turns = system_.placement().largest_turn(way_.from, way_.to) > 0;
-  const double part = turns ? 1e-3 : 1;
-  const auto rate = [&](const Demand& from, const Demand& to, double change, const Iterate& shape) -> Points {
-    return first_order_moves(system_, from, between(from, to, part), settler_.active, work_, team_, shape) /
-           (part * change);
-  };
-  SegmentCheck check(settler_, tracer_, options_, way_.from, way_.to);
   const int modes = settler_.newton().unstable_modes();
-  SegmentEnd low{&at, way_.done, {}, settler_.last.modes}, high{&trial, way_.done + length, {}, modes};
+  SegmentEnd low{&at, way_.done, {}, settler_.last.modes};
   if (!step_.extrapolated) low.rate = (step_.straight - at.positions) / length;
-  // the factor at hand is of a shape nearby, and mostly good enough
-  bool confirmed = check.is_predicted(low, high, step_.predicted - at.positions);
-  Balance balance;
-  const auto evaluate_there = [&] { system_.evaluate(trial, there, settler_.active, work_, balance, team_); };
-  if (!confirmed) {
-    if (step_.extrapolated || changed || turns) {
-      if (settler_.prepare(way_.here, at) < 0) return Verdict::unclear;
-      low.rate = rate(way_.here, there, length, at);
-      if (settler_.prepare(there, trial) < 0) return Verdict::unclear;
-    } else {
-      evaluate_there();
-    }
-    high.rate = rate(there, way_.here, -length, trial);
-    const Points secant = trial.positions - at.positions;
-    step_.jump_mm = 0.5 * length * system_.largest_move(low.rate, secant / length) +
-                    0.5 * length * system_.largest_move(high.rate, secant / length);
-    confirmed = check.agree(low, high);
-  }
-  evaluate_there();
-  if (confirmed) return Verdict::confirmed;
-  Verdict verdict = check.check(low, high);
+  SegmentCheck check(settler_, tracer_, options_, way_.from, way_.to);
+  Verdict verdict =
+      check.check(std::move(low), {&trial, way_.done + length, {}, modes}, step_.predicted - at.positions, changed);
+  if (check.lost_factor()) way_.factorised = false;
   if (changed && verdict == Verdict::unclear) verdict = Verdict::confirmed;  // where a cable slackens tangents turn
-  way_.factorised = verdict == Verdict::confirmed && settler_.prepare(there, trial) >= 0;
   return verdict;
 }
 
 /// A step that passed a limit point of a load, or of which nothing shows that it did not, is not taken.
-void Continuation::check_path(const Demand& there, double length, bool changed, const Iterate& at, const Iterate& trial,
-                              StepEnd& end) {
+void Continuation::check_path(double length, bool changed, const Iterate& at, const Iterate& trial, StepEnd& end) {
   if (!way_.loads_change) return;
-  const SegmentCheck::Verdict verdict = check_segment(there, length, changed, at, trial);
+  const SegmentCheck::Verdict verdict = check_segment(length, changed, at, trial);
   if (verdict == SegmentCheck::Verdict::confirmed) return;
   end.interrupted = verdict == SegmentCheck::Verdict::interrupted;
   end.found = false;
@@ -382,7 +355,7 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   settler_.free_way = {};
   if (outcome == Newton::Outcome::interrupted) return Status::interrupted;
   StepEnd came = judge(outcome, there, length, at, trial);
-  if (came.found && !came.snap) check_path(there, length, settler_.active != active, at, trial, came);
+  if (came.found && !came.snap) check_path(length, settler_.active != active, at, trial, came);
   if (came.interrupted) return Status::interrupted;
   const double longest = longest_step(came.snap, came.unstable);
   const double corrected_mm = came.found ? system_.largest_move(step_.begun, trial.positions) : 0;
@@ -460,7 +433,7 @@ std::optional<Status> Continuation::shorten(double length, Iterate& at) {
     way_.advance = follow_below;
     return std::nullopt;
   }
-  double least = least_move * options_.tolerance_mm;
+  double least = least_move * system_.model().diagonal_mm;
   if (system_.contact()) least = std::min(least, least_contact_move * system_.model().contact.distance_mm);
   const bool leads_nowhere = !way_.releases && step_.move_mm < least;
   way_.thorough = false;

@@ -114,10 +114,8 @@ class Continuation {
   Newton::Outcome fall_onto(const Demand& here, const Demand& there, const Iterate& at, Iterate& trial);
   bool lead(const Demand& here, const Demand& there, Iterate& trial);
   bool leads_too_far(const Demand& here, const Demand& there, const Iterate& at);
-  SegmentCheck::Verdict check_segment(const Demand& there, double length, bool changed, const Iterate& at,
-                                      const Iterate& trial);
-  void check_path(const Demand& there, double length, bool changed, const Iterate& at, const Iterate& trial,
-                  StepEnd& end);
+  SegmentCheck::Verdict check_segment(double length, bool changed, const Iterate& at, const Iterate& trial);
+  void check_path(double length, bool changed, const Iterate& at, const Iterate& trial, StepEnd& end);
   [[nodiscard]] StepEnd judge(Newton::Outcome outcome, const Demand& there, double length, const Iterate& at,
                               const Iterate& trial);
   bool turned_back(const Iterate& at, const Iterate& trial);

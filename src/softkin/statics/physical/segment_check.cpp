@@ -17,7 +17,7 @@ constexpr double least_checked = 1e-3;
 constexpr int most_halvings = 7, most_middle_corrections = 60;
 /// A middle may be so far from its equilibrium, over the secant.
 constexpr double middle_accuracy = 1e-3;
-/// Of a segment, over which supports move for the tangent of its middle.
+/// Of a segment, over which supports move for a tangent.
 constexpr double rate_difference = 1e-3;
 
 }  // namespace
@@ -44,15 +44,24 @@ bool SegmentCheck::is_balanced_between(const SegmentEnd& low, const SegmentEnd& 
   middle.multipliers = 0.5 * (low.at->multipliers + high.at->multipliers);
   Balance balance;
   const std::optional<Eigen::VectorXd> step = step_from(middle, there, balance);
+  evaluate(high);
   return step && !balance.inverted &&
          system_.freedoms().size_of(*step, middle.positions).largest <=
              most_off_balance * size(high.at->positions - low.at->positions);
 }
 
+/// Does the tangent at the begin predict the end? Where it was extrapolated the end is enough.
 bool SegmentCheck::is_predicted(const SegmentEnd& low, const SegmentEnd& high, const Points& predicted) {
   const Points secant = high.at->positions - low.at->positions;
   if (size(predicted - secant) > most_missed_ahead * size(secant)) return false;
   return low.rate.rows() == 0 || is_balanced_between(low, high, ((high.factor - low.factor) * low.rate - secant) / 4);
+}
+
+/// Does the tangent at the end lead back to the begin?
+bool SegmentCheck::is_retraced(const SegmentEnd& low, const SegmentEnd& high) {
+  const Points secant = high.at->positions - low.at->positions;
+  const Points behind = (high.factor - low.factor) * high.rate - secant;
+  return size(behind) <= most_missed_at_an_end * size(secant) && is_balanced_between(low, high, -behind / 4);
 }
 
 bool SegmentCheck::tangents_agree(const SegmentEnd& low, const SegmentEnd& high) const {
@@ -70,14 +79,59 @@ bool SegmentCheck::agree(const SegmentEnd& low, const SegmentEnd& high) {
          is_balanced_between(low, high, (high.factor - low.factor) / 8 * (low.rate - high.rate));
 }
 
-SegmentCheck::Verdict SegmentCheck::check(const SegmentEnd& low, const SegmentEnd& high) {
+SegmentCheck::Verdict SegmentCheck::check(SegmentEnd low, SegmentEnd high, const Points& predicted, bool changed) {
+  if (is_predicted(low, high, predicted)) return Verdict::confirmed;
+  const bool extrapolated = low.rate.rows() == 0;
+  // the factorisation at hand is of a shape nearby, and mostly good enough
+  const bool at_hand = !changed && !turns();
+  if (at_hand) {
+    high.rate = rate_towards(low, high);
+    if (extrapolated && is_retraced(low, high)) return Verdict::confirmed;
+  }
+  if (!at_hand || extrapolated) {
+    lost_factor_ = true;
+    if (!factorise(low)) return Verdict::unclear;
+    low.rate = rate_towards(high, low);
+    if (!factorise(high)) return Verdict::unclear;
+    high.rate = rate_towards(low, high);
+    lost_factor_ = false;
+  }
+  return agree(low, high) ? Verdict::confirmed : check_by_middles(low, high);
+}
+
+SegmentCheck::Verdict SegmentCheck::check_by_middles(const SegmentEnd& low, const SegmentEnd& high) {
   const double energy = report_.energy, gradient_norm = report_.gradient_norm, step_mm = report_.step_mm;
   iterations_ = report_.iterations;
   const Verdict verdict = check_halves(low, high, most_halvings);
   report_.energy = energy;
   report_.gradient_norm = gradient_norm;
   report_.step_mm = step_mm;
+  lost_factor_ = verdict != Verdict::confirmed || !factorise(high);
   return verdict;
+}
+
+/// Do supports turn on the path?
+bool SegmentCheck::turns() const {
+  return system_.placement().largest_turn(demand(0), demand(1)) > 0;
+}
+
+/// Of the workspace, which a middle leaves with its own.
+void SegmentCheck::evaluate(const SegmentEnd& end) {
+  Balance balance;
+  system_.evaluate(*end.at, demand(end.factor), settler_.active, work_, balance, team_);
+}
+
+bool SegmentCheck::factorise(const SegmentEnd& end) {
+  return settler_.prepare(demand(end.factor), *end.at) >= 0;
+}
+
+/// The tangent of the path at one end, by the factorisation at hand. What is held on an arc moves along its tangent on
+/// a small part of the segment alone.
+Points SegmentCheck::rate_towards(const SegmentEnd& other, const SegmentEnd& at) {
+  const double change = (turns() ? rate_difference : 1) * (other.factor - at.factor);
+  return first_order_moves(system_, demand(at.factor), demand(at.factor + change), settler_.active, work_, team_,
+                           *at.at) /
+         change;
 }
 
 SegmentCheck::Verdict SegmentCheck::check_halves(const SegmentEnd& low, const SegmentEnd& high, int depth) {

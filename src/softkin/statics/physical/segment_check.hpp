@@ -15,7 +15,7 @@ struct SegmentEnd {
 /// Checks whether two equilibria are the ends of one segment of a load path without a limit point in between: a step
 /// whose corrector converged may have passed one, and then ends on another branch, which may be as stable.
 ///
-/// A segment is confirmed where the tangent at its begin predicts its end, or where the tangents at both ends agree
+/// A segment is confirmed where the tangent at one end predicts the other, or where the tangents at both ends agree
 /// with its secant, and where besides the middle of the curve by these tangents is nearly an equilibrium: under many
 /// times a limit load tangents may agree by chance. Else the equilibrium in the middle of the shapes, not of the loads,
 /// is found across the secant (the load factor is an unknown, so it exists on an unstable branch, too): if it is
@@ -35,29 +35,36 @@ class SegmentCheck : ArcLength {
   /// Is a segment that moves a vertex by so much too short to be checked?
   [[nodiscard]] static bool is_short(const System& system, double move_mm);
 
-  /// Does the tangent at the begin predict the end, and is the middle nearly an equilibrium?
+  /// Of a step that was taken, whose last factorisation is that of a shape near its end.
   ///
-  /// low        without a rate where equilibria around it were extrapolated in place of a tangent: the end is enough
-  /// predicted  moves to where the tangent leads, with what turns on the way [mm]
-  [[nodiscard]] bool is_predicted(const SegmentEnd& low, const SegmentEnd& high, const Points& predicted);
+  /// low        without a rate where the end was extrapolated from the equilibria before
+  /// high       without a rate
+  /// predicted  moves that the step began with [mm]
+  /// changed    cables that were held slacken, or others pull: the factorisation at hand is of other ones
+  [[nodiscard]] Verdict check(SegmentEnd low, SegmentEnd high, const Points& predicted, bool changed);
 
-  /// Do the tangents at both ends agree with the secant, and is the middle nearly an equilibrium? By the factorisation
-  /// at hand, of a shape nearby; the workspace is left with the evaluation of the middle.
-  [[nodiscard]] bool agree(const SegmentEnd& low, const SegmentEnd& high);
-
-  /// The workspace is left with another factorisation where the ends do not agree.
-  [[nodiscard]] Verdict check(const SegmentEnd& low, const SegmentEnd& high);
+  /// Has the workspace no longer a factorisation near the end?
+  [[nodiscard]] bool lost_factor() const { return lost_factor_; }
 
  private:
-  Verdict check_halves(const SegmentEnd& low, const SegmentEnd& high, int depth);
-  Verdict find_middle(const SegmentEnd& low, const SegmentEnd& high, Point& middle);
+  [[nodiscard]] bool is_predicted(const SegmentEnd& low, const SegmentEnd& high, const Points& predicted);
+  [[nodiscard]] bool is_retraced(const SegmentEnd& low, const SegmentEnd& high);
+  [[nodiscard]] bool agree(const SegmentEnd& low, const SegmentEnd& high);
   [[nodiscard]] bool tangents_agree(const SegmentEnd& low, const SegmentEnd& high) const;
   [[nodiscard]] bool is_balanced_between(const SegmentEnd& low, const SegmentEnd& high, const Points& aside);
+  [[nodiscard]] Verdict check_by_middles(const SegmentEnd& low, const SegmentEnd& high);
+  Verdict check_halves(const SegmentEnd& low, const SegmentEnd& high, int depth);
+  Verdict find_middle(const SegmentEnd& low, const SegmentEnd& high, Point& middle);
+  [[nodiscard]] bool turns() const;
+  void evaluate(const SegmentEnd& end);
+  [[nodiscard]] bool factorise(const SegmentEnd& end);
+  [[nodiscard]] Points rate_towards(const SegmentEnd& other, const SegmentEnd& at);
   [[nodiscard]] Points rate(const Point& point, double change) const;
   [[nodiscard]] double size(const Points& moves) const;
 
   int iterations_ = 0;
   double corrected_ = 0;  // by what the last middle moved from the cubic [mm]
+  bool lost_factor_ = false;
 };
 
 }  // namespace softkin::physical
