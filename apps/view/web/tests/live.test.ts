@@ -1,7 +1,8 @@
 import assert from 'node:assert/strict';
-import {afterEach, beforeEach, mock, test} from 'node:test';
+import {afterEach, beforeEach, test} from 'node:test';
 import {type Frame, readFrame} from '../src/frame';
 import {Live, type LiveState} from '../src/live';
+import {FakeClock} from './fake_clock';
 
 /** A shape of softkin view: the head padded with spaces, positions, then the arrays. */
 function shape(head: object, ...floats: number[]): ArrayBuffer {
@@ -52,6 +53,7 @@ class FakeSocket {
   answer(id: unknown): void { this.happen('message', {data: shape(headOf(id as number), 1, 2, 3, 0)}); }
 }
 
+const clock = new FakeClock();
 let states: LiveState[] = [], frames: [number, boolean, boolean][] = [], reloads = 0,
   maps: unknown[] = [];
 const start = (): {live: Live; socket: FakeSocket} => {
@@ -66,11 +68,11 @@ const start = (): {live: Live; socket: FakeSocket} => {
 };
 
 beforeEach(() => {
-  (mock.timers.enable as (options: object) => void)({apis: ['setTimeout', 'Date']});
+  clock.install();
   Object.assign(globalThis, {WebSocket: FakeSocket, window: globalThis});
   [FakeSocket.all, states, frames, reloads, maps] = [[], [], [], 0, []];
 });
-afterEach(() => mock.timers.reset());
+afterEach(() => clock.uninstall());
 
 test('a map that was made meanwhile is taken', () => {
   const {socket} = start();
@@ -85,7 +87,7 @@ test('one request is on its way, and the newest waits', () => {
   assert.deepEqual(socket.sent as unknown, [{type: 'hello', secret: 'secret'}]);
   const ids = [1, 2, 3].map((command) => live.send({type: 'command', commands: [command]}));
   assert.ok(ids[0] < ids[1] && ids[1] < ids[2] && ids[2] <= 2 ** 53);
-  mock.timers.tick(5000);
+  clock.tick(5000);
   assert.deepEqual(socket.sent.slice(1).map(({id}) => id), [ids[0]]);
   socket.answer(ids[0]);
   assert.deepEqual(socket.sent.slice(1).map(({id, commands}) => [id, commands]), [[ids[0], [1]], [ids[2], [3]]]);
@@ -101,7 +103,7 @@ test('a search for a target gives way after a second', () => {
   const first = live.send({type: 'target', marker: 0, at: [1, 2, 3]});
   const second = live.send({type: 'target', marker: 0, at: [1, 2, 4]});
   assert.equal(socket.sent.length, 2);
-  mock.timers.tick(1100);
+  clock.tick(1100);
   assert.deepEqual(socket.sent.slice(1).map(({id}) => id), [first, second]);
   socket.answer(first);
   assert.ok(live.busy);
@@ -139,13 +141,13 @@ test('it connects again, with longer pauses, and forgets what it asked', () => {
   socket.happen('close');
   assert.ok(!states.at(-1)?.connected && !live.busy);
   for (const [n, pause] of [500, 1000, 2000, 4000, 5000, 5000].entries()) {
-    mock.timers.tick(pause - 1);
+    clock.tick(pause - 1);
     assert.equal(FakeSocket.all.length, n + 1);
-    mock.timers.tick(1);
+    clock.tick(1);
     assert.equal(FakeSocket.all.length, n + 2);
     FakeSocket.all[n + 1].happen('close');
   }
-  mock.timers.tick(5000);
+  clock.tick(5000);
   FakeSocket.all[7].open();
   assert.ok(states.at(-1)?.connected);
   FakeSocket.all[7].hear({type: 'state', model: 'other', secret: true, control: true, free: false, watchers: 0});
