@@ -37,7 +37,7 @@ Model finger(double size, bool quadratic, double distance) {
   return compile(spec);
 }
 
-/// From rest in so many steps of the ratio of its chamber's volume.
+/// Solves from rest to a volume ratio of its chamber in equal steps.
 Outcome sweep(const Statics& statics, double ratio, int steps, const Options& options) {
   StaticsOptions statics_options;
   statics_options.threads = options.threads;

@@ -1,5 +1,5 @@
-// What is told of a force of unknown place on a made-up finger, against what was drawn; how wrong readings are found;
-// how many updates a second there are.
+// Compares estimates of a force at an unknown place on a synthetic finger with the drawn truth, tests how wrong
+// readings are found, and measures the number of updates per second.
 
 #include <unistd.h>
 #include <algorithm>
@@ -27,13 +27,13 @@ using softkin::bench::finger_length;
 /// 90 % of a chi-square of 2 and 3 freedoms.
 constexpr double ninety_of_2 = 4.6052, ninety_of_3 = 6.2514;
 /// Of the largest force along each axis that maps are made for: under the whole one the finger has no equilibrium.
-constexpr double map_force_share = 0.2;
-/// An update of so many is told by itself.
+constexpr double map_force_fraction = 0.2;
+/// Updates with at least this number of equilibria are printed individually.
 constexpr int many_equilibria = 4;
 
 struct Options {
   int draws = 100, swaps = 100, updates = 300, map_draws = 0;
-  double noise_mm = 0.2, most_force_N = 2;
+  double noise_mm = 0.2, max_force_N = 2;
   unsigned seed = 1;
   double fade_s = 0;
   int places = 80, starts = 3;
@@ -78,7 +78,7 @@ class Draws {
       truth.commands = model_.rest_actuation();
       truth.commands[0] = 20 * uniform_(random_);
       Vec3 direction(normal_(random_), normal_(random_), normal_(random_));
-      truth.force = options_.most_force_N * uniform_(random_) * direction.normalized();
+      truth.force = options_.max_force_N * uniform_(random_) * direction.normalized();
       const estimate::Patch& patch = *problem_.variables().forces()[0].patch;
       const estimate::Place place = patch.nearest({finger_length * uniform_(random_), 15 * uniform_(random_), 20});
       truth.place = patch.at(place, model_.rest);
@@ -118,9 +118,9 @@ double processor_seconds() {
   return static_cast<double>(now.tv_sec) + 1e-9 * static_cast<double>(now.tv_nsec);
 }
 
-double quantile(std::vector<double> values, double share) {
+double quantile(std::vector<double> values, double fraction) {
   if (values.empty()) return 0;
-  const auto at = static_cast<std::size_t>(share * static_cast<double>(values.size() - 1) + 0.5);
+  const auto at = static_cast<std::size_t>(fraction * static_cast<double>(values.size() - 1) + 0.5);
   std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(at), values.end());
   return values[at];
 }
@@ -132,40 +132,40 @@ double distance2(const Eigen::VectorXd& off, const Eigen::MatrixXd& covariance) 
 
 /// Errors of some draws, and how often ellipsoids of 90 % hold the truth.
 struct Errors {
-  std::vector<double> force_N, force_share, force_deviation_N, place_mm, place_deviation_mm, shape_mm,
-      shape_deviation_mm, foretold_mm, seconds;
+  std::vector<double> force_N, force_fraction, force_deviation_N, place_mm, place_deviation_mm, shape_mm,
+      shape_deviation_mm, predicted_mm, seconds;
   std::mt19937 random{17};
   int draws = 0, converged = 0, force_held = 0, place_held = 0, misfits = 0, left_out = 0;
   double vertices_held = 0;
 
-  void add(const Truth& truth, const Estimate& told) {
+  void add(const Truth& truth, const Estimate& estimated) {
     ++draws;
-    seconds.push_back(told.seconds);
-    if (told.status != Status::converged) return;
+    seconds.push_back(estimated.seconds);
+    if (estimated.status != Status::converged) return;
     ++converged;
-    misfits += told.misfit() > 3;
-    left_out += !told.left_out.empty();
-    const Vec3 off(told.numbers[0].value - truth.force[0], told.numbers[1].value - truth.force[1],
-                   told.numbers[2].value - truth.force[2]);
-    const Mat3 covariance = told.covariance.topLeftCorner<3, 3>();
+    misfits += estimated.misfit() > 3;
+    left_out += !estimated.left_out.empty();
+    const Vec3 off(estimated.numbers[0].value - truth.force[0], estimated.numbers[1].value - truth.force[1],
+                   estimated.numbers[2].value - truth.force[2]);
+    const Mat3 covariance = estimated.covariance.topLeftCorner<3, 3>();
     force_N.push_back(off.norm());
-    if (truth.force.norm() > 0.1) force_share.push_back(off.norm() / truth.force.norm());
+    if (truth.force.norm() > 0.1) force_fraction.push_back(off.norm() / truth.force.norm());
     force_deviation_N.push_back(std::sqrt(covariance.trace()));
     force_held += distance2(off, covariance) < ninety_of_3;
-    const Eigen::Vector2d slid = (told.places[0].at_rest - truth.place).head<2>();
-    const Eigen::Matrix2d place_covariance = told.places[0].covariance.topLeftCorner<2, 2>();
+    const Eigen::Vector2d slid = (estimated.places[0].at_rest - truth.place).head<2>();
+    const Eigen::Matrix2d place_covariance = estimated.places[0].covariance.topLeftCorner<2, 2>();
     place_mm.push_back(slid.norm());
     place_deviation_mm.push_back(std::sqrt(place_covariance.trace()));
     place_held += distance2(slid, place_covariance) < ninety_of_2;
-    add_shape(truth, told);
+    add_shape(truth, estimated);
   }
 
-  void add_shape(const Truth& truth, const Estimate& told) {
+  void add_shape(const Truth& truth, const Estimate& estimated) {
     double worst = 0, deviation = 0, held = 0;
     const Index count = truth.positions.rows();
     for (Index v = 0; v < count; ++v) {
-      const Vec3 off = vertex_at(told.state.positions, v) - vertex_at(truth.positions, v);
-      const Vec3 own = told.vertex_deviation(v);
+      const Vec3 off = vertex_at(estimated.state.positions, v) - vertex_at(truth.positions, v);
+      const Vec3 own = estimated.vertex_deviation(v);
       if (off.norm() >= worst) {
         worst = off.norm();
         deviation = own.norm();
@@ -175,20 +175,20 @@ struct Errors {
     shape_mm.push_back(worst);
     shape_deviation_mm.push_back(deviation);
     vertices_held += held / (3.0 * count);
-    foretold_mm.push_back(foretold(told));
+    predicted_mm.push_back(predicted(estimated));
   }
 
-  /// The largest error of a shape that is drawn as the estimate says that shapes may be: what readings do not tell, no
-  /// estimator can.
-  double foretold(const Estimate& told) {
+  /// Returns the largest displacement error of a shape that is drawn from the estimated covariance: no estimator can
+  /// determine what the readings do not contain.
+  double predicted(const Estimate& estimated) {
     std::normal_distribution<double> normal;
-    const Eigen::MatrixXd& covariance = told.near_covariance;
+    const Eigen::MatrixXd& covariance = estimated.near_covariance;
     const SymmetricEigen eigen = symmetric_eigen(covariance);
     Eigen::VectorXd unknowns = Eigen::VectorXd::Zero(covariance.rows());
     for (Index k = 0; k < std::ssize(unknowns); ++k)
       unknowns += normal(random) * std::sqrt(std::max(0.0, eigen.values[k])) * eigen.vectors.col(k);
-    Points moved = Points::Zero(told.moves.front().rows(), 3);
-    for (std::size_t c = 0; c < told.moves.size(); ++c) moved += unknowns[c] * told.moves[c];
+    Points moved = Points::Zero(estimated.moves.front().rows(), 3);
+    for (std::size_t c = 0; c < estimated.moves.size(); ++c) moved += unknowns[c] * estimated.moves[c];
     return moved.rowwise().norm().maxCoeff();
   }
 
@@ -200,7 +200,7 @@ struct Errors {
     std::printf(
         "  force: median error %.3f N, %.2f %% of it; 90 %% below %.3f N; stated deviation, median %.3f N; "
         "ellipsoids of 90 %% hold %.1f %%\n",
-        quantile(force_N, 0.5), 100 * quantile(force_share, 0.5), quantile(force_N, 0.9),
+        quantile(force_N, 0.5), 100 * quantile(force_fraction, 0.5), quantile(force_N, 0.9),
         quantile(force_deviation_N, 0.5), 100 * force_held / n);
     std::printf(
         "  place: median error %.2f mm, %.2f %% of the length; 90 %% below %.2f mm; stated deviation, median "
@@ -212,8 +212,8 @@ struct Errors {
         "median %.3f mm; intervals of 90 %% hold %.1f %% of all coordinates; drawn from what is told: median %.3f, "
         "90 %% below %.3f mm\n",
         quantile(shape_mm, 0.5), 100 * quantile(shape_mm, 0.5) / finger_length, quantile(shape_mm, 0.9),
-        quantile(shape_deviation_mm, 0.5), 100 * vertices_held / n, quantile(foretold_mm, 0.5),
-        quantile(foretold_mm, 0.9));
+        quantile(shape_deviation_mm, 0.5), 100 * vertices_held / n, quantile(predicted_mm, 0.5),
+        quantile(predicted_mm, 0.9));
     std::printf("  seconds: median %.3f, 90 %% below %.3f\n", quantile(seconds, 0.5), quantile(seconds, 0.9));
     std::fflush(stdout);
   }
@@ -228,21 +228,23 @@ EstimatorOptions estimator_options(const Options& options) {
   return own;
 }
 
-/// A line of what was drawn and told.
-void tell_each(int draw, const Truth& truth, const std::vector<std::size_t>& wrong, const Estimate& told) {
+/// Prints a line with the drawn values and the estimated ones.
+void print_each(int draw, const Truth& truth, const std::vector<std::size_t>& wrong, const Estimate& estimated) {
   const auto list = [](const std::vector<std::size_t>& groups) {
     std::string text;
     for (const std::size_t g : groups) text += std::to_string(g + 1);
     return text.empty() ? std::string("none") : text;
   };
-  const Vec3 off = Vec3(told.numbers[0].value, told.numbers[1].value, told.numbers[2].value) - truth.force;
+  const Vec3 off =
+      Vec3(estimated.numbers[0].value, estimated.numbers[1].value, estimated.numbers[2].value) - truth.force;
   std::printf(
       "  %3d: %.2f kPa, (%.3f %.3f %.3f) N at (%.1f %.1f) mm; wrong %s, left out %s; %s, misfit %.1f, told "
       "(%.3f %.3f %.3f) N at (%.1f %.1f) mm, %.3f N off, %d equilibria, %.2f s\n",
       draw, truth.commands[0], truth.force[0], truth.force[1], truth.force[2], truth.place[0], truth.place[1],
-      list(wrong).c_str(), list(told.left_out).c_str(), softkin::name_of(told.status), told.misfit(),
-      told.numbers[0].value, told.numbers[1].value, told.numbers[2].value, told.places[0].at_rest[0],
-      told.places[0].at_rest[1], off.norm(), told.equilibria, told.seconds);
+      list(wrong).c_str(), list(estimated.left_out).c_str(), softkin::name_of(estimated.status), estimated.misfit(),
+      estimated.numbers[0].value, estimated.numbers[1].value, estimated.numbers[2].value,
+      estimated.places[0].at_rest[0], estimated.places[0].at_rest[1], off.norm(), estimated.equilibria,
+      estimated.seconds);
   std::fflush(stdout);
 }
 
@@ -256,9 +258,9 @@ void run_draws(const Model& model, const Options& options) {
   for (int d = 0; d < options.draws; ++d) {
     const Truth truth = draws.draw();
     estimator.forget();
-    const Estimate& told = estimator.update(truth.commands, draws.noisy(truth, deviation));
-    errors.add(truth, told);
-    if (options.verbose) tell_each(d, truth, {}, told);
+    const Estimate& estimated = estimator.update(truth.commands, draws.noisy(truth, deviation));
+    errors.add(truth, estimated);
+    if (options.verbose) print_each(d, truth, {}, estimated);
     if ((d + 1) % 50 == 0 && d + 1 < options.draws) errors.print("so far");
   }
   errors.print(options.volume_only ? "volume at a pressure, no marker" : "four markers");
@@ -290,14 +292,15 @@ void run_swaps(const Model& model, const Options& options) {
         values.segment<3>(3 * a) += 30 * off.normalized();
       }
       estimator.forget();
-      const Estimate& told = estimator.update(truth.commands, values);
-      named += std::includes(told.left_out.begin(), told.left_out.end(), wrong.begin(), wrong.end());
-      exact += told.left_out == wrong;
-      if (options.verbose) tell_each(d, truth, wrong, told);
-      seconds.push_back(told.seconds);
-      if (told.status == Status::converged)
+      const Estimate& estimated = estimator.update(truth.commands, values);
+      named += std::includes(estimated.left_out.begin(), estimated.left_out.end(), wrong.begin(), wrong.end());
+      exact += estimated.left_out == wrong;
+      if (options.verbose) print_each(d, truth, wrong, estimated);
+      seconds.push_back(estimated.seconds);
+      if (estimated.status == Status::converged)
         force_N.push_back(
-            (Vec3(told.numbers[0].value, told.numbers[1].value, told.numbers[2].value) - truth.force).norm());
+            (Vec3(estimated.numbers[0].value, estimated.numbers[1].value, estimated.numbers[2].value) - truth.force)
+                .norm());
     }
     std::printf("%s: %d of %d named, %d no other beside; force off by %.3f N in the median; %.2f s each\n",
                 swap ? "two markers exchanged" : "one marker 30 mm off", named, options.swaps, exact,
@@ -346,17 +349,20 @@ void run_updates(const Model& model, const Options& options) {
     truth.readings = guess.computed;
     const Eigen::VectorXd values = draws.noisy(truth, options.noise_mm);
     const double begin = processor_seconds();
-    const Estimate& told = estimator.update(truth.commands, values, 0.01);
+    const Estimate& estimated = estimator.update(truth.commands, values, 0.01);
     if (u > 0) processor.push_back(processor_seconds() - begin);
-    failed += told.status != Status::converged;
+    failed += estimated.status != Status::converged;
     truth.positions = guess.equilibrium.state.positions;
-    if (options.verbose && (told.equilibria > many_equilibria || told.misfit() > 3)) tell_each(u, truth, {}, told);
+    if (options.verbose && (estimated.equilibria > many_equilibria || estimated.misfit() > 3))
+      print_each(u, truth, {}, estimated);
     if (u == 0) continue;
-    errors.add(truth, told);
-    seconds.push_back(told.seconds);
-    equilibria.push_back(told.equilibria);
-    force_N.push_back((Vec3(told.numbers[0].value, told.numbers[1].value, told.numbers[2].value) - truth.force).norm());
-    place_mm.push_back((told.places[0].at_rest - truth.place).norm());
+    errors.add(truth, estimated);
+    seconds.push_back(estimated.seconds);
+    equilibria.push_back(estimated.equilibria);
+    force_N.push_back(
+        (Vec3(estimated.numbers[0].value, estimated.numbers[1].value, estimated.numbers[2].value) - truth.force)
+            .norm());
+    place_mm.push_back((estimated.places[0].at_rest - truth.place).norm());
   }
   double total = 0, solves = 0;
   for (const double s : seconds) total += s;
@@ -371,14 +377,15 @@ void run_updates(const Model& model, const Options& options) {
   errors.print("in time");
 }
 
-/// A force of unknown size at a known place, told by a map of the finger from readings of the solver's equilibria.
+/// Estimates a force of unknown size at a known place with a map of the finger, from readings of the solver's
+/// equilibria.
 void run_map(const Options& options) {
   RobotSpec spec = softkin::bench::touched_finger(options.quadratic);
-  const double most_N = map_force_share * options.most_force_N;
+  const double max_N = map_force_fraction * options.max_force_N;
   spec.actuators[0].low = 0;
   spec.actuators[0].high = 20;
   spec.loads.forces[0].at = {Vec3(80, 7.5, 20), {}};
-  spec.loads.forces[0].range = std::array<Vec3, 2>{Vec3::Constant(-most_N), Vec3::Constant(most_N)};
+  spec.loads.forces[0].range = std::array<Vec3, 2>{Vec3::Constant(-max_N), Vec3::Constant(max_N)};
   const Model model = compile(spec);
   MapOptions wanted;
   wanted.accuracy_mm = 0.1 * options.noise_mm;
@@ -389,7 +396,7 @@ void run_map(const Options& options) {
               static_cast<long long>(made.data.equilibria), made.data.check.largest.head(12).maxCoeff(),
               static_cast<long long>(made.data.check.points));
   std::vector<MapUnknown> unknowns;
-  for (Index i = 1; i < map.inputs(); ++i) unknowns.push_back({i, 0, most_N / 2});
+  for (Index i = 1; i < map.inputs(); ++i) unknowns.push_back({i, 0, max_N / 2});
   std::mt19937 random(options.seed);
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform(0, 1);
@@ -397,10 +404,10 @@ void run_map(const Options& options) {
   std::vector<double> force_N, deviation_N;
   const Eigen::VectorXd deviations = Eigen::VectorXd::Constant(map.outputs(), options.noise_mm);
   double seconds = 0;
-  int held = 0, told = 0, calls = 0, outside = 0;
+  int held = 0, estimated = 0, calls = 0, outside = 0;
   for (int d = 0; d < options.map_draws; ++d) {
     Actuation commands = model.rest_actuation();
-    const Vec3 force = most_N * uniform(random) * Vec3(normal(random), normal(random), normal(random)).normalized();
+    const Vec3 force = max_N * uniform(random) * Vec3(normal(random), normal(random), normal(random)).normalized();
     commands << 20 * uniform(random), force;
     const Equilibrium truth = statics.solve(commands, statics.rest());
     Eigen::VectorXd values = Eigen::VectorXd::Constant(map.outputs(), std::nan("")), begin = map.commands(commands);
@@ -417,7 +424,7 @@ void run_map(const Options& options) {
       ++outside;
       continue;
     }
-    ++told;
+    ++estimated;
     const Vec3 off = found->commands.tail<3>() - force;
     force_N.push_back(off.norm());
     deviation_N.push_back(std::sqrt(found->covariance.trace()));
@@ -426,8 +433,8 @@ void run_map(const Options& options) {
   std::printf(
       "by a map: %.0f a second; %d of %d told; force off by %.3f N in the median, stated deviation %.3f N; ellipsoids "
       "of 90 %% hold %.1f %%\n",
-      calls / seconds, told, told + outside, quantile(force_N, 0.5), quantile(deviation_N, 0.5),
-      100.0 * held / std::max(1, told));
+      calls / seconds, estimated, estimated + outside, quantile(force_N, 0.5), quantile(deviation_N, 0.5),
+      100.0 * held / std::max(1, estimated));
 }
 
 }  // namespace
@@ -442,7 +449,7 @@ int main(int argc, char** argv) {
   app.add_option("--updates", options.updates, "Updates in time");
   app.add_option("--fade", options.fade_s, "Time in which an update forgets the last one [s]; 0: each by itself");
   app.add_option("--noise", options.noise_mm, "Of markers [mm]");
-  app.add_option("--force", options.most_force_N, "Largest force [N]");
+  app.add_option("--force", options.max_force_N, "Largest force [N]");
   app.add_option("--seed", options.seed, "Of what is drawn");
   app.add_option("--threads", options.threads, "Of the solver");
   app.add_option("--places", options.places, "Where a search begins to look");

@@ -1,5 +1,5 @@
-// What each kind of reading tells of each unknown of a finger that is touched: the table of docs/estimate.md. Standard
-// deviations of the linear posterior at one touch, with what is known before.
+// Prints the table of docs/estimate.md: how well each kind of reading determines each unknown of a finger under a
+// contact force. The numbers are standard deviations of the linear posterior at one place, with the priors included.
 
 #include <cmath>
 #include <cstdio>
@@ -92,8 +92,8 @@ int main() {
                                  {"marker at the tip, load cell", {"tip", "load cell"}},
                                  {"4 markers, load cell", {"marker", "load cell"}},
                                  {"all", {"marker", "strain", "bend", "volume", "load cell"}}};
-  // unknowns that are told together: the force at a known place, also the place, the pressure alone, all
-  const std::vector<std::vector<Index>> told = {{0, 1, 2}, {0, 1, 2, 4, 5}, {3}, {0, 1, 2, 3, 4, 5}};
+  // unknowns that are estimated together: the force at a known place; also the place; the pressure alone; all
+  const std::vector<std::vector<Index>> estimated = {{0, 1, 2}, {0, 1, 2, 4, 5}, {3}, {0, 1, 2, 3, 4, 5}};
   std::printf(
       "| read | force at a known place: x | y | z [N] | force anywhere: x | y | z [N] | its place: along | across "
       "[mm] | pressure alone [kPa] | pressure beside force and place [kPa] |\n|---|");
@@ -105,14 +105,15 @@ int main() {
       if (is_of(row, columns[r])) weights[r] = std::pow(deviations[r], -2);
     const Eigen::MatrixXd matrix = slopes.transpose() * weights.asDiagonal() * slopes + before;
     std::printf("| %s |", row.name);
-    for (std::size_t set = 0; set < told.size(); ++set) {
-      const Eigen::MatrixXd own = matrix(told[set], told[set]), prior = before(told[set], told[set]);
-      const Index size = told[set].size();
+    for (std::size_t set = 0; set < estimated.size(); ++set) {
+      const Eigen::MatrixXd own = matrix(estimated[set], estimated[set]),
+                            prior = before(estimated[set], estimated[set]);
+      const Index size = estimated[set].size();
       const Eigen::MatrixXd identity = Eigen::MatrixXd::Identity(size, size);
       const Eigen::MatrixXd covariance = CholeskyFactor(own).solve(identity),
                             first = CholeskyFactor(prior).solve(identity);
       for (Index i = 0; i < size; ++i)
-        if (set < 3 || told[set][i] == 3) print_cell(std::sqrt(covariance(i, i)), std::sqrt(first(i, i)));
+        if (set < 3 || estimated[set][i] == 3) print_cell(std::sqrt(covariance(i, i)), std::sqrt(first(i, i)));
     }
     std::printf("\n");
   }

@@ -80,7 +80,7 @@ struct Cholmod {
   }
   ~Cholmod() {
     cholmod_free_dense(&solution, &common);
-    cholmod_free_dense(&half_way, &common);
+    cholmod_free_dense(&halfway, &common);
     cholmod_free_dense(&work, &common);
     cholmod_free_factor(&factor, &common);
     cholmod_finish(&common);
@@ -90,7 +90,7 @@ struct Cholmod {
 
   cholmod_common common;
   cholmod_factor* factor = nullptr;
-  cholmod_dense *solution = nullptr, *half_way = nullptr, *work = nullptr;  // kept from solve to solve
+  cholmod_dense *solution = nullptr, *halfway = nullptr, *work = nullptr;  // kept from solve to solve
 };
 
 cholmod_sparse view_of(Eigen::SparseMatrix<double>& matrix) {
@@ -134,7 +134,7 @@ std::optional<FactorTimes> time_cholmod_supernodal(const Eigen::SparseMatrix<dou
     if (cholmod.factor == nullptr || cholmod.common.status != CHOLMOD_OK)
       throw InvalidInput("CHOLMOD could not factorise the matrix");
     begin = now();
-    cholmod_solve2(CHOLMOD_A, cholmod.factor, &right, nullptr, &cholmod.solution, nullptr, &cholmod.half_way,
+    cholmod_solve2(CHOLMOD_A, cholmod.factor, &right, nullptr, &cholmod.solution, nullptr, &cholmod.halfway,
                    &cholmod.work, &cholmod.common);
     solves.push_back(now() - begin);
   }

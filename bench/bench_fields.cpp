@@ -20,7 +20,7 @@ struct Options {
   std::string only;
 };
 
-/// A robot on its way along a path of its one actuator.
+/// A robot that follows a path of its single actuator.
 class Tracked {
  public:
   Tracked(RobotSpec spec, double from, double to, const Options& options)
@@ -112,15 +112,15 @@ void compare(double size, FingerKind kind, const Options& options) {
          {std::pair("", Magnetisation::turns), std::pair(", stretches", Magnetisation::stretches)})
       all.emplace_back(std::string(name) + form,
                        std::make_unique<Tracked>(by_field(finger, source, command, magnetisation), 0, most, options));
-  const auto asked = [&](const std::string& what) { return options.only.empty() || options.only == what; };
+  const auto requested = [&](const std::string& what) { return options.only.empty() || options.only == what; };
   for (int step = 0; step <= options.steps; ++step)
     for (auto& [what, robot] : all)
-      if (asked(what)) robot->step(step);
+      if (requested(what)) robot->step(step);
   const bool compared = options.only.empty();
   const double elastic = compared ? median(all[0].second->seconds) : 0,
                pressed = compared ? median(all[2].second->seconds) : 0;
   for (std::size_t i = 0; i < all.size(); ++i) {
-    if (!asked(all[i].first)) continue;
+    if (!requested(all[i].first)) continue;
     const Tracked& robot = *all[i].second;
     const double typical = median(robot.seconds);
     std::printf(

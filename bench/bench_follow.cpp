@@ -82,8 +82,8 @@ Mesh finger_mesh(double size) {
   return mesh;
 }
 
-/// The robot of examples/three_tendon_finger with a mesh of about so many tetrahedra in place of its own: the same
-/// shape, in hexahedra of six tetrahedra each; the tendons leave and enter the body in points.
+/// Returns the robot of examples/three_tendon_finger with a mesh of about `tetrahedra` elements in place of its own:
+/// the same shape, in hexahedra of six tetrahedra each; the tendons enter and leave the body at points.
 ///
 /// scene   of that example
 /// order   of the tetrahedra in the physical formulation, 1 or 2
@@ -112,7 +112,7 @@ struct Options {
 struct Method {
   const char* name;
   InverseMethod method;
-  double asked_mm;
+  double requested_mm;
 };
 
 constexpr Method methods[] = {{"newton", InverseMethod::newton, 1e-3},
@@ -143,7 +143,7 @@ Followed follow(const Statics& statics, const MarkerPath& path, const Trajectory
 TrajectoryOptions trajectory(const Method& method, Solver solver, const Options& options) {
   TrajectoryOptions result;
   result.inverse.method = method.method;
-  result.inverse.tolerance_mm = method.asked_mm;
+  result.inverse.tolerance_mm = method.requested_mm;
   result.inverse.max_iterations = 1000;  // or the paper's 30 would end it short of 0.01 mm
   result.inverse.statics.solver = solver;
   if (solver == Solver::local_global) {
@@ -170,7 +170,7 @@ Actuation sample_near(const Model& model, const Statics& statics, const MarkerPa
   return near;
 }
 
-void print_row(const Method& method, const Followed& found, const Followed& newton, std::size_t asked) {
+void print_row(const Method& method, const Followed& found, const Followed& newton, std::size_t requested) {
   double worst = 0, equilibria = 0;
   std::size_t missed = 0;
   for (const InverseResult& each : found.waypoints) {
@@ -179,7 +179,7 @@ void print_row(const Method& method, const Followed& found, const Followed& newt
     missed += each.status == InverseStatus::reached ? 0 : 1;
   }
   const std::size_t count = found.waypoints.size();
-  std::printf("    %-9s %7.3g  %4zu of %-4zu", method.name, method.asked_mm, count, asked);
+  std::printf("    %-9s %7.3g  %4zu of %-4zu", method.name, method.requested_mm, count, requested);
   if (count == 0) {
     std::printf("  none within the limit of %.0f s", found.seconds);
     if (!newton.waypoints.empty())

@@ -17,14 +17,14 @@ struct Options {
   bool two = false;
 };
 
-void print_row(const PressedBalls& balls, double share) {
+void print_row(const PressedBalls& balls, double fraction) {
   const BallContact found = softkin::testing::pressed(balls);
   const softkin::testing::HertzRatios ratios = softkin::testing::beside_hertz(balls, found);
   const double radius = PressedBalls::radius;
   std::printf("%7.3f %8.4f %8.4f %9.5f %9.5f %9.5f | %7.4f %7.4f %7.4f | %7.4f %7.4f | %5d %8td %7.1f %s\n", balls.cell,
-              balls.distance / radius, share, found.force, found.approach / radius, found.radius / radius, ratios.force,
-              ratios.force_of_ball, ratios.force_of_radius, ratios.radius, ratios.rim, found.found.report.iterations,
-              static_cast<std::ptrdiff_t>(found.unknowns), found.found.report.seconds,
+              balls.distance / radius, fraction, found.force, found.approach / radius, found.radius / radius,
+              ratios.force, ratios.force_of_ball, ratios.force_of_radius, ratios.radius, ratios.rim,
+              found.found.report.iterations, static_cast<std::ptrdiff_t>(found.unknowns), found.found.report.seconds,
               found.found.report.status == Status::converged ? found.found.report.remark.c_str() : "FAILED");
   std::fflush(stdout);
 }
@@ -42,12 +42,12 @@ int run(const Options& options) {
               "approach", "radius", "F/F(d)", "F/F(d')", "F/F(a)", "a/a(d)", "rim", "iter.", "unknowns", "time s");
   for (const double cell : options.cells)
     for (const double distance : options.distances)
-      for (const double share : options.approaches)
-        print_row({.approach = share * PressedBalls::radius,
+      for (const double fraction : options.approaches)
+        print_row({.approach = fraction * PressedBalls::radius,
                    .distance = distance * PressedBalls::radius,
                    .cell = cell,
                    .two = options.two},
-                  share);
+                  fraction);
   return 0;
 }
 

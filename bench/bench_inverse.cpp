@@ -26,7 +26,7 @@ struct Options {
   bool touching = false;
 };
 
-/// A beam of 64 x 20 x 20 mm with three chambers around its axis, of about so many tetrahedra.
+/// Returns a beam of 64 x 20 x 20 mm with three chambers around its axis, of about `size` tetrahedra.
 RobotSpec beam(double size) {
   const int across = 5 * std::max(1, static_cast<int>(std::lround(std::cbrt(size / 2000))));
   const int along = std::max(8, static_cast<int>(std::lround(size / (0.91 * 6 * across * across))));
@@ -66,7 +66,7 @@ struct Answer {
 };
 
 struct Tally {
-  int count = 0, reached = 0, flagged = 0, lost = 0, most_equilibria = 0;
+  int count = 0, reached = 0, flagged = 0, lost = 0, max_equilibria = 0;
   double worst_mm = 0, equilibria = 0, iterations = 0, seconds = 0, processor = 0, slope = 0;
   bool inside = true;
 
@@ -81,7 +81,7 @@ struct Tally {
     if (result.status == InverseStatus::reached) worst_mm = std::max(worst_mm, error);
     slope = std::max(slope, result.slope);
     equilibria += result.equilibria;
-    most_equilibria = std::max(most_equilibria, result.equilibria);
+    max_equilibria = std::max(max_equilibria, result.equilibria);
     iterations += result.iterations;
     seconds += result.seconds;
     for (const InverseTrial& record : result.history)
@@ -95,7 +95,7 @@ Vec3 tip_of(const Model& model, const State& state) {
   return model.markers[0].point.at(state.positions);
 }
 
-constexpr double least_force_N = 0.05;  // of a pose that presses
+constexpr double min_force_N = 0.05;  // of a pose that presses
 
 class Bench {
  public:
@@ -136,42 +136,42 @@ class Bench {
     return 0;
   }
 
-  /// Random poses that press on something: the largest component of the force is asked for, and the marker's
-  /// coordinates along the other two axes. Forward kinematics from rest tells what came of it.
+  /// Solves inverse kinematics for random poses that press on an obstacle. The goals are the largest component of the
+  /// force and the marker's coordinates along the other two axes. Forward kinematics from rest checks the answers.
   int press() {
     const ForceGoal on = force_on(model_, options_.press);
     rest_ = statics_.solve(model_.rest_actuation(), statics_.rest(), inverse_.statics).state;
     Tally tally;
     int met = 0;
-    double worst_share = 0, worst_mm = 0, least_N = HUGE_VAL, most_N = 0;
+    double worst_fraction = 0, worst_mm = 0, min_N = HUGE_VAL, max_N = 0;
     for (int i = 0; i < 20 * options_.targets && tally.count < options_.targets; ++i) {
       const Equilibrium made = statics_.solve(random_actuation(), rest_, inverse_.statics);
       const Vec3 force = made.report.status == Status::converged ? exerted(on, made.state) : Vec3::Zero();
-      if (!(force.norm() > least_force_N)) continue;
+      if (!(force.norm() > min_force_N)) continue;
       const std::vector<Goal> goals = pressing_goals(on, force, tip_of(model_, made.state));
       const Answer answer = solve(goals, rest_);
       tally.add(model_, answer);
       const Equilibrium again = statics_.solve(answer.result.equilibrium.actuation, rest_, inverse_.statics);
-      const auto& asked = std::get<ForceGoal>(goals[0].what);
-      Vec3 missed = exerted(on, again.state) - asked.force,
+      const auto& requested = std::get<ForceGoal>(goals[0].what);
+      Vec3 missed = exerted(on, again.state) - requested.force,
            off = tip_of(model_, again.state) - tip_of(model_, made.state);
-      for (int axis = 0; axis < 3; ++axis) (asked.axes[axis] ? off : missed)[axis] = 0;
-      const double size = asked.force.cwiseAbs().maxCoeff(), share = missed.norm() / size;
-      met += share <= 0.01 && off.norm() <= 0.1 ? 1 : 0;
-      worst_share = std::max(worst_share, share);
+      for (int axis = 0; axis < 3; ++axis) (requested.axes[axis] ? off : missed)[axis] = 0;
+      const double size = requested.force.cwiseAbs().maxCoeff(), fraction = missed.norm() / size;
+      met += fraction <= 0.01 && off.norm() <= 0.1 ? 1 : 0;
+      worst_fraction = std::max(worst_fraction, fraction);
       worst_mm = std::max(worst_mm, off.norm());
-      least_N = std::min(least_N, size);
-      most_N = std::max(most_N, size);
+      min_N = std::min(min_N, size);
+      max_N = std::max(max_N, size);
     }
     print("pressing", tally);
     std::printf(
         "%d of %d within 1 %% of the force and 0.1 mm of the place; farthest %.2g %% and %.2g mm; forces %.3g to %.3g "
         "N\n",
-        met, tally.count, 100 * worst_share, worst_mm, least_N, most_N);
+        met, tally.count, 100 * worst_fraction, worst_mm, min_N, max_N);
     return 0;
   }
 
-  /// The tip drawn along a closed curve inside the reach, in steps of so many mm.
+  /// Draws the tip along a closed curve inside the reach, in steps of constant length.
   int drag() {
     State state = statics_.rest();
     const Index m = model_.actuators.size();
@@ -270,7 +270,7 @@ class Bench {
         "slope %.1e mm per range; mean %.2f equilibria (most %d), %.2f iterations, %.1f ms (%.1f ms of processor "
         "time); ranges %s\n",
         what, t.count, t.reached, 100.0 * t.reached / t.count, t.worst_mm, t.flagged, t.lost, t.slope,
-        t.equilibria / t.count, t.most_equilibria, t.iterations / t.count, 1e3 * t.seconds / t.count,
+        t.equilibria / t.count, t.max_equilibria, t.iterations / t.count, 1e3 * t.seconds / t.count,
         1e3 * t.processor / t.count, t.inside ? "held by every equilibrium" : "VIOLATED");
     std::fflush(stdout);
   }

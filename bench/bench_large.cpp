@@ -24,7 +24,7 @@ struct Outcome {
   bool converged = false;
 };
 
-/// The ratio that bends a coarser finger so far.
+/// Returns the ratio that bends a coarser finger by the requested angle.
 double guide(const Options& options) {
   const Mesh mesh = bellows_finger(cell_for(options.guide));
   const Model model = compile(finger_robot(mesh, FingerKind::physical, "finger"));
@@ -33,7 +33,8 @@ double guide(const Options& options) {
   return found[0].ratio;
 }
 
-/// From rest to that ratio; beyond it by a tenth of the way, from there, until the bend is reached.
+/// Solves from rest to the given ratio, then in further steps of a tenth of that change until the requested bend is
+/// reached.
 Outcome bend(double ratio, const Options& options) {
   const double cell = cell_for(options.size);
   RobotSpec spec = finger_robot(bellows_finger(cell), FingerKind::physical, "finger");
@@ -56,8 +57,8 @@ Outcome bend(double ratio, const Options& options) {
   };
   State state = statics.rest();
   begin = now();
-  for (const double share : {1.0, 1.1, 1.2, 1.3}) {
-    outcome.ratio = 1 + share * (ratio - 1);
+  for (const double fraction : {1.0, 1.1, 1.2, 1.3}) {
+    outcome.ratio = 1 + fraction * (ratio - 1);
     const Equilibrium found = statics.solve(Actuation::Constant(1, outcome.ratio), state, statics_options, progress);
     ++outcome.solves;
     outcome.iterations += found.report.iterations;

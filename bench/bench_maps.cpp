@@ -45,8 +45,8 @@ ActuatorSpec cable(const std::string& name, const std::vector<Vec3>& points, dou
   return spec;
 }
 
-/// An arm of 180 x 12 x 12 mm with so many tendons, pulled with 0 to 1.5 N: two at every third of its length, at right
-/// angles to each other.
+/// Returns an arm of 180 x 12 x 12 mm with a number of tendons, pulled with 0 to 1.5 N: two at every third of its
+/// length, at right angles to each other.
 RobotSpec arm(int tendons) {
   RobotSpec spec = softkin::testing::physical_robot(softkin::testing::block_mesh({36, 2, 2}, {180, 12, 12}));
   spec.materials[0].elastic->youngs_modulus = 1;
@@ -94,7 +94,7 @@ MapOptions map_options(const Options& options) {
   map.accuracy_mm = options.accuracy;
   map.shape_accuracy_mm = 0;
   map.checks = options.checks;
-  map.most_equilibria = 20000;
+  map.max_equilibria = 20000;
   map.threads =
       options.threads > 0 ? options.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
   return map;
@@ -210,7 +210,7 @@ void judge(const char* name, const RobotSpec& spec, const Options& options) {
     near = found.state;
     const Eigen::VectorXd off = (values - maps::outputs_of(model, result.data, found.state)).cwiseAbs();
     double ratio = 0;
-    for (Index q = 0; q < off.size(); ++q)  // what is exact but for rounding tells nothing
+    for (Index q = 0; q < off.size(); ++q)  // outputs that are exact up to rounding are left out
       if (off[q] > 1e-6 * result.data.outputs[q].accuracy)
         ratio = std::max(ratio, off[q] / result.data.check.largest[q]);
     ++compared;

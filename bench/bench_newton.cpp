@@ -41,7 +41,7 @@ bool is_calculix(Solution solution) {
   return solution == Solution::calculix || solution == Solution::calculix_quadratic;
 }
 
-struct NewtonOptions {
+struct BenchmarkOptions {
   std::vector<double> sizes{5000, 15000, 45000, 200000};  // body tetrahedra
   std::string mesh;                                       // a file in place of the sizes
   std::vector<double> bends{90, 180, 240};                // [degrees]
@@ -68,7 +68,7 @@ struct Row {
 
 /// Prints times in the manner of the paper's Table III, the ratios between solvers and the growth of time per
 /// iteration.
-void print_summary(const std::vector<Row>& rows, const NewtonOptions& options);
+void print_summary(const std::vector<Row>& rows, const BenchmarkOptions& options);
 
 std::string label(const Row& row) {
   const std::string& name = solution_names()[static_cast<std::size_t>(row.solution)];
@@ -120,10 +120,10 @@ class WorkFolder {
   bool temporary_;
 };
 
-/// Measures all that is asked for of one finger.
+/// Measures all requested quantities of one finger.
 class FingerTable {
  public:
-  FingerTable(const FingerSource& source, const NewtonOptions& options, const std::string& folder,
+  FingerTable(const FingerSource& source, const BenchmarkOptions& options, const std::string& folder,
               std::vector<Row>& rows)
       : source_(source), options_(options), folder_(folder), rows_(rows) {}
 
@@ -220,7 +220,7 @@ class FingerTable {
   }
 
   FingerSource source_;
-  const NewtonOptions& options_;
+  const BenchmarkOptions& options_;
   std::string folder_;
   std::vector<Row>& rows_;
   std::map<FingerKind, std::optional<Answers>> answers_;
@@ -270,7 +270,7 @@ void print_growth(const std::vector<Row>& rows, Solution solution, double bend) 
   std::printf(" ms)\n");
 }
 
-std::vector<Row> measure_table(const NewtonOptions& options) {
+std::vector<Row> measure_table(const BenchmarkOptions& options) {
   const WorkFolder folder(options.folder);
   std::vector<FingerSource> sources;
   for (const double size : options.sizes) {
@@ -288,7 +288,7 @@ std::vector<Row> measure_table(const NewtonOptions& options) {
   return rows;
 }
 
-void print_summary(const std::vector<Row>& rows, const NewtonOptions& options) {
+void print_summary(const std::vector<Row>& rows, const BenchmarkOptions& options) {
   std::printf("\nTime from rest to a bend [s] (median; as Table III)\n%9s  %-22s", "body tets", "solver");
   for (const double bend : options.bends) std::printf(" %9.0f deg", bend);
   std::map<std::pair<int, std::string>, std::map<double, const Row*>> lines;
@@ -321,7 +321,7 @@ void print_summary(const std::vector<Row>& rows, const NewtonOptions& options) {
 int main(int argc, char** argv) {
   CommandLine app{"Every solver from rest to 90, 180 and 240 degrees of bend of the tip face (the paper's Table III).",
                   "bench_newton"};
-  NewtonOptions options;
+  BenchmarkOptions options;
   options.solvers = {"local-global", "anderson", "newton", "physical", "physical-quadratic"};
   if (on_path("ccx")) options.solvers.insert(options.solvers.end(), {"calculix", "calculix-quadratic"});
   app.add_option("--sizes", options.sizes, "body tetrahedra of the fingers").split_at_commas();

@@ -1,6 +1,6 @@
-// softkin view under attack: 200 pages, of which a quarter watches, a quarter never reads, a quarter says nothing or
-// dribbles its request, and a quarter sends what is refused. How long who has control waits for shapes, beside a server
-// that it has for itself, and how much memory the server takes.
+// softkin view under attack: 200 pages, of which a quarter watches, a quarter never reads, a quarter sends nothing or
+// its request byte by byte, and a quarter sends invalid messages. Measures how long the controlling page waits for
+// shapes, compared with a server without other pages, and the memory of the server.
 
 #include <signal.h>
 #include <sys/wait.h>
@@ -38,7 +38,7 @@ constexpr const char* page =
     "<html><meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'\">"
     "<script type=\"application/json\" id=\"softkin-page\">null</script></html>";
 
-/// Serves the finger until it is told to end; its port goes into the pipe.
+/// Serves the finger until the process is ended, and writes the port into the pipe.
 int serve(const Options& options, int pipe) {
   const Model model = compile(
       bench::finger_robot(bench::bellows_finger(bench::cell_for(options.size)), bench::FingerKind::physical, ""));
@@ -128,7 +128,7 @@ class Attack {
       std::vector<std::unique_ptr<LiveClient>> clients;
       for (int i = 0; i < count; ++i)
         if ((clients.emplace_back(connected<LiveClient>(4096)))) clients.back()->hello(i % 2 == 0 ? "" : "guess");
-      for (int i = 0; i < 450 && !ended_; ++i) rest_for(0.1);  // longer than the server bears with them
+      for (int i = 0; i < 450 && !ended_; ++i) rest_for(0.1);  // longer than the server's time limit
     }
   }
 
@@ -209,10 +209,10 @@ struct Waits {
   double largest_mib = 0;
   bool kept = true;  // control, all the time
 
-  [[nodiscard]] double quantile(double share) const {
+  [[nodiscard]] double quantile(double fraction) const {
     std::vector<double> sorted = seconds;
     std::sort(sorted.begin(), sorted.end());
-    return sorted.empty() ? NAN : sorted[share * static_cast<double>(sorted.size() - 1)];
+    return sorted.empty() ? NAN : sorted[fraction * static_cast<double>(sorted.size() - 1)];
   }
 };
 

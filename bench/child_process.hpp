@@ -17,7 +17,7 @@ struct ProcessEnd {
   double peak_mib = 0;  // largest resident set [MiB]: of the work itself, as the parent stays small
 
   [[nodiscard]] bool good() const { return exit_code == 0 && !timed_out; }
-  /// "ended by signal 9", say; "" where it is good.
+  /// Returns why the process failed, such as "ended by signal 9"; "" after a success.
   [[nodiscard]] std::string complaint() const;
 };
 

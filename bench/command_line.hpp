@@ -44,7 +44,7 @@ class Option {
   explicit Option(CLI::Option* option) : option_(option) {}
   Option& check(const Check& check);
   Option& split_at_commas();
-  /// `--help` does not tell of it.
+  /// Leaves the option out of the output of `--help`.
   void hide();
 
  private:

@@ -30,9 +30,9 @@ double longest(const std::vector<double>& pieces, int cores) {
 }  // namespace
 
 double CriticalPath::speedup(int cores) const {
-  double way = longest(piece_work, cores);
-  for (const Part& part : top_parts) way += part.alone + part.shared / cores;
-  return total / way;
+  double route = longest(piece_work, cores);
+  for (const Part& part : top_parts) route += part.alone + part.shared / cores;
+  return total / route;
 }
 
 CriticalPath critical_path(const linear::FrontTree& tree) {

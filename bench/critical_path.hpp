@@ -11,10 +11,11 @@ struct CriticalPath {
   double total = 0, heaviest = 0, top = 0;  // multiplications: all, of the heaviest piece, above the pieces
   int pieces = 0;                           // of which each is one core's
 
-  /// Work over the longest way through it on so many cores, which take what linear::SparseLdlt hands out.
+  /// Returns the ratio of the total work to the work along the critical path on `cores` cores, with the scheduling of
+  /// linear::SparseLdlt.
   [[nodiscard]] double speedup(int cores) const;
 
-  /// What one core does of a front of the top, and what all may share.
+  /// Work on a front above the pieces: the part that a single core does, and the part that all cores can divide.
   struct Part {
     double alone = 0, shared = 0;
   };

@@ -22,7 +22,7 @@ constexpr int folds = 7;
 constexpr double length = 120;
 constexpr double half_neck = 4, neck_top = 9;  // where a fold joins the next: outside of the wall [mm]
 constexpr double between = (length - 2 * end_wall - 2 * (folds - 1) * wall) / (2 * folds - 1);  // walls of folds [mm]
-constexpr double least_cell = 0.3, largest_cell = 10;
+constexpr double min_cell = 0.3, largest_cell = 10;
 
 /// A stretch of cells along one axis, and what part of the robot it belongs to.
 enum class Part { solid, fold, plate, gap, rim, annulus, neck, core };
@@ -102,7 +102,7 @@ void each_cell(const Grid& grid, Fill fill, const Visit& visit) {
         if (fill_of(grid.x.parts[i], grid.y.parts[j], grid.z.parts[k]) == fill) visit(i, j, k);
 }
 
-/// Five tetrahedra; every other cell is mirrored, so that neighbours share the diagonals of their faces.
+/// Splits a cell into five tetrahedra; every other cell is mirrored, so that neighbours have the same face diagonals.
 void split_cell(const Grid& grid, int i, int j, int k, std::vector<Tetrahedron>& tetrahedra) {
   const int mirror = (i + j + k) % 2;
   const auto corner = [&](int c) {
@@ -249,8 +249,8 @@ class Walk {
     double low = here_.ratio, high = beyond.ratio;
     double low_miss = here_.degrees - angle, high_miss = beyond.degrees - angle;
     for (int attempt = 0; attempt < 40; ++attempt) {
-      const double share = attempt % 4 == 3 ? 0.5 : -low_miss / (high_miss - low_miss);
-      const std::optional<BentShape> shape = solve(low + share * (high - low));
+      const double fraction = attempt % 4 == 3 ? 0.5 : -low_miss / (high_miss - low_miss);
+      const std::optional<BentShape> shape = solve(low + fraction * (high - low));
       if (!shape) return std::nullopt;
       const double miss = shape->degrees - angle;
       if (std::abs(miss) <= angle_tolerance) {
@@ -279,7 +279,7 @@ class Walk {
 }  // namespace
 
 Mesh bellows_finger(double cell_mm) {
-  if (!(cell_mm >= least_cell && cell_mm <= largest_cell))
+  if (!(cell_mm >= min_cell && cell_mm <= largest_cell))
     throw InvalidInput("the finger's cell size is to be 0.3 to 10 mm");
   const Grid grid = grid_of(cell_mm);
   Mesh mesh;
@@ -317,7 +317,7 @@ std::int64_t body_tetrahedra(double cell_mm) {
 
 double cell_for(double wanted) {
   double best = 0, least = std::numeric_limits<double>::infinity();
-  for (double cell = least_cell; cell <= largest_cell; cell *= 1.002) {
+  for (double cell = min_cell; cell <= largest_cell; cell *= 1.002) {
     const double distance = std::abs(std::log(static_cast<double>(body_tetrahedra(cell)) / wanted));
     if (distance < least) {
       least = distance;
@@ -326,7 +326,7 @@ double cell_for(double wanted) {
   }
   if (!(least < std::log(2.0)))
     throw InvalidInput("the finger comes in sizes from " + std::to_string(body_tetrahedra(largest_cell)) + " to " +
-                       std::to_string(body_tetrahedra(least_cell)) + " body tetrahedra");
+                       std::to_string(body_tetrahedra(min_cell)) + " body tetrahedra");
   return best;
 }
 

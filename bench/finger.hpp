@@ -16,7 +16,7 @@ namespace softkin::bench {
 /// throws   InvalidInput on a size outside its range
 [[nodiscard]] Mesh bellows_finger(double cell_mm);
 
-/// The cell size whose finger has the number of body tetrahedra nearest to the one asked for.
+/// Returns the cell size whose finger has the number of body tetrahedra nearest to the requested one.
 ///
 /// throws  InvalidInput where no size in its range gives half to twice as many
 [[nodiscard]] double cell_for(double body_tetrahedra);
@@ -64,7 +64,7 @@ struct BentShape {
   Vec3 tip{0, 0, 0};  // marker 0 [mm]
 };
 
-/// The converged shapes that are bent by given angles, found with Newton's method along the way from rest.
+/// Finds the converged shapes that are bent by given angles with Newton's method, along a path from rest.
 ///
 /// angles   ascending [degrees], > 0
 /// face     vertices of the tip face

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Kills fk --path, follow, walk and workspace with SIGKILL at random instants and resumes them.
 
-After every kill no record that was on disk before may be lost or changed; at the end every file must be that of an
-undisturbed run, byte for byte but for the seconds that a report tells. Needs Python alone.
+After a kill no record that was on disk before may be lost or changed; at the end every file must be identical to that
+of an undisturbed run, except for the seconds in reports. The script needs only Python.
 """
 
 import argparse
@@ -24,7 +24,7 @@ SECONDS = re.compile(rb'("seconds": ?)[-+0-9.eE]+')
 
 
 def commands(steps):
-    """By name what is run, and where its records are while it goes on: the journal, or the table itself."""
+    """Returns by name each command and the file of its records while it runs: the journal, or the table itself."""
     return {
         "fk --path": (["fk", "../bend.yaml", "--path", "../path.csv", "-o", "s.pvd", "--report", "r.json", "--plot", "p.svg",
                        "--image", "i.png"], "r.json.run"),
@@ -37,7 +37,7 @@ def commands(steps):
 
 
 def write_targets(program, folder):
-    """What follow is to follow: where the path of fk leads the tip."""
+    """Writes the waypoints of follow: the positions of the tip along the path of fk."""
     subprocess.run([program, "fk", "bend.yaml", "--path", "path.csv", "--report", "r.json", "--threads", "1"], cwd=folder,
                    check=True, capture_output=True)
     steps = json.loads((folder / "r.json").read_text())["steps"]
@@ -46,11 +46,13 @@ def write_targets(program, folder):
 
 
 def start(program, words, folder):
+    """Starts the program with one thread."""
     return subprocess.Popen([program, *words, "--threads", "1"], cwd=folder, stdout=subprocess.DEVNULL,
                             stderr=subprocess.PIPE)
 
 
 def finish(program, words, folder):
+    """Runs the program to its end; exits with a message if it fails."""
     process = start(program, words, folder)
     errors = process.communicate()[1].decode()
     if process.returncode != 0:
@@ -58,13 +60,13 @@ def finish(program, words, folder):
 
 
 def files_of(folder):
-    """Every file, without the seconds of reports."""
+    """Returns the contents of every file by name, without the seconds of reports."""
     return {str(path.relative_to(folder)): SECONDS.sub(rb"\1CLOCK", path.read_bytes()) if path.suffix == ".json"
             else path.read_bytes() for path in sorted(folder.rglob("*")) if path.is_file()}
 
 
 def records_of(file):
-    """The records on disk, the whole lines, and whether a torn one follows. None: there is no such file."""
+    """Returns the complete lines of a file of records, None without a file, and whether an incomplete line follows."""
     if not file.exists():
         return None, False
     lines = file.read_bytes().split(b"\n")
@@ -76,32 +78,34 @@ def records_of(file):
 
 
 class Kills:
-    """The kills of one command, in as many runs as it takes."""
+    """Kills one command at random instants, in as many runs as necessary."""
 
     def __init__(self, program, words, journal, folder, generator):
         self.program, self.words, self.journal, self.folder = program, words, journal, folder
         self.generator = generator
         self.kills = self.runs = self.torn = self.kept = 0
 
-    def undisturbed(self):
+    def run_undisturbed(self):
+        """Measures the seconds of a run without kills, and reads the files that it writes."""
         folder = self.folder / "undisturbed"
-        self.make(folder)
+        self.make_empty(folder)
         begin = time.monotonic()
         finish(self.program, self.words, folder)
         self.seconds = time.monotonic() - begin
         self.expected = files_of(folder)
 
-    def make(self, folder):
+    def make_empty(self, folder):
+        """Makes a folder, or removes everything in it."""
         for each in sorted(folder.rglob("*"), reverse=True):
             each.rmdir() if each.is_dir() else each.unlink()
         folder.mkdir(exist_ok=True)
 
-    def run(self, most):
-        """One run from its beginning, killed until it is done or there were enough kills."""
+    def run(self, max_kills):
+        """Starts the command, and kills and resumes it until it ends or there are max_kills kills."""
         folder = self.folder / "killed"
-        self.make(folder)
+        self.make_empty(folder)
         before, resume = [], []
-        while self.kills < most:
+        while self.kills < max_kills:
             process = start(self.program, self.words + resume, folder)
             time.sleep(self.generator.random() * self.seconds)
             process.send_signal(signal.SIGKILL)
@@ -110,7 +114,7 @@ class Kills:
             if process.returncode == 0:
                 break
             if process.returncode != -signal.SIGKILL:
-                sys.exit(f"kill_runs: resumed after a kill: {errors}")
+                sys.exit(f"kill_runs: the run failed after a kill: {errors}")
             self.kills += 1
             before = self.check(folder, before)
         finish(self.program, self.words + resume, folder)
@@ -118,20 +122,22 @@ class Kills:
         self.runs += 1
 
     def check(self, folder, before):
-        """The records on disk after a kill: those before and perhaps more."""
+        """Checks that the records on disk after a kill start with those before it; returns them."""
         records, torn = records_of(folder / self.journal)
         self.torn += torn
-        if records is None:  # nothing begun, or all of it done: the report is there
+        if records is None:  # the run had not begun, or it had written its report
             if before and not (folder / self.journal.removesuffix(".run")).exists():
-                sys.exit("kill_runs: the records are gone")
+                sys.exit("kill_runs: the file of records does not exist after the kill")
             return before
         kept = set(records) >= set(before) if self.journal.endswith(".csv") else records[:len(before)] == before
         if not kept:
-            sys.exit(f"kill_runs: {len(before)} records were on disk, {len(records)} are, and they are not those")
+            sys.exit(f"kill_runs: {len(before)} records were on disk; "
+                     f"the {len(records)} after the kill do not contain them")
         self.kept = max(self.kept, len(records))
         return records
 
     def compare(self, files):
+        """Exits with a message if a file differs from that of an undisturbed run."""
         for name in sorted(files.keys() | self.expected.keys()):
             if files.get(name) != self.expected.get(name):
                 sys.exit(f"kill_runs: after run {self.runs}, {self.kills} kills: {name} is not that of an undisturbed run: "
@@ -141,25 +147,27 @@ class Kills:
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", nargs="?", default="build/softkin")
-    parser.add_argument("--kills", type=int, default=100, help="of each command (default: 100)")
-    parser.add_argument("--steps", type=int, default=60, help="of the paths; of the workspace ten times as many samples")
+    parser.add_argument("--kills", type=int, default=100, help="number of kills of each command (default: 100)")
+    parser.add_argument("--steps", type=int, default=60,
+                        help="number of steps of the paths; the workspace has ten times as many samples")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", help="one of the commands: fk --path, follow, walk, workspace")
-    asked = parser.parse_args()
-    program = os.path.abspath(asked.program)
-    for name, (words, journal) in commands(asked.steps).items():
-        if asked.only not in (None, name):
+    options = parser.parse_args()
+    program = os.path.abspath(options.program)
+    for name, (words, journal) in commands(options.steps).items():
+        if options.only not in (None, name):
             continue
         with tempfile.TemporaryDirectory() as temporary:
             folder = pathlib.Path(temporary)
-            small_robot.write(folder, asked.steps)
+            small_robot.write(folder, options.steps)
             write_targets(program, folder)
-            each = Kills(program, words, journal, folder, random.Random(f"{asked.seed} {name}"))
-            each.undisturbed()
-            while each.kills < asked.kills:
-                each.run(asked.kills)
+            each = Kills(program, words, journal, folder, random.Random(f"{options.seed} {name}"))
+            each.run_undisturbed()
+            while each.kills < options.kills:
+                each.run(options.kills)
             print(f"{name}: {each.kills} kills in {each.runs} runs of {each.seconds:.2f} s, {each.torn} torn last lines; "
-                  f"every record kept, {len(each.expected)} files as those of an undisturbed run", flush=True)
+                  f"every record kept, {len(each.expected)} files identical to those of an undisturbed run",
+                  flush=True)
 
 
 if __name__ == "__main__":

@@ -58,7 +58,7 @@ Answers answer(const FingerSource& source, FingerKind kind, const std::vector<do
     answers.farthest_degrees = shape.degrees;
   }
   const EmbeddedPoint& marker = model.markers[0].point;
-  answers.marker_vertices = std::min<int>(most_marker_vertices, static_cast<int>(marker.vertices.size()));
+  answers.marker_vertices = std::min<int>(max_marker_vertices, static_cast<int>(marker.vertices.size()));
   for (int i = 0; i < answers.marker_vertices; ++i) {
     answers.marker_vertex[i] = marker.vertices[i];
     answers.marker_weight[i] = marker.weights[i];
@@ -131,7 +131,7 @@ Run local_global(const FingerSource& source, const Target& target, int anderson,
 }
 
 /// How often CalculiX may try with tighter *CONTROLS.
-constexpr int most_attempts = 8;
+constexpr int max_attempts = 8;
 
 /// Faces 1 to 4 of C3D4 and C3D10 by the corners of the element.
 constexpr int calculix_faces[4][3] = {{0, 1, 2}, {0, 3, 1}, {1, 3, 2}, {2, 3, 0}};
@@ -265,7 +265,7 @@ RobotSpec FingerSource::robot(FingerKind kind) const {
 
 Measured<Answers> find_answers(const FingerSource& source, FingerKind kind, const std::vector<double>& angles,
                                int threads, double limit) {
-  if (angles.size() > most_bends) throw InvalidInput("at most 8 angles of bend");
+  if (angles.size() > max_bends) throw InvalidInput("at most 8 angles of bend");
   return measure<Answers>([&] { return answer(source, kind, angles, threads); }, limit);
 }
 
@@ -287,7 +287,7 @@ CalculixRun run_calculix(const FingerSource& source, FingerKind kind, const Answ
   CalculixRun result;
   CalculixTask task;
   task.pressure_kpa = target.pressure_kpa;
-  for (int attempt = 0; attempt < most_attempts; ++attempt) {
+  for (int attempt = 0; attempt < max_attempts; ++attempt) {
     result.residual = task.residual;
     result.correction = task.correction;
     for (const char* ending : {".dat", ".cvg"}) std::filesystem::remove(stem + ending);
@@ -324,7 +324,7 @@ CalculixRun run_calculix(const FingerSource& source, FingerKind kind, const Answ
     task.correction *= tighter;
   }
   result.complaint =
-      "its tip is too far away after " + std::to_string(most_attempts) + " runs with ever tighter controls";
+      "its tip is too far away after " + std::to_string(max_attempts) + " runs with ever tighter controls";
   return result;
 }
 

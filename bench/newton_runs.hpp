@@ -21,29 +21,29 @@ struct FingerSource {
   [[nodiscard]] RobotSpec robot(FingerKind kind) const;
 };
 
-constexpr int most_bends = 8;
-constexpr int most_marker_vertices = 10;
+constexpr int max_bends = 8;
+constexpr int max_marker_vertices = 10;
 
-/// A bent shape as the solvers are asked for it.
+/// A bent shape as the solvers are to reach it.
 struct Target {
   double degrees = 0, ratio = 0, pressure_kpa = 0;
   double tip[3] = {};  // [mm]
 };
 
-/// What Newton's method, run to its end, says about a finger. Plain, to be sent between processes.
+/// Results for a finger of Newton's method, run until it converges. Plain, to be sent between processes.
 struct Answers {
   int body_tetrahedra = 0, vertices = 0, unknowns = 0;
-  int count = 0;  // of targets: fewer than asked for where the finger does not bend so far
-  Target targets[most_bends];
+  int count = 0;  // number of targets; fewer than requested where the finger does not bend that far
+  Target targets[max_bends];
   double farthest_degrees = 0;  // bend of the last
   int marker_vertices = 0;
-  Index marker_vertex[most_marker_vertices] = {};
-  double marker_weight[most_marker_vertices] = {};
+  Index marker_vertex[max_marker_vertices] = {};
+  double marker_weight[max_marker_vertices] = {};
   double marker_rest[3] = {};  // [mm]
   double seconds = 0;
 };
 
-/// angles  ascending [degrees], at most most_bends
+/// angles  ascending [degrees], at most max_bends
 [[nodiscard]] Measured<Answers> find_answers(const FingerSource& source, FingerKind kind,
                                              const std::vector<double>& angles, int threads, double limit);
 
@@ -55,7 +55,7 @@ struct RunOptions {
 
 /// One run from rest to a target. Plain.
 struct Run {
-  bool done = false;  // the tip is within the error asked for
+  bool done = false;  // the tip is within the requested error
   double setup = 0;   // from the mesh to a solver that is ready [s]
   double solve = 0;   // [s]
   int iterations = 0, factorisations = 0;
@@ -65,12 +65,12 @@ struct Run {
   [[nodiscard]] double seconds() const { return setup + solve; }
 };
 
-/// Newton's method with a step tolerance as coarse as the error asked for allows.
+/// Runs Newton's method with the coarsest step tolerance that the requested error allows.
 [[nodiscard]] Measured<Run> run_newton(const FingerSource& source, FingerKind kind, const Target& target,
                                        const RunOptions& options);
 
-/// Algorithm 1 with Anderson acceleration over `anderson` steps (0: as printed). Its time is that at which the tip came
-/// within the error for good: it goes on until the error is a tenth of that.
+/// Runs Algorithm 1 with Anderson acceleration over `anderson` steps (0: as printed). Its time ends when the tip stays
+/// within the error; the run continues until the error is a tenth of that.
 [[nodiscard]] Measured<Run> run_local_global(const FingerSource& source, const Target& target, int anderson,
                                              const RunOptions& options);
 

@@ -43,7 +43,7 @@ class PhysicalParts {
   physical::System system_;
   physical::Workspace work_;
   physical::Balance balance_;
-  physical::Demand demand_;
+  physical::LoadState demand_;
   std::vector<bool> active_;
   physical::Iterate at_;
   bool projected_ = false;

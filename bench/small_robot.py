@@ -1,18 +1,19 @@
-"""A robot small enough to be solved by the thousand: a bar of 12 tetrahedra with two tendons, or one that walks."""
+"""Writes a robot for thousands of solves: a bar of 12 tetrahedra with two tendons, or one that walks."""
 
 import itertools
 import math
 
 
 def bar(cells=2, edge=10):
-    """A row of cubes, six tetrahedra each, as Gmsh 2.2 text: body, and base and tip, its ends."""
+    """Returns a row of cubes of six tetrahedra each as Gmsh 2.2 text, with the groups body, base and tip."""
     def vertex(i, j, k):
         return 1 + i + (cells + 1) * (j + 2 * k)
 
     elements = []
     for i in range(cells):
-        at = [vertex(i + (c & 1), c >> 1 & 1, c >> 2) for c in range(8)]
-        elements += [(4, 1, (at[0], at[a], at[b], at[7])) for a, b in ((1, 3), (3, 2), (2, 6), (6, 4), (4, 5), (5, 1))]
+        corners = [vertex(i + (c & 1), c >> 1 & 1, c >> 2) for c in range(8)]
+        elements += [(4, 1, (corners[0], corners[a], corners[b], corners[7])) for a,
+                     b in ((1, 3), (3, 2), (2, 6), (6, 4), (4, 5), (5, 1))]
     for i, group in ((0, 2), (cells, 3)):
         a, b, c, d = vertex(i, 0, 0), vertex(i, 1, 0), vertex(i, 1, 1), vertex(i, 0, 1)
         elements += [(2, group, (a, b, c)), (2, group, (a, c, d))]
@@ -41,7 +42,7 @@ GAIT = "t_s,tendon_N\n0,0\n0.5,1\n1,2\n1.5,1\n2,0\n"
 
 
 def path(rows):
-    """Commands of both tendons, on a curve that does not come back to where it was."""
+    """Returns commands of both tendons along a curve that does not repeat."""
     lines = ["upper,lower"]
     for i in range(rows):
         lines.append(f"{0.9 + 0.08 * math.cos(0.11 * i):.12g},{0.92 + 0.07 * math.sin(0.17 * i):.12g}")
@@ -49,6 +50,7 @@ def path(rows):
 
 
 def write(folder, rows):
+    """Writes the mesh, the scenes and the tables into a folder."""
     for name, text in (("bar.msh", bar()), ("bend.yaml", BENDING), ("walk.yaml", WALKING), ("gait.csv", GAIT),
                        ("path.csv", path(rows))):
         (folder / name).write_text(text)

@@ -104,9 +104,9 @@ set(softkin_public_headers
 set(softkin_included_headers
     core/sheet_law.hpp
     io/table/field_samples.hpp
+    io/table/path_table.hpp
     io/table/settings.hpp
     io/table/table.hpp
-    io/table/way.hpp
     io/table/workspace_table.hpp
     statics/viscous_clock.hpp
     kinematics/maps/piece_solver.hpp

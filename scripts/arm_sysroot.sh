@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
-# Fills a folder with what programs for aarch64 are linked with: Debian 12's packages, fetched and unpacked, so that this
-# machine's own packages stay as they are and nobody needs to be root. cmake/aarch64.cmake builds with it; its programs run
-# under qemu. Needs g++-aarch64-linux-gnu, qemu-user, and a Debian 12 whose apt reaches its mirror.
-#   scripts/arm_sysroot.sh [FOLDER]   FOLDER: build-arm/sysroot; 0.5 GiB; left alone where it is complete
-# Exit codes: 0 it is there, 1 a package could not be fetched, 2 usage.
+# Fills a folder with the libraries and headers of programs for aarch64: it fetches and unpacks Debian 12's packages,
+# so that this machine's own packages do not change and root is not needed. cmake/aarch64.cmake builds with it; the
+# programs run under qemu. The script needs g++-aarch64-linux-gnu, qemu-user, and a Debian 12 whose apt reaches its
+# mirror.
+#   scripts/arm_sysroot.sh [FOLDER]   FOLDER: build-arm/sysroot; 0.5 GiB; not changed if it is complete
+# Exit codes: 0 the folder is complete, 1 a package could not be fetched, 2 usage.
 set -euo pipefail
 
 packages=(libc6-dev libstdc++-12-dev libeigen3-dev libyaml-cpp-dev nlohmann-json3-dev libpugixml-dev zlib1g-dev libpng-dev
           libcli11-dev libmetis-dev libnanoflann-dev libqhull-dev libboost1.74-dev libboost-dev libhwy-dev libgtest-dev
           libpython3-dev python3-minimal)
-case "${1:-}" in -*) sed -n '2,6s/^# //p' "$0" >&2; exit 2 ;; esac
+case "${1:-}" in -*) sed -n '2,7s/^# //p' "$0" >&2; exit 2 ;; esac
 folder=${1:-$(dirname "$0")/../build-arm/sysroot}
 done_with="$folder/packages.txt"
 [ "$(cat "$done_with" 2>/dev/null)" != "${packages[*]}" ] || exit 0
@@ -35,13 +36,13 @@ apt_get() {
 }
 apt_get update
 apt_get install --no-install-recommends --download-only "${packages[@]}"
-# links first: what Debian unpacks into /lib belongs below /usr
+# links first: the files that Debian unpacks into /lib belong below /usr
 mkdir -p "$folder/usr/lib" "$folder/usr/bin" "$folder/usr/sbin"
 ln -s usr/lib usr/bin usr/sbin "$folder"
 for package in "$work"/archives/*.deb; do
   dpkg-deb --fsys-tarfile "$package" | tar -x --keep-directory-symlink --no-same-owner -C "$folder"
 done
-# absolute links would lead out of the folder
+# absolute links would point out of the folder
 find "$folder" -type l -lname '/*' -printf '%p\n%l\n' | while read -r link && read -r to; do
   ln -sfn "$(realpath -m --relative-to "$(dirname "$link")" "$folder$to")" "$link"
 done

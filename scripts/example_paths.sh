@@ -1,9 +1,9 @@
 #!/bin/sh
-# Writes the paths of markers that the examples follow; their READMEs say how the sizes were chosen.
+# Writes the paths of markers that the examples follow; their READMEs explain the sizes.
 set -eu
 cd "$(dirname "$0")/../examples"
 
-# Waypoint k of n is point(k) as "coordinates after the time", so many a second.
+# Writes FILE. Waypoint k of n is point(k), the coordinates after the time, with RATE waypoints per second.
 path() {  # FILE HEADER N RATE, awk function point(k, n) on standard input
   file=$1 header=$2 n=$3 rate=$4
   awk -v n="$n" -v header="$header" -v rate="$rate" "$(cat)"'
@@ -29,7 +29,7 @@ function point(k, n,   angle, up) {
 }
 EOF
 
-# a circle around a point near the border of what the tip reaches
+# a circle around a point near the boundary of the workspace of the tip
 path three_tendon_finger/beyond.csv x_mm,z_mm 61 10 <<'EOF'
 function point(k, n,   angle) {
   angle = 2 * atan2(0, -1) * k / (n - 1)
@@ -37,7 +37,7 @@ function point(k, n,   angle) {
 }
 EOF
 
-# a circle well within the reach, once round in 12 s
+# a circle well inside the workspace, in 12 s
 path three_tendon_finger/circle.csv x_mm,z_mm 25 2 <<'EOF'
 function point(k, n,   angle) {
   angle = 2 * atan2(0, -1) * k / (n - 1)

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Installs softkin's Python package on a fresh Debian 12, made with debootstrap in a folder: what is committed, from a
-# clone, with Python and a compiler alone; and a wheel, without a compiler. The first script of docs/python.md runs in
-# both. Needs root, debootstrap, and this machine's settings of apt and pip, which the fresh one gets too.
-#   scripts/fresh_debian.sh FOLDER [WHEEL...]   FOLDER: some GiB, kept; WHEEL: of Python 3.11, made by scripts/wheels.sh
-# Exit codes: 0 all of it runs, 1 something does not, 2 usage.
+# Installs softkin's Python package on a new Debian 12, made with debootstrap in a folder: the last commit from a
+# clone, with only Python and a compiler; and a wheel, without a compiler. It runs the first script of docs/python.md
+# in both. It needs root, debootstrap, and this machine's settings of apt and pip, which it copies to the new system.
+#   scripts/fresh_debian.sh FOLDER [WHEEL...]   FOLDER: some GiB, kept; WHEEL: for Python 3.11, from scripts/wheels.sh
+# Exit codes: 0 everything runs, 1 a step failed, 2 usage.
 set -euo pipefail
 
 [ $# -ge 1 ] && [ "$(id -u)" -eq 0 ] && command -v debootstrap >/dev/null || {

@@ -1,11 +1,12 @@
-# Functions of scripts that try softkin on a fresh Debian 12, made with debootstrap in a folder, with this machine's settings
-# of apt and pip. The script that reads this file has set `folder`, where the systems lie, and its own `name` in messages.
+# Functions of scripts that test softkin on a new Debian 12, made with debootstrap in a folder, with this machine's
+# settings of apt and pip. The script that reads this file sets `folder`, the folder of the systems, and `name`, its
+# name in messages.
 mirror=$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' | head -n 1)
 
-# fresh NAME PACKAGES: a system of its own, from an archive of the packages that the first one leaves
+# fresh NAME PACKAGES: makes a system, with an archive of packages that all systems use
 fresh() {
   local root=$folder/$1
-  [ ! -e "$root" ] || { echo "${name:-fresh}: $root is there already: remove it" >&2; exit 2; }
+  [ ! -e "$root" ] || { echo "${name:-fresh}: $root exists; remove it" >&2; exit 2; }
   mkdir -p "$folder/archives"
   debootstrap --variant=minbase --cache-dir="$folder/archives" --include="ca-certificates,python3,python3-venv$2" bookworm \
     "$root" "$mirror" >"$folder/$1.log" 2>&1 || { tail -n 5 "$folder/$1.log" >&2; exit 1; }
@@ -16,8 +17,8 @@ fresh() {
   [ ! -f /etc/pip.conf ] || cp /etc/pip.conf "$root/etc/"
 }
 
-# inside NAME COMMAND: with the variables that pip and apt read, with /proc, by which programs find their libraries, and
-# with /dev. If `cache` names a folder, it is /ccache there.
+# inside NAME COMMAND: runs a command in a system, with the variables that pip and apt read, with /proc, by which
+# programs find their libraries, and with /dev. If `cache` names a folder, the system has it as /ccache.
 inside() {
   local root=$folder/$1
   shift

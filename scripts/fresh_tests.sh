@@ -1,10 +1,10 @@
 #!/usr/bin/env bash
-# Runs `make test` in a clone on a fresh Debian 12, made with debootstrap in a folder: on one without Python packages, and on
-# one whose system has numpy, scipy, meshio and matplotlib for its own Python. Both must pass, and a test that is skipped
-# fails, but for those of data that are not in the repository. Needs root, debootstrap, and this machine's settings of apt
-# and pip, which the fresh ones get too. CCACHE_DIR, if it is set, is shared with them.
+# Runs `make test` in a clone on a new Debian 12, made with debootstrap in a folder: on one without Python packages,
+# and on one with numpy, scipy, meshio and matplotlib. Both must pass; a skipped test counts as a failure, except for
+# tests of data that are not in the repository. It needs root, debootstrap, and this machine's settings of apt and pip,
+# which it copies to the new systems. If CCACHE_DIR is set, the systems use this cache.
 #   scripts/fresh_tests.sh FOLDER [bare | packages]   FOLDER: some 10 GiB, kept; which of the two systems (default: both)
-# Exit codes: 0 all of it passes, 1 something does not, 2 usage.
+# Exit codes: 0 all tests pass, 1 a test or step failed, 2 usage.
 set -euo pipefail
 
 [[ $# -ge 1 && $# -le 2 && ${2:-bare} =~ ^(bare|packages)$ && $(id -u) -eq 0 ]] && command -v debootstrap >/dev/null || {
@@ -17,7 +17,7 @@ source=$(realpath "$(dirname "$0")/..")
 . "$source/scripts/fresh_root.sh"
 cache=${CCACHE_DIR:-}
 
-# test_on SYSTEM PACKAGES: the clone lies where this one does, so that what compilers make can come from a cache
+# test_on SYSTEM PACKAGES: tests a clone with the path of this one, so that the compiler cache applies
 test_on() {
   fresh "$1" ",git,make${cache:+,ccache}$2"
   git clone --quiet "$source" "$folder/$1$source"

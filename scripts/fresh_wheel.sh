@@ -1,11 +1,11 @@
 #!/usr/bin/env bash
-# What somebody sees who has a wheel and Python alone, with the seconds of each step: in a fresh Debian 12 and a fresh Ubuntu
-# 24.04, made with debootstrap in a folder, the wheel is installed, an example copied and bent, and its page made. Needs root,
-# debootstrap, and this machine's settings of pip, which the fresh ones get too (pip fetches NumPy).
-#   scripts/fresh_wheel.sh FOLDER WHEEL...   FOLDER: 1 GiB, kept; WHEEL: of Python 3.11, 3.12 or both, made by scripts/wheels.sh
-#   UBUNTU: its mirror, http://archive.ubuntu.com/ubuntu if not said; SECONDS_ALLOWED: 60
-# Exit codes: 0 done in time by every system that could be made, 1 something does not run or takes longer, 2 usage, or
-# nothing could be tried.
+# Measures the first steps of a user who has only a wheel and Python: in a new Debian 12 and a new Ubuntu 24.04, made
+# with debootstrap in a folder, it installs the wheel, copies and bends an example, and makes its page. It needs root,
+# debootstrap, and this machine's settings of pip, which it copies to the new systems (pip fetches NumPy).
+#   scripts/fresh_wheel.sh FOLDER WHEEL...   FOLDER: 1 GiB, kept; WHEEL: for Python 3.11 or 3.12, from scripts/wheels.sh
+#   UBUNTU: its mirror (default: http://archive.ubuntu.com/ubuntu); SECONDS_ALLOWED (default: 60)
+# Exit codes: 0 every available system completes the steps in time, 1 a step fails or takes longer, 2 usage, or no
+# system is available.
 set -euo pipefail
 
 [ $# -ge 2 ] && [ "$(id -u)" -eq 0 ] && command -v debootstrap >/dev/null || {
@@ -19,7 +19,7 @@ allowed=${SECONDS_ALLOWED:-60}
 debian=$(apt-get indextargets --format '$(SITE)' 'Created-By: Packages' 'Codename: bookworm' 2>/dev/null | head -n 1)
 ubuntu=${UBUNTU:-http://archive.ubuntu.com/ubuntu}
 
-# fresh NAME SUITE MIRROR: a system of its own with Python; said where it cannot be made
+# fresh NAME SUITE MIRROR: makes a system with Python, or prints why it cannot
 fresh() {
   local root=$folder/$1 options=() unchecked=
   [ ! -e "$root/softkin" ] || return 0
@@ -29,7 +29,7 @@ fresh() {
   fi
   if [ "$2" = noble ]; then
     [ -e /usr/share/debootstrap/scripts/noble ] || options=(gutsy)  # all of Ubuntu's are made alike
-    # packages that cannot be checked, as Debian has no keys of Ubuntu's, stay in this folder
+    # Debian has no keys of Ubuntu, so that the packages are not verified; they stay in this folder
     [ -e /usr/share/keyrings/ubuntu-archive-keyring.gpg ] || unchecked=--no-check-gpg
   fi
   mkdir -p "$folder/archives/$1"
@@ -44,7 +44,7 @@ fresh() {
   mkdir "$root/softkin"
 }
 
-inside() { # NAME COMMAND: with the variables that pip reads, and /proc, by which programs find what belongs to them
+inside() { # NAME COMMAND: runs a command with the variables that pip reads, and with /proc for libraries
   local root=$folder/$1
   shift
   local settings
@@ -57,7 +57,7 @@ inside() { # NAME COMMAND: with the variables that pip reads, and /proc, by whic
 now() { date +%s.%N; }
 minus() { awk "BEGIN { printf \"%.1f\", $1 - $2 }"; }
 
-# try NAME: every step in turn
+# try NAME: runs every step in turn
 try() {
   local name=$1 begin from
   rm -rf "$folder/$name/softkin"

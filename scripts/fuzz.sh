@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
-# Gives libFuzzer every reader (tests/fuzz), as many at once as there are cores, and ends with a table.
-#   scripts/fuzz.sh PROGRAM quick [TARGET...]   SECONDS_IN_ALL (60) for all together, from one seed; nothing is kept
-#   scripts/fuzz.sh PROGRAM full [TARGET...]    RUNS (2000000) inputs for each; goes on with what out/fuzz has
+# Runs libFuzzer on every reader (tests/fuzz), one process per core, and prints a table at the end.
+#   scripts/fuzz.sh PROGRAM quick [TARGET...]   SECONDS_IN_ALL (60) for all together, from one seed; keeps no corpus
+#   scripts/fuzz.sh PROGRAM full [TARGET...]    RUNS (2000000) inputs for each; continues from out/fuzz
 # Exit codes: 0 nothing found, 1 a reader failed (the table names the input that did it, in out/fuzz/finds), 2 usage.
 set -euo pipefail
 
 corpora=$(dirname "$0")/../tests/fuzz
 out=out/fuzz
-chunk=100000   # inputs between two notes of how far a target is
+chunk=100000   # inputs between two records of the progress of a target
 seed=1
 limits=(-max_len=4096 -timeout=20 -rss_limit_mb=2048 -malloc_limit_mb=512 -print_final_stats=1)
 
@@ -85,8 +85,8 @@ each=$((${SECONDS_IN_ALL:-60} * cores / $(wc -l <<<"$chosen")))
 # readers take files: on a disk in memory where there is one
 rows=$(mktemp -d /dev/shm/softkin_fuzz.XXXXXX 2>/dev/null || mktemp -d)
 trap 'rm -rf "$rows"' EXIT
-share="$runs inputs each"
-[ "$mode" = full ] || share="$each s each"
-echo "fuzz: $(wc -l <<<"$chosen") targets, seed $seed, $share, $cores at once"
+budget="$runs inputs each"
+[ "$mode" = full ] || budget="$each s each"
+echo "fuzz: $(wc -l <<<"$chosen") targets, seed $seed, $budget, $cores at once"
 xargs -P "$cores" -L 1 "$0" --one "$mode" <<<"$chosen" || true
 print_table

@@ -1,10 +1,10 @@
 #!/usr/bin/env python3
-"""Makes the pictures of README.md: the moving one, and one for each row of its gallery, by the command of that row.
+"""Makes the pictures of README.md: the animation, and one for each row of its gallery by the command of that row.
 
-    scripts/gallery.py [NAME ...]     NAME: moving, or a picture of the gallery without its ending; all without a name
+    scripts/gallery.py [NAME ...]     NAME: moving, or the name of a picture of the gallery; default: all
 
-It needs build/softkin, Pillow (pip install pillow), and for the moving picture npm, Node.js and Chromium, as the tests of
-the page do. Exit codes: 0 all pictures were made, 1 a command failed, 2 an unknown name.
+The script needs build/softkin, Pillow (pip install pillow), and for the animation npm, Node.js and Chromium, as the
+tests of the page do. Exit codes: 0 all pictures were made, 1 a command failed, 2 an unknown name.
 """
 
 import os
@@ -23,7 +23,7 @@ IMAGES = ROOT / "docs" / "images"
 ROW = re.compile(r"^\| !\[\]\((docs/images/gallery/(\w+)\.png)\) \|.*\| `([^`]+)` \|$", re.M)
 FROM_THE_SIDE = "0.4 -1 0.3"
 VIEWS = {"three_chamber_actuator": "1 0.4 0.3", "dea_crawler": "0.3 -1 0.3", "two_material_bar": "0.3 -1 0.5"}
-PICTURE = (20, 62, 1120, 690)  # of the program's picture of 1280 x 800 pixels, without title, bars and axes
+PICTURE = (20, 62, 1120, 690)  # part of a picture of 1280 x 800 pixels without title, bars and axes
 THUMBNAIL = (240, 150)
 FRAMES = 36
 MOVING = (800, 450)
@@ -31,13 +31,14 @@ COLOURS = 128
 
 
 def run(command: list[str], folder: Path = ROOT, **environment: str) -> None:
+    """Runs a command; exits with its output if it fails."""
     done = subprocess.run(command, cwd=folder, capture_output=True, text=True, env=os.environ | environment)
     if done.returncode != 0:
         sys.exit(f"gallery: {shlex.join(command)} failed:\n{done.stdout}{done.stderr}")
 
 
 def thumbnail(picture: Path, to: Path) -> None:
-    """The robot alone, cropped and reduced."""
+    """Crops a picture to the robot, reduces it and writes it to a file."""
     image = Image.open(picture).convert("RGB").crop(PICTURE)
     box = ImageChops.difference(image, Image.new("RGB", image.size, "white")).getbbox()
     image = image.crop(box)
@@ -49,6 +50,7 @@ def thumbnail(picture: Path, to: Path) -> None:
 
 
 def still(name: str, command: str) -> None:
+    """Makes a picture of the gallery."""
     with tempfile.TemporaryDirectory() as folder:
         picture = Path(folder) / "picture.png"
         view = VIEWS.get(name, FROM_THE_SIDE).split()
@@ -57,7 +59,7 @@ def still(name: str, command: str) -> None:
 
 
 def moving() -> None:
-    """The page of the finger while its slider moves to and fro."""
+    """Makes the animation: the page of the finger while its slider moves from end to end and back."""
     scene = "examples/pneumatic_finger/pneumatic_finger.yaml"
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
@@ -77,12 +79,12 @@ def moving() -> None:
 
 def main() -> None:
     rows = {name: command for _, name, command in ROW.findall((ROOT / "README.md").read_text(encoding="utf-8"))}
-    asked = sys.argv[1:] or ["moving", *rows]
-    unknown = [name for name in asked if name != "moving" and name not in rows]
+    names = sys.argv[1:] or ["moving", *rows]
+    unknown = [name for name in names if name != "moving" and name not in rows]
     if unknown:
-        print(f"gallery: no picture {unknown[0]}; there are: moving, {', '.join(rows)}", file=sys.stderr)
+        print(f"gallery: unknown picture {unknown[0]}; the pictures are moving, {', '.join(rows)}", file=sys.stderr)
         sys.exit(2)
-    for name in asked:
+    for name in names:
         print(name, flush=True)
         moving() if name == "moving" else still(name, rows[name])
 

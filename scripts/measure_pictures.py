@@ -1,7 +1,8 @@
 #!/usr/bin/env python3
-"""Renders the pictures of docs/images/measure: a two-material bar at rest and stretched, and a dot on its way.
+"""Renders the pictures of docs/images/measure: a two-material bar at rest and stretched, and a moving dot.
 
-They are made, not photographed, so that their true lengths are known (docs/measure.md says them). Needs Python alone.
+The pictures are rendered, so that the true lengths are exact (docs/measure.md lists them). The script needs only
+Python.
 """
 
 import math
@@ -10,7 +11,7 @@ import struct
 import zlib
 
 PAPER, RED, BLUE, GREEN, YELLOW = (226, 224, 219), (200, 44, 38), (38, 72, 190), (42, 148, 62), (235, 190, 35)
-SAMPLES = 6  # along each side of a pixel
+SAMPLES = 6  # number of samples along each side of a pixel
 
 
 def png(path, width, height, rows):
@@ -24,7 +25,7 @@ def png(path, width, height, rows):
 
 
 def render(path, width, height, scale, paint):
-    """paint(x, y) in mm, the origin at the lower left corner of the picture, y up."""
+    """Writes a picture of the colours paint(x, y), in mm from the lower left corner of the picture, y up."""
     rows = []
     for j in range(height):
         row = []
@@ -44,7 +45,7 @@ def render(path, width, height, scale, paint):
 
 
 def bar(interface, length):
-    """Two dots 60 mm apart above a bar of 10 mm, turned by 2 degrees: nothing lies along the pixels."""
+    """Returns the colours of two dots 60 mm apart above a bar of 10 mm, rotated by 2 degrees against the pixels."""
     cosine, sine = math.cos(math.radians(2)), math.sin(math.radians(2))
 
     def paint(x, y):

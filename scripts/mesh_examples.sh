@@ -1,5 +1,5 @@
 #!/bin/sh
-# Remeshes every example whose shape was changed in its .geo: scripts/mesh_examples.sh [NAME ...]
+# Meshes every example, or the named ones, from its .geo: scripts/mesh_examples.sh [NAME ...]
 set -eu
 cd "$(dirname "$0")/../examples"
 [ $# -gt 0 ] || set -- */

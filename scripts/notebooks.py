@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
-"""Makes the notebooks of examples/python from its scripts: a cell begins at each line `# %%`; what stands before the
-first is the docstring, which becomes text. Scripts without such a line are modules of the others."""
+"""Makes the notebooks of examples/python from its scripts: a cell begins at each line `# %%`; the docstring before the
+first one becomes text. Scripts without such a line are modules of the others."""
 
 from __future__ import annotations
 
@@ -13,14 +13,14 @@ MARK = "# %%\n"
 
 
 def notebook(script: Path) -> str | None:
-    """The notebook of a script, without outputs, in JSON; None: it has no cells."""
+    """Returns the notebook of a script, without outputs, in JSON; None if the script has no cells."""
     head, *bodies = script.read_text().split(MARK)
     if not bodies:
         return None
-    told = ast.get_docstring(ast.parse(head))
+    docstring = ast.get_docstring(ast.parse(head))
     title = script.stem.replace("_", " ").capitalize()
     cells: list[dict[str, object]] = [
-        {"cell_type": "markdown", "id": "about", "metadata": {}, "source": lines(f"# {title}\n\n{told}")}
+        {"cell_type": "markdown", "id": "about", "metadata": {}, "source": lines(f"# {title}\n\n{docstring}")}
     ]
     for number, body in enumerate(bodies, start=1):
         cell: dict[str, object] = {"cell_type": "code", "execution_count": None, "id": f"cell-{number}", "metadata": {}, "outputs": []}

@@ -1,8 +1,8 @@
 #!/usr/bin/env python3
 """Renders the pictures of docs/images/outline: a finger under 0, 700 and 1200 kPa, dark on paper, from its side.
 
-They are made, not photographed, so that the numbers behind them are known (docs/poses.md): 38 MPa, a base turned by 2
-degrees and lifted by 1.5 mm. Needs Python alone, and build/softkin.
+The pictures are rendered, so that their parameters are exact (docs/poses.md): 38 MPa, a base rotated by 2 degrees and
+lifted by 1.5 mm. The script needs only Python and build/softkin.
 """
 
 import math
@@ -14,8 +14,8 @@ import zlib
 
 PAPER, INK, RED, GREEN = (226, 224, 219), (38, 38, 42), (200, 44, 38), (42, 148, 62)
 SCALE, WIDTH, HEIGHT = 3, 372, 420  # pixels in a mm; pixels
-LEFT, TOP = 6, 40  # of the picture's upper left corner [mm]: the base lies beyond the frame
-SAMPLES = 4  # along each side of a pixel
+LEFT, TOP = 6, 40  # x and z of the picture's upper left corner [mm]: the base is outside of the picture
+SAMPLES = 4  # number of samples along each side of a pixel
 DOTS = ((20, 34, RED), (120, 34, GREEN))
 
 
@@ -30,7 +30,7 @@ def png(path, rows):
 
 
 def triangles(path):
-    """Of a binary STL, x and z of their corners."""
+    """Yields x and z of the corners of each triangle of a binary STL."""
     data = path.read_bytes()
     for i in range(struct.unpack_from("<I", data, 80)[0]):
         corners = struct.unpack_from("<9f", data, 84 + 50 * i + 12)
@@ -38,14 +38,14 @@ def triangles(path):
 
 
 def to_sample(x, z):
-    """As the base stands, in samples from the upper left corner."""
+    """Applies the pose of the base; returns samples from the upper left corner."""
     turn = math.radians(2)
     x, z = x * math.cos(turn) + z * math.sin(turn), z * math.cos(turn) - x * math.sin(turn) + 1.5
     return (x - LEFT) * SCALE * SAMPLES, (TOP - z) * SCALE * SAMPLES
 
 
 def covered(path):
-    """Bytes of samples, row by row: 1 where the robot is."""
+    """Returns the rows of samples: 1 where the robot is, else 0."""
     wide, high = WIDTH * SAMPLES, HEIGHT * SAMPLES
     rows = [bytearray(wide) for _ in range(high)]
     for triangle in triangles(path):
@@ -64,6 +64,7 @@ def covered(path):
 
 
 def render(path, robot):
+    """Writes the picture of the covered samples."""
     rows = []
     for j in range(HEIGHT):
         row = []

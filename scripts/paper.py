@@ -1,10 +1,11 @@
-"""The paper's tables, figures and claims, each beside what softkin gives for it: one page, out/paper/index.html, and a table.
+"""Compares the paper's tables, figures and claims with the results of softkin, on one page and in a table.
 
   scripts/paper.py [PART ...] [--program build/softkin] [--out out/paper] [--table FILE] [--only short|long] [--check] [--accept]
 
-A part that was done by the same program is not run again. --only short: parts of a second or two; long: the others that a test
-checks. --check: fails where the figure of a row has moved by more than its tolerance from scripts/paper/figures.json, or where
-what the paper prints does not stand in one row. --accept: writes that file.
+The page is out/paper/index.html. The script does not repeat a part that the same program has completed. --only short
+selects the parts that take a second or two, --only long the others that a test checks. --check fails if the figure of
+a row differs from scripts/paper/figures.json by more than its tolerance, or if a number or claim of the paper is not
+in exactly one row. --accept writes that file.
 Exit codes: 0 done, 1 a part failed or a figure has moved, 2 usage."""
 
 from __future__ import annotations
@@ -33,7 +34,7 @@ from printed import missing  # noqa: E402
 from rows import ROOT, Bench, Failed, Result, Row  # noqa: E402
 
 Part = Callable[[Bench], None]
-SHORT, LONG, ALONE = "short", "long", "alone"  # a test runs the first, another the second; times and other programs none
+SHORT, LONG, ALONE = "short", "long", "alone"  # one test runs SHORT, another LONG; none runs ALONE
 PARTS: dict[str, tuple[str, Part, str]] = {
     "table1": ("Table I and the constants of the method", method.notation, SHORT),
     "fig1": ("Figures 1 to 4: robots and their elements", method.robots, SHORT),
@@ -62,7 +63,7 @@ FIGURES = ROOT / "scripts/paper/figures.json"
 
 
 def key_of(program: Path) -> str:
-    """Of the program, of what runs it and of what it reads."""
+    """Returns a digest of the program, of the scripts that run it and of the files that it reads."""
     digest = hashlib.sha256(program.read_bytes())
     robots = [file for file in (ROOT / "examples").glob("**/*") if file.suffix in (".yaml", ".csv", ".msh")]
     for file in sorted([*(ROOT / "scripts/paper").glob("*.py"), ROOT / "bench/weights_study.py", *robots]):
@@ -71,6 +72,7 @@ def key_of(program: Path) -> str:
 
 
 def run_part(name: str, program: Path, out: Path, key: str) -> Result:
+    """Runs a part, or reads its result where the same program has completed it before."""
     folder = out / name
     done, stamp = folder / "result.json", folder / "program.txt"
     if done.exists() and stamp.exists() and stamp.read_text() == key:
@@ -84,24 +86,26 @@ def run_part(name: str, program: Path, out: Path, key: str) -> Result:
     return bench.result
 
 
-def figured(results: dict[str, Result]) -> dict[str, Row]:
-    """Rows with a figure, by part and item."""
+def rows_with_figures(results: dict[str, Result]) -> dict[str, Row]:
+    """Returns the rows that have a figure, by part and item."""
     return {f"{name}: {row.item}": row for name, result in results.items() for row in result.rows if row.figure is not None}
 
 
-def moved(results: dict[str, Result]) -> list[str]:
-    """Rows whose figure is not what it was, that have none there, or that are gone."""
-    known: dict[str, float] = json.loads(FIGURES.read_text())
-    gone = [item for item in known if item.split(":")[0] in results and item not in figured(results)]
-    faults = [f"{item}: there is no such row" for item in gone]
-    for item, row in figured(results).items():
-        before = known.get(item)
+def figure_faults(results: dict[str, Result]) -> list[str]:
+    """Returns one message for each row whose figure has changed, that is new, or that is missing."""
+    accepted: dict[str, float] = json.loads(FIGURES.read_text())
+    absent = [item for item in accepted if item.split(":")[0] in results and item not in rows_with_figures(results)]
+    faults = [f"{item}: there is no such row" for item in absent]
+    for item, row in rows_with_figures(results).items():
+        before = accepted.get(item)
         if before is None or row.figure is None or not abs(row.figure - before) <= row.tolerance * abs(before):
-            faults.append(f"{item}: {row.figure!r}, and was {before!r} (within {100 * row.tolerance:g} %)")
+            faults.append(f"{item}: the figure is {row.figure!r}; the accepted one is {before!r} "
+                          f"(within {100 * row.tolerance:g} %)")
     return faults
 
 
-def shown(folder: Path, picture: str) -> str:
+def picture_html(folder: Path, picture: str) -> str:
+    """Returns a picture as HTML without references to other files."""
     file = folder / picture
     if file.suffix == ".svg":
         return f"<div style='display:inline-block;width:520px'>{file.read_text()}</div>"
@@ -110,7 +114,7 @@ def shown(folder: Path, picture: str) -> str:
 
 
 def page(results: dict[str, Result], out: Path, machine: str) -> str:
-    """One file, without a network."""
+    """Returns the page as one HTML file that needs no network."""
     style = ("body{font-family:sans-serif;max-width:1120px;margin:2em auto}"
              "td,th{border:1px solid #ccc;padding:4px;text-align:left;vertical-align:top}")
     text = [f"<!doctype html><html lang='en'><meta charset='utf-8'><title>The paper by softkin</title><style>{style}</style>"]
@@ -120,15 +124,17 @@ def page(results: dict[str, Result], out: Path, machine: str) -> str:
         text += [f"<th>{head}</th>" for head in HEADS]
         text += ["</tr><tr>" + "".join(f"<td>{html.escape(cell)}</td>" for cell in cells(row)) for row in result.rows]
         text.append("</tr></table><p>")
-        text += [shown(out / name, picture) for picture in result.pictures]
+        text += [picture_html(out / name, picture) for picture in result.pictures]
         tables = [Path(picture).with_suffix(".csv").name for picture in result.pictures if picture.endswith(".svg")]
-        text.append("</p><p>numbers: " + ", ".join(f"<a href='{name}/{table}'>{table}</a>" for table in tables) if tables else "")
+        text.append("</p><p>data: " + ", ".join(f"<a href='{name}/{table}'>{table}</a>" for table in tables)
+                    if tables else "")
         commands = html.escape("\n".join(result.commands))
         text.append(f"</p><details><summary>commands, {result.seconds:.0f} s</summary><pre>{commands}</pre></details>")
     return "\n".join(text) + "\n</html>\n"
 
 
 def table(results: dict[str, Result], machine: str) -> str:
+    """Returns the rows of all parts as Markdown."""
     lines = ["# The paper's numbers by softkin", "", "Made by `make paper`; the same with pictures is `out/paper/index.html`. " + machine]
     for name, result in results.items():
         lines += ["", f"## {PARTS[name][0]}", "", "| " + " | ".join(HEADS) + " |", "|---" * len(HEADS) + "|"]
@@ -144,6 +150,7 @@ def cells(row: Row) -> tuple[str, ...]:
 
 
 def machine_of(program: Path) -> str:
+    """Returns the version of the program, the processor and the number of cores."""
     version = subprocess.run([str(program), "--version"], capture_output=True, text=True, check=True).stdout
     cpu = next((line.split(":", 1)[1].strip() for line in Path("/proc/cpuinfo").read_text().splitlines() if "model name" in line), "")
     return f"{' '.join(version.split())}; {cpu}, {os.cpu_count()} cores."
@@ -154,14 +161,14 @@ def main() -> int:
     parser.add_argument("parts", nargs="*", metavar="PART", help=", ".join(PARTS))
     parser.add_argument("--program", type=Path, default=ROOT / "build/softkin")
     parser.add_argument("--out", type=Path, default=ROOT / "out/paper")
-    parser.add_argument("--table", type=Path, help="the rows as Markdown")
+    parser.add_argument("--table", type=Path, help="file for the rows as Markdown")
     parser.add_argument("--only", choices=(SHORT, LONG))
     parser.add_argument("--check", action="store_true")
     parser.add_argument("--accept", action="store_true")
     options = parser.parse_args()
     for name in options.parts:
         if name not in PARTS:
-            parser.error(f"there is no part '{name}'; there are {', '.join(PARTS)}")
+            parser.error(f"unknown part '{name}'; the parts are {', '.join(PARTS)}")
     names = options.parts or [name for name, (_, _, kind) in PARTS.items() if options.only in (None, kind)]
     key, results = key_of(options.program), {}
     for i, name in enumerate(names):
@@ -180,10 +187,10 @@ def main() -> int:
     if options.accept:
         figures = json.loads(FIGURES.read_text()) if FIGURES.exists() else {}
         figures = {item: figure for item, figure in figures.items() if item.split(":")[0] in PARTS.keys() - results.keys()}
-        figures |= {item: row.figure for item, row in figured(results).items()}
+        figures |= {item: row.figure for item, row in rows_with_figures(results).items()}
         FIGURES.write_text(json.dumps(dict(sorted(figures.items())), indent=1) + "\n")
     if options.check:
-        faults = moved(results) + missing(results)
+        faults = figure_faults(results) + missing(results)
         print("\n".join(faults) or f"{sum(len(result.rows) for result in results.values())} rows, none has moved")
         return 1 if faults else 0
     return 0

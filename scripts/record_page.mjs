@@ -1,5 +1,5 @@
 // Moves a slider of a page and takes pictures: record_page.mjs PAGE.html FOLDER SLIDER FROM TO FRAMES (SLIDER from 0)
-// writes FOLDER/frame_000.png and so on. gallery.py runs it beside browser.mjs of the page's tests.
+// writes FOLDER/frame_000.png and so on. gallery.py runs it next to browser.mjs of the page's tests.
 import {frames, launch, moveSlider, open} from './browser.mjs';
 
 const [page_file, folder, slider, from, to, count] = process.argv.slice(2);

@@ -1,11 +1,11 @@
 #!/usr/bin/env python3
-"""Do two installations of softkin, a wheel and a native build, find the same shapes?
+"""Checks that two installations of softkin, such as a wheel and a native build, compute the same shapes.
 
     scripts/same_numbers.py PYTHON OTHER_PYTHON
 
-Solves every scene in examples with both interpreters, each actuator a fifth of the way to the farther end of its range, to
-steps of 1e-9 of the robot's size, and prints the largest difference of positions over that size. Exit codes: 0 all within
-1e-9, 1 not.
+The script solves every scene in examples with both interpreters, each actuator at a fifth of the distance to the
+farther end of its range, with a tolerance of 1e-9 of the robot's size. It prints the largest difference of positions
+over that size. Exit codes: 0 all differences are within 1e-9, 1 one is not.
 """
 
 import subprocess
@@ -19,7 +19,7 @@ LIMIT = 1e-9
 
 
 def solve(folder: Path) -> None:
-    """With the interpreter that runs this."""
+    """Solves the scenes with the interpreter that runs this script."""
     import numpy as np
 
     import softkin
@@ -28,7 +28,7 @@ def solve(folder: Path) -> None:
     for scene in sorted(EXAMPLES.glob("*/*.yaml")):
         try:
             robot = softkin.load(scene)
-        except softkin.InvalidInput:  # materials, hardware: no scene of its own
+        except softkin.InvalidInput:  # materials or hardware instead of a scene
             continue
         rest = np.array(robot.rest_actuation)
         ends = np.array(robot.ranges).reshape(-1, 2)
@@ -46,13 +46,13 @@ def main() -> int:
             subprocess.run([python, __file__, "--solve", folder], check=True)
         files = sorted(Path(one).iterdir())
         assert files and [file.name for file in files] == [file.name for file in sorted(Path(other).iterdir())]
-        worst = 0.0
+        largest = 0.0
         for file in files:
             a, b = np.load(file), np.load(Path(other) / file.name)
             difference = float(abs(a - b).max() / np.linalg.norm(np.ptp(a, axis=0)))
-            worst = max(worst, difference)
+            largest = max(largest, difference)
             print(f"{file.stem}: {difference:.1e} of its size")
-    return int(not worst <= LIMIT)
+    return int(not largest <= LIMIT)
 
 
 if __name__ == "__main__":

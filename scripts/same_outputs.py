@@ -1,12 +1,12 @@
 #!/usr/bin/env python3
-"""Shows that a changed softkin still gives the outputs of an older build.
+"""Checks that a changed softkin has the same outputs as an older build.
 
-Runs every case of scripts/output_cases with both programs, each in a fresh folder, and compares standard output,
-standard error, exit codes and all files that are there in the end, byte for byte but for what a clock gives. Needs Python
-alone.
+The script runs every case of scripts/output_cases with both programs, each in a new folder, and compares standard
+output, standard error, exit codes and all files at the end byte by byte, except for times. It needs only Python.
 
-With --targets one program runs its examples with each of these instruction sets, and what is told is by how much the
-answers in their reports differ from those of the first, by unit. Exit code 1 then: words or exit codes differ.
+With --targets one program runs its examples with each of these instruction sets, and the script prints the largest
+differences of the numbers in the reports from those of the first, by unit. Exit code 1 means that texts or exit codes
+differ.
 """
 
 import argparse
@@ -28,13 +28,13 @@ from output_cases.between import compared
 from output_cases.normal import normal_text, vtu_text
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
-SECONDS = 300  # a command that takes longer is killed, which is a difference
+SECONDS = 300  # time limit of a command; the script kills a slower one, which counts as a difference
 TEXTS = {".json", ".csv", ".yaml", ".svg", ".gcode", ".pvd", ".txt", ".msh", ".mesh", ".node", ".ele", ".face", ".inp",
          ".tet"}
 
 
 def copy_examples(case, folder):
-    """Copies what a case names below examples and docs, so that paths are those of the checkout."""
+    """Copies the files of examples and docs that a case names, so that paths are those of the checkout."""
     named = {match for words in case.words() for match in re.findall(r"examples/\w+|docs/(?:scenes|images/measure)",
                                                                      words)}
     for name in sorted(named):  # scenes of one folder with meshes of another
@@ -48,7 +48,7 @@ def copy_examples(case, folder):
 
 
 def run_case(program, case, folder, target=None):
-    """Everything that the case leaves: by name the bytes of outputs and files, and the last exit code."""
+    """Runs a case; returns the bytes of its outputs and files by name, and the last exit code."""
     folder.mkdir(parents=True)
     copy_examples(case, folder)
     for name, content in case.files.items():
@@ -57,36 +57,36 @@ def run_case(program, case, folder, target=None):
     environment = {"PATH": os.environ.get("PATH", ""), "LC_ALL": "C", "HOME": str(folder)}
     if target:
         environment["SOFTKIN_TARGET"] = target
-    left, code = {}, None
+    outputs, code = {}, None
     for number, step in enumerate(case.steps, 1):
         if callable(step):
             try:
                 step(folder)
-            except (OSError, ValueError, KeyError) as error:  # of a file that the command before has not written so
-                left[f"step {number} fails"] = f"{type(error).__name__}: {error}\n".encode()
+            except (OSError, ValueError, KeyError) as error:  # the previous command has not written such a file
+                outputs[f"step {number} fails"] = f"{type(error).__name__}: {error}\n".encode()
             continue
         title = f"{number}: softkin {' '.join(step)[:100]}"
         try:
             ended = subprocess.run([program, *step], cwd=folder, env=environment, stdin=subprocess.DEVNULL,
                                    capture_output=True, timeout=SECONDS, check=False)
             code = ended.returncode
-            left |= {title + " > standard output": ended.stdout, title + " > standard error": ended.stderr}
+            outputs |= {title + " > standard output": ended.stdout, title + " > standard error": ended.stderr}
         except subprocess.TimeoutExpired:
             code = "killed"
-        left[title + " > exit code"] = f"{code}\n".encode()
+        outputs[title + " > exit code"] = f"{code}\n".encode()
     for path in sorted(folder.rglob("*")):
         if path.is_file():
-            left[str(path.relative_to(folder))] = path.read_bytes()
-    here = [(str(folder).encode(), b"FOLDER"), (str(pathlib.Path(program).parent).encode(), b"PROGRAM_FOLDER")]
-    for name, content in left.items():
-        for text, by in here:
+            outputs[str(path.relative_to(folder))] = path.read_bytes()
+    replacements = [(str(folder).encode(), b"FOLDER"), (str(pathlib.Path(program).parent).encode(), b"PROGRAM_FOLDER")]
+    for name, content in outputs.items():
+        for text, by in replacements:
             content = content.replace(text, by)
-        left[name] = content
-    return left, code
+        outputs[name] = content
+    return outputs, code
 
 
 def comparable(name, content, case, digits):
-    """What has to be the same of an output: a text, or the bytes where there is nothing to be passed over."""
+    """Returns the part of an output to be compared: a text without times, or all bytes."""
     suffix = pathlib.Path(name).suffix.lower()
     if suffix == ".vtu":
         return vtu_text(content, digits)
@@ -99,15 +99,16 @@ def comparable(name, content, case, digits):
 
 
 def window(line, other):
-    """The part of a line where it differs from the other one."""
-    at = next((i for i, (a, b) in enumerate(zip(line, other)) if a != b), min(len(line), len(other)))
-    start = max(0, at - 60) if len(line) > 160 else 0
+    """Returns the part of a line where it differs from the other one."""
+    first = next((i for i, (a, b) in enumerate(zip(line, other)) if a != b), min(len(line), len(other)))
+    start = max(0, first - 60) if len(line) > 160 else 0
     return ("..." if start else "") + line[start:start + 160] + ("..." if len(line) > start + 160 else "")
 
 
-def shown_difference(old, new, lines=6):
+def shown_difference(old, new, max_lines=6):
+    """Returns the first lines that differ."""
     if isinstance(old, bytes) or isinstance(new, bytes):
-        return [f"  {len(old)} and {len(new)} bytes that are not the same"]
+        return [f"  {len(old)} and {len(new)} bytes that differ"]
     a, b, shown = old.splitlines(), new.splitlines(), []
     if len(a) + len(b) > 6000:
         blocks = [("replace", i, i + 1, i, i + 1) for i, pair in enumerate(zip(a, b)) if pair[0] != pair[1]]
@@ -121,13 +122,13 @@ def shown_difference(old, new, lines=6):
                 shown.append(f"  -{i + n + 1}: " + window(before, after or ""))
             if after is not None:
                 shown.append(f"  +{k + n + 1}: " + window(after, before or ""))
-            if len(shown) >= lines:
+            if len(shown) >= max_lines:
                 return shown + ["  ..."]
     return shown or ["  only the ends of lines differ"]
 
 
 def differences(case, old, new, digits):
-    """Lines that tell what is not the same."""
+    """Returns lines that describe the differences."""
     lines = []
     for name in sorted(old.keys() | new.keys()):
         if name not in old or name not in new:
@@ -140,21 +141,21 @@ def differences(case, old, new, digits):
 
 
 def check(case, programs, folder, digits, keep):
-    """Name of the case, what is wrong with it, and the seconds that the programs took."""
-    left, codes, seconds = [], [], []
-    for program, name in zip(programs, ("old", "new")):  # names of one length: they may stand in tables
+    """Runs a case with both programs; returns its name, its differences, and the seconds of each program."""
+    outputs, codes, seconds = [], [], []
+    for program, name in zip(programs, ("old", "new")):  # names of one length, since tables may contain them
         begin = time.monotonic()
-        outputs, code = run_case(program, case, folder / name)
+        output, code = run_case(program, case, folder / name)
         seconds.append(time.monotonic() - begin)
-        left.append(outputs)
+        outputs.append(output)
         codes.append(code)
-    lines = differences(case, *left, digits)
-    lines += [f"  the case is no good: {name}: {text.decode().strip()}" for name, text in left[0].items()
+    lines = differences(case, *outputs, digits)
+    lines += [f"  the case is wrong: {name}: {text.decode().strip()}" for name, text in outputs[0].items()
               if name.endswith(" fails")]
     if case.ends is not None and codes[0] != case.ends:
-        last = [text.decode(errors="replace").strip() for name,
-                text in left[0].items() if name.endswith("standard error")]
-        lines.append(f"  the case is no good: the old program ends with {codes[0]}, not with {case.ends}: {last[-1:]}")
+        errors = [text.decode(errors="replace").strip() for name, text in outputs[0].items()
+                  if name.endswith("standard error")]
+        lines.append(f"  the case is wrong: the old program ends with {codes[0]}, not with {case.ends}: {errors[-1:]}")
     if not keep:
         shutil.rmtree(folder)
     return case.name, lines, seconds
@@ -162,59 +163,66 @@ def check(case, programs, folder, digits, keep):
 
 def between_targets(program, targets, cases, base):
     """Prints the largest differences of every case; returns the exit code."""
-    largest, wrong = {}, 0
+    largest, num_wrong = {}, 0
     for number, case in enumerate(cases):
-        left = {}
+        outputs = {}
         for target in targets:
             folder = base / f"{number:03d}" / target
-            left[target], code = run_case(program, case, folder, target)
+            outputs[target], code = run_case(program, case, folder, target)
             if case.ends is not None and code != case.ends:
-                errors = [text.decode().strip() for name, text in left[target].items() if name.endswith("standard error")]
+                errors = [text.decode().strip() for name,
+                          text in outputs[target].items() if name.endswith("standard error")]
                 print(f"{case.name}: {target}: ends with {code}, not with {case.ends}: {errors[-1:]}")
-                wrong += 1
+                num_wrong += 1
             shutil.rmtree(folder)
         for target in targets[1:]:
-            by_unit, other = compared(left[targets[0]], left[target])
-            told = ", ".join(f"{apart:.1e} {unit.replace('-', 'without unit')} ({share:.0e})" for unit, (apart, share) in sorted(by_unit.items()))
-            print(f"{case.name}: {target}: {told or 'the same numbers'}", *("  " + line for line in other), sep="\n",
+            by_unit, other = compared(outputs[targets[0]], outputs[target])
+            text = ", ".join(f"{difference:.1e} {unit.replace('-', 'without unit')} ({relative:.0e})"
+                             for unit, (difference, relative) in sorted(by_unit.items()))
+            print(f"{case.name}: {target}: {text or 'the same numbers'}", *("  " + line for line in other), sep="\n",
                   flush=True)
-            wrong += bool(other)
-            for unit, (apart, share) in by_unit.items():
-                most = largest.get((target, unit), (0, 0))
-                largest[target, unit] = max(most[0], apart), max(most[1], share)
-    for (target, unit), (apart, share) in sorted(largest.items()):
-        of = "of itself, or of 1" if unit == "-" else "of the largest of its report, or of 1"
-        print(f"{target} beside {targets[0]}: at most {apart:.1e} {unit.replace('-', 'without unit')}; at most {share:.0e} {of}")
-    print(f"{len(cases)} cases, {wrong} with other words or exit codes")
-    return 1 if wrong else 0
+            num_wrong += bool(other)
+            for unit, (difference, relative) in by_unit.items():
+                before = largest.get((target, unit), (0, 0))
+                largest[target, unit] = max(before[0], difference), max(before[1], relative)
+    for (target, unit), (difference, relative) in sorted(largest.items()):
+        reference = "the number, or to 1" if unit == "-" else "the largest number of the report, or to 1"
+        print(f"{target} and {targets[0]}: a difference of at most "
+              f"{difference:.1e} {unit.replace('-', 'without unit')}; "
+              f"at most {relative:.0e} relative to {reference}")
+    print(f"{len(cases)} cases, {num_wrong} with different texts or exit codes")
+    return 1 if num_wrong else 0
 
 
-def measures(program):
+def has_measure(program):
+    """Returns whether softkin-measure is next to a program."""
     return pathlib.Path(program).with_name("softkin-measure").exists()
 
 
 def chosen_cases(options, programs):
+    """Returns the cases of --only that both programs can run."""
     cases = [case for case in all_cases() if not options.only or
              any(fnmatch.fnmatch(case.name, f"*{pattern}*") for pattern in options.only)]
-    if not all(measures(program) for program in programs):
+    if not all(has_measure(program) for program in programs):
         left_out = [case for case in cases if case.name.startswith("measure")]
         cases = [case for case in cases if case not in left_out]
         if left_out:
-            print(f"left out: {len(left_out)} cases of measure, as softkin-measure is not beside both programs")
+            print(f"left out: {len(left_out)} cases of measure, as softkin-measure is not next to both programs")
     return cases
 
 
 def main():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("old", metavar="OLD_PROGRAM")
-    parser.add_argument("new", metavar="NEW_PROGRAM", nargs="?", help="not with --targets")
+    parser.add_argument("new", metavar="NEW_PROGRAM", nargs="?", help="omit with --targets")
     parser.add_argument("--targets", metavar="A,B,...",
-                        help="instruction sets as SOFTKIN_TARGET has them, such as avx512,avx2,sse4")
+                        help="instruction sets by their names in SOFTKIN_TARGET, such as avx512,avx2,sse4")
     parser.add_argument("--only", metavar="PATTERN", action="append",
-                        help="cases whose name has this; * and ? stand for any")
-    parser.add_argument("--jobs", metavar="N", type=int, default=1, help="cases at once (default: 1)")
+                        help="cases whose name contains this; * matches any text, ? any character")
+    parser.add_argument("--jobs", metavar="N", type=int, default=1,
+                        help="number of cases that run at once (default: 1)")
     parser.add_argument("--keep", metavar="DIR", type=pathlib.Path,
-                        help="keep the folders of all cases here: NUMBER/old and NUMBER/new, numbers as --list says")
+                        help="keep the folders of all cases here, NUMBER/old and NUMBER/new; --list prints numbers")
     parser.add_argument("--digits", metavar="N", type=int,
                         help="round numbers to N significant digits before they are compared")
     parser.add_argument("--list", action="store_true", help="print the names of the cases and run nothing")
@@ -231,13 +239,13 @@ def main():
         return 0
     for program in programs:
         if not os.access(program, os.X_OK):
-            parser.error(f"{program}: no program")
+            parser.error(f"{program} is not an executable program")
     if not cases:
-        parser.error("no case has such a name")
+        parser.error("no case matches --only")
     if options.keep and options.keep.exists() and any(options.keep.iterdir()):
-        parser.error(f"--keep {options.keep}: is not empty")
+        parser.error(f"--keep {options.keep}: the folder is not empty")
     base = options.keep.resolve() if options.keep else pathlib.Path(tempfile.mkdtemp(prefix="same_outputs_"))
-    wrong, took = 0, []
+    num_different, durations = 0, []
     try:
         if options.targets:
             return between_targets(programs[0], options.targets.split(","), cases, base)
@@ -247,16 +255,16 @@ def main():
 
             for name, lines, seconds in pool.map(checked, range(len(cases))):
                 print(f"{'differs' if lines else 'OK'}  {name}", *lines, sep="\n", flush=True)
-                wrong += bool(lines)
-                took.append((seconds, name))
+                num_different += bool(lines)
+                durations.append((seconds, name))
     finally:
         if not options.keep:
             shutil.rmtree(base, ignore_errors=True)
-    for seconds, name in sorted(took, reverse=True)[:options.slow]:
+    for seconds, name in sorted(durations, reverse=True)[:options.slow]:
         print(f"{seconds[0]:8.2f} s {seconds[1]:8.2f} s  {name}")
-    old, new = (sum(seconds[i] for seconds, _ in took) for i in (0, 1))
-    print(f"{len(cases)} cases, {wrong} differ; {old:.0f} s of the old program, {new:.0f} s of the new one")
-    return 1 if wrong else 0
+    old, new = (sum(seconds[i] for seconds, _ in durations) for i in (0, 1))
+    print(f"{len(cases)} cases, {num_different} differ; {old:.0f} s of the old program, {new:.0f} s of the new one")
+    return 1 if num_different else 0
 
 
 if __name__ == "__main__":

@@ -1,14 +1,14 @@
 #!/usr/bin/env bash
-# Installs what softkin needs to build (with --tests: also what the tests of `make test` need, --tests-deep: what those of
-# `make test-deep` need besides; with --python: what its Python package needs of PYTHON, python3 if not said; with --arm:
-# what building for aarch64 and running it here needs; with --tidy: what `make tidy` reads the sources with), and only
-# what is missing. Python packages that tests need go into build-tests/python, a virtual environment of their own.
-# Exit codes: 0 everything is there, 2 it is not and could not be installed.
+# Installs the missing packages that softkin needs to build. --tests adds the packages of `make test`, --tests-deep
+# also those of `make test-deep`; --python those of the Python package for PYTHON (default: python3); --arm those for
+# building for aarch64 and running it here; --tidy those of `make tidy`. The Python packages of the tests go into the
+# virtual environment build-tests/python.
+# Exit codes: 0 all packages are installed, 2 a package is missing and could not be installed.
 set -euo pipefail
 
 packages=(clang g++ cmake ninja-build libeigen3-dev libyaml-cpp-dev nlohmann-json3-dev libpugixml-dev zlib1g-dev libpng-dev
           libcli11-dev libmetis-dev libnanoflann-dev libqhull-dev libboost-dev)
-# builds the page of softkin view and --html; any npm with Node.js 18 or later does
+# for the page of softkin view and --html; any npm with Node.js 18 or later is sufficient
 command -v npm >/dev/null || packages+=(npm)
 python=${PYTHON:-python3}
 requirements=()
@@ -39,7 +39,7 @@ fail() {
   exit 2
 }
 
-# The virtual environment of the tests. Tests that need what it lacks are skipped, and `make test` lists them.
+# Makes the virtual environment of the tests. `make test` skips and lists the tests whose packages it does not contain.
 finish() {
   [ ${#requirements[@]} -gt 0 ] || exit 0
   local folder done_file wanted

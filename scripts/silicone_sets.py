@@ -3,11 +3,11 @@
 
 The curves are those of the Soft Robotics Materials Database (Marechal et al., doi 10.1089/soro.2019.0115,
 https://github.com/LucMarechal/Soft-Robotics-Materials-Database), whose licence, ODbL 1.0, keeps them out of this
-repository; constants that are fitted to them are not of the database.
+repository; the licence does not cover constants that are fitted to them.
 
     scripts/silicone_sets.py CURVES                print the table
     scripts/silicone_sets.py CURVES --write        put it into the source
-    scripts/silicone_sets.py CURVES --check        fail where the source has other constants
+    scripts/silicone_sets.py CURVES --check        fail if the source has other constants
     scripts/silicone_sets.py CURVES --markdown     print the table of docs/materials.md
 """
 
@@ -25,7 +25,7 @@ CURVES = {
     "dragon-skin-10": "Dragon_Skin_10_MEDIUM.csv",
     "dragon-skin-30": "Dragon_Skin_30.csv",
 }
-UP_TO = 2  # strain: robots strain by 0.5 to 1.5, and by more at places
+UP_TO = 2  # strain; robots strain by 0.5 to 1.5, locally by more
 # name of the set, law of softkin calibrate, law of the source
 SETS = (
     ("yeoh", "yeoh", "yeoh"),
@@ -36,7 +36,7 @@ SETS = (
 
 
 def constants(law, fit):
-    """In the order of SiliconeSet."""
+    """Returns the constants of a fit in the order of SiliconeSet."""
     if law == "neo-hookean":
         return [2 * fit["c10_MPa"]]
     if law == "mooney-rivlin":
@@ -48,6 +48,7 @@ def constants(law, fit):
 
 
 def fits(softkin, curves):
+    """Yields material, set, law, constants and fit of each set."""
     for material, file in CURVES.items():
         command = [softkin, "calibrate", "material", "--tensile", str(curves / file), "--up-to", str(UP_TO), "--json"]
         report = json.loads(subprocess.run(command, check=True, capture_output=True, text=True).stdout)
@@ -57,6 +58,7 @@ def fits(softkin, curves):
 
 
 def rows(softkin, curves):
+    """Yields the lines of the table of the source."""
     for material, name, enum, values, fit in fits(softkin, curves):
         numbers = ", ".join(f"{value:.5g}" for value in values)
         yield (f'      {{"{material}", "{name}", Law::{enum}, {{{numbers}}}, {UP_TO}, '
@@ -64,6 +66,7 @@ def rows(softkin, curves):
 
 
 def markdown(softkin, curves):
+    """Yields the lines of the table of docs/materials.md."""
     yield "| `material` | `set` | constants [MPa] | E at small strain [MPa] | rms of the largest stress |\n"
     yield "|---|---|---|---|---|\n"
     keys = {"yeoh": ("c10", "c20", "c30"), "mooney-rivlin": ("c10", "c01"), "neo-hookean": ("mu",),
@@ -85,7 +88,7 @@ def main():
     options = parser.parse_args()
     missing = [file for file in CURVES.values() if not (options.curves / file).is_file()]
     if missing:
-        sys.exit(f"{options.curves} has no {', '.join(missing)}: it must be the folder of the database's tables")
+        sys.exit(f"{options.curves} does not contain {', '.join(missing)}; give the folder of the database's tables")
     if options.markdown:
         sys.stdout.writelines(markdown(options.softkin, options.curves))
         return
@@ -96,7 +99,7 @@ def main():
         SOURCE.write_text(source[:begin] + table + source[end:])
     elif options.check:
         if "".join(source[begin:end].split()) != "".join(table.split()):
-            sys.exit(f"{SOURCE} has other constants; --write puts these there:\n{table}")
+            sys.exit(f"{SOURCE} has other constants; --write replaces them by these:\n{table}")
     else:
         sys.stdout.write(table)
 

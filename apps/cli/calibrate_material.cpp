@@ -20,7 +20,7 @@ namespace softkin::cli {
 
 namespace {
 
-/// What `softkin calibrate material` was asked for. An empty text: not given.
+/// The options of `softkin calibrate material`. An empty text: not given.
 struct MaterialOptions {
   calibration::SpecimenTask task;
   calibration::TensileTask tensile;
@@ -37,7 +37,7 @@ struct MaterialOptions {
   std::set<std::string> given;  // options that the user gave
 
   [[nodiscard]] std::vector<Output> outputs() const {
-    return asked_outputs({{"--output", fragment}, {"--plot", plot}, {"--residuals", residuals}});
+    return requested_outputs({{"--output", fragment}, {"--plot", plot}, {"--residuals", residuals}});
   }
   /// " (default)" where the option was not given.
   [[nodiscard]] std::string unless_given(const std::string& option) const {
@@ -120,9 +120,9 @@ void add_tensile(CLI::App& command, MaterialOptions& options) {
       "best)");
   add_value(command, "--linear-tolerance", options.tensile.tolerance_percent, "PERCENT",
             "--tensile: the linear range ends where a stress is off the line\nthrough the origin by more than this "
-            "share of the line's stress\nat the end [%] (default: 5)",
+            "fraction of the line's stress\nat the end [%] (default: 5)",
             real_number(0, 100));
-  add_value(command, "--up-to", options.tensile.most_strain, "STRAIN",
+  add_value(command, "--up-to", options.tensile.max_strain, "STRAIN",
             "--tensile: strain up to which laws are fitted [-] (default: all)", real_number(0, 15));
   command.add_flag(
       "--allow-unstable", options.allow_unstable,
@@ -280,9 +280,9 @@ int calibrate_specimens(const MaterialOptions& options) {
   ProgressLine line;
   const calibration::SpecimenResults results =
       calibration::evaluate(task, std::move(specimens), std::move(twists),
-                            [&](const std::string& what, double share) { line.show(share, what); });
+                            [&](const std::string& what, double fraction) { line.show(fraction, what); });
   line.clear();
-  if (results.interrupted) return tell_stopped({log.size(), all, "simulated test", journal, !journal.empty()});
+  if (results.interrupted) return report_stopped({log.size(), all, "simulated test", journal, !journal.empty()});
   const std::string failure = calibration::failure(task, results);
   if (failure.empty())
     write(options, specimens_fragment(task, results), specimens_plot(task, results), residual_table(results));
@@ -335,7 +335,7 @@ int calibrate_tensile(const MaterialOptions& options) {
             : task.file + ": " + counted(strain.size(), "point") + " up to a strain of " + number(strain.back(), 4) +
                   "; Poisson's ratio " + number(task.poisson_ratio) + options.unless_given("--poisson-ratio") +
                   ", tolerance " + number(task.tolerance_percent) + " %" + options.unless_given("--linear-tolerance") +
-                  ", laws up to a strain of " + number(task.most_strain > 0 ? task.most_strain : strain.back(), 4) +
+                  ", laws up to a strain of " + number(task.max_strain > 0 ? task.max_strain : strain.back(), 4) +
                   options.unless_given("--up-to") + "\n\n" + tensile_text(task, results) + files_text(options));
   return done;
 }

@@ -30,7 +30,7 @@ struct RobotOptions {
   bool json = false, resume = false, may_replace = false;
 
   [[nodiscard]] std::vector<Output> outputs() const {
-    return asked_outputs({{"--report", report}, {"--table", table}, {"--plot", plot}});
+    return requested_outputs({{"--report", report}, {"--table", table}, {"--plot", plot}});
   }
 };
 
@@ -132,13 +132,13 @@ void add_options(CLI::App& command, RobotOptions& options) {
   add_force(command, options.robot);
   add_value(command, "POSES", options.poses, "F.csv",
             "Measured poses, a row each: commands as in a path (air,\ntendon_N), then tip_x_mm, tip_y_mm, ... of "
-            "markers, and\nair_pressure_kPa, tendon_tension_N of what answers; empty cells\nwere not read")
+            "markers, and\nair_pressure_kPa, tendon_tension_N of measured reactions; empty cells\nwere not measured")
       ->required();
   add_repeated(command, "--fit", options.numbers, "NUMBER",
                "NAME, NAME=START, NAME=START,LOW,HIGH or NAME=MEAN+-DEVIATION\n(known before); repeatable. NAME is a "
                "path as of --change\n(materials.body.youngs_modulus, actuators.t1.factor), or base.x,\nbase.rx, ...: "
                "where the robot stands in the measuring frame\n[mm, degrees]; camera.x, ...: the same, gravity turns "
-               "along.\nWithout: the poses are foretold as the scene is");
+               "along.\nWithout: the poses are predicted with the scene as it is");
   add_value(command, "--loss", options.loss, "NAME",
             "What a reading counts that is far off: squares (default),\nhuber or cauchy, which wrong readings hardly "
             "move",
@@ -148,13 +148,12 @@ void add_options(CLI::App& command, RobotOptions& options) {
             "Match dots without names (dot1_x_mm, ...) to the markers that\nthey are, within this distance",
             positive("a number > 0 in mm"));
   add_outline_options(command, options);
-  add_value(command, "--keep", options.keep, "N", "Poses that are not fitted to but foretold, spread evenly",
+  add_value(command, "--keep", options.keep, "N", "Poses kept out of the fit and predicted, spread evenly",
             CLI::Range(0, 100000).description(""));
-  command.add_flag(
-      "--ordered", options.ordered,
-      "The poses were taken in this order: where something rubs or a\nmotor has play, each goes on from the one "
-      "before, the first\nfrom rest; else each from rest");
-  add_value(command, "--report", options.report, "F.json", "All that is told, as JSON");
+  command.add_flag("--ordered", options.ordered,
+                   "The poses were taken in this order: with friction or backlash\neach starts from the one "
+                   "before, the first\nfrom rest; else each from rest");
+  add_value(command, "--report", options.report, "F.json", "All estimates, as JSON");
   add_value(command, "--table", options.table, "F.csv", "Every reading, measured and computed");
   add_value(command, "--plot", options.plot, "F.svg", "Measured and computed markers and outlines");
   command.add_flag("--resume", options.resume, "Begin where the fit of --report ended");

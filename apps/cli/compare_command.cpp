@@ -25,12 +25,12 @@ struct CompareOptions {
 
   /// Reports of the same steps side by side, or paths of markers?
   [[nodiscard]] bool of_paths() const {
-    const bool asked = align || !sum.empty() || !by.empty() || !plane.empty() || !output.empty() || start;
-    return asked || std::any_of(reports.begin(), reports.end(),
-                                [](const std::string& file) { return lower_extension(file) != ".json"; });
+    const bool requested = align || !sum.empty() || !by.empty() || !plane.empty() || !output.empty() || start;
+    return requested || std::any_of(reports.begin(), reports.end(),
+                                    [](const std::string& file) { return lower_extension(file) != ".json"; });
   }
   [[nodiscard]] std::vector<Output> outputs() const {
-    return asked_outputs({{"--output", output}, {"--plot", plot}, {"--html", page}});
+    return requested_outputs({{"--output", output}, {"--plot", plot}, {"--html", page}});
   }
   /// The files themselves, without markers.
   [[nodiscard]] std::vector<std::filesystem::path> inputs() const {
@@ -43,7 +43,7 @@ struct CompareOptions {
   }
 };
 
-/// The page, where it is asked for, and what is said of it.
+/// Writes the page where it is requested; returns the line to print about it.
 std::string page_text(const CompareOptions& options, const runs::Comparison& comparison) {
   if (options.page.empty()) return "";
   return runs::write_comparison_page(options.page, comparison, runs::kept_command()) + "\n";
@@ -113,7 +113,7 @@ void check(const CompareOptions& options) {
 
 void add_path_options(CLI::App& command, CompareOptions& options) {
   add_value(command, "--by", options.by, "NAME",
-            "Paths: which points belong together: time, waypoint (row by row), arc (shares of the length), or a "
+            "Paths: which points belong together: time, waypoint (row by row), arc (fractions of the length), or a "
             "column or actuator that ascends (default: time where both have it, else waypoint where both have "
             "as many, else arc)");
   add_value(command, "--start", options.start, "S",
@@ -155,7 +155,7 @@ void add_compare(CLI::App& app, Run& run) {
             "With --turn: the time until each of these turns is reached [degrees]",
             CLI::PositiveNumber.description(""));
   add_value(command, "--plot", options->plot, "F.svg",
-            "Turns, distances and loads over the steps, and the marker's way by each report");
+            "Turns, distances and loads over the steps, and the marker's trajectory in each report");
   add_page(command, options->page, "The comparison as a page for a browser, one file that needs no network");
   add_path_options(command, *options);
   add_overwriting(command, options->may_replace);

@@ -92,7 +92,7 @@ void add_options(CLI::App& command, DriveOptions& options) {
 
 void check_usage(const DriveOptions& options) {
   if (!options.map.empty() && !options.pressures.empty())
-    throw InvalidInput("--map and --pressures both tell the chambers' pressures: give one of them");
+    throw InvalidInput("--map and --pressures both give the chambers' pressures: use one of them");
   if (options.dry_run && !options.port.empty())
     throw InvalidInput("--dry-run sends nothing, and --port sends: give one of them");
   if (!options.log.empty() && options.port.empty())
@@ -119,7 +119,7 @@ std::string dry_text(const drive::Plan& plan) {
   return text;
 }
 
-volatile sig_atomic_t stop_count = 0, pause_asked = 0;
+volatile sig_atomic_t stop_count = 0, pause_requested = 0;
 
 void on_stop(int signal_number) {
   stop_count = stop_count + 1;
@@ -129,7 +129,7 @@ void on_stop(int signal_number) {
 }
 
 void on_pause(int) {
-  pause_asked = !pause_asked;
+  pause_requested = !pause_requested;
 }
 
 void catch_signals() {
@@ -145,11 +145,11 @@ void catch_signals() {
 drive::Order order_of_user() {
   if (stop_count > 1) return drive::Order::quick_stop;
   if (stop_count > 0) return drive::Order::stop;
-  return pause_asked ? drive::Order::pause : drive::Order::go;
+  return pause_requested ? drive::Order::pause : drive::Order::go;
 }
 
 /// Sends a program to the board at the port. Ctrl-C stops after the moves that the board has, a second one at once,
-/// a third one ends the program; Ctrl-Z pauses and goes on.
+/// a third one ends the program; Ctrl-Z pauses and resumes.
 ///
 /// throws  InvalidInput where the log cannot be opened
 drive::StreamReport send_to_board(drive::SerialPort& port, const DriveOptions& options,
@@ -169,7 +169,7 @@ drive::StreamReport send_to_board(drive::SerialPort& port, const DriveOptions& o
     if ((order == drive::Order::pause) != was_paused) {
       was_paused = !was_paused;
       line.clear();
-      std::fprintf(stderr, was_paused ? "softkin: paused: Ctrl-Z goes on, Ctrl-C stops\n" : "softkin: goes on\n");
+      std::fprintf(stderr, was_paused ? "softkin: paused: Ctrl-Z continues, Ctrl-C stops\n" : "softkin: continues\n");
     }
     return order;
   };
@@ -184,9 +184,9 @@ drive::StreamReport send_to_board(drive::SerialPort& port, const DriveOptions& o
   return drive::stream(port, program, link, hooks);
 }
 
-/// What is driven; map: that gave pressures, where one was asked for.
+/// Returns the plan to drive. map: receives the map that gave the pressures, where one was requested.
 drive::Plan plan_of(const DriveOptions& options, std::vector<fs::path>& inputs, std::optional<KinematicMap>& map) {
-  const Model model = asked_robot(options.robot, inputs);
+  const Model model = requested_robot(options.robot, inputs);
   Commands commands = read_commands(model, options.commands, options.pressures);
   if (!options.map.empty()) {
     map = runs::read_map_of(model, options.map);
@@ -200,7 +200,7 @@ drive::Plan plan_of(const DriveOptions& options, std::vector<fs::path>& inputs, 
   return drive::make_plan(model, read_hardware(hardware), std::move(commands), options.return_home);
 }
 
-void check_asked(const DriveOptions& options, const drive::Plan& plan) {
+void check_requested(const DriveOptions& options, const drive::Plan& plan) {
   if (!plan.has_motors())
     for (const auto& [option, value] : {std::pair{"--gcode", options.gcode}, std::pair{"--port", options.port}})
       if (!value.empty())
@@ -210,10 +210,10 @@ void check_asked(const DriveOptions& options, const drive::Plan& plan) {
                        " commands no chamber of a regulator");
 }
 
-/// A schedule says nothing of softkin, as what plays it may know no comments: only the same one is replaced.
+/// A schedule does not name softkin, as its player may not support comments: only an identical one is replaced.
 std::vector<Output> outputs_of(const DriveOptions& options, const drive::Plan& plan) {
   std::vector<Output> outputs =
-      asked_outputs({{"--gcode", options.gcode}, {"--schedule", options.schedule}, {"--log", options.log}});
+      requested_outputs({{"--gcode", options.gcode}, {"--schedule", options.schedule}, {"--log", options.log}});
   for (Output& output : outputs)
     if (output.option == "--schedule")
       output.is_own = [text = drive::schedule_csv(plan.schedule)](const fs::path& file) {
@@ -232,7 +232,7 @@ int run_drive(const DriveOptions& options) {
   std::optional<KinematicMap> map;
   const drive::Plan plan = plan_of(options, inputs, map);
   line.clear();
-  check_asked(options, plan);
+  check_requested(options, plan);
   const std::vector<Output> outputs = outputs_of(options, plan);
   check_outputs(outputs, inputs, options.may_replace);
   check_extension("--gcode", options.gcode, {{".gcode", ""}, {".gco", ""}, {".g", ""}});
@@ -270,7 +270,7 @@ void add_drive(CLI::App& app, Run& run) {
       app, run, "drive", "Hardware: stepper moves and pressures from a file of commands",
       "The whole file is checked against all limits before anything is written or sent. While it sends, Ctrl-C stops\n"
       "after the moves that the board has, a second Ctrl-C at once (the position is then unknown), Ctrl-Z pauses and\n"
-      "goes on. Exit code: 0 done, 1 stopped or failed on the way, 2 bad usage or bad input.\n"
+      "goes on. Exit code: 0 done, 1 stopped or failed before the end, 2 bad usage or bad input.\n"
       "Example:\n"
       "  softkin drive examples/three_tendon_finger/three_tendon_finger.yaml \\\n"
       "      examples/three_tendon_finger/path.csv --dry-run",

@@ -12,16 +12,16 @@ constexpr const char* deviation_options[][2] = {{"--deviation", "MM"},          
 
 }  // namespace
 
-std::vector<EstimatedUnknown> EstimateOptions::asked_unknowns() const {
+std::vector<EstimatedUnknown> EstimateOptions::requested_unknowns() const {
   std::vector<EstimatedUnknown> parsed;
   for (const std::string& text : unknowns) parsed.push_back(parse_unknown("--unknown", text));
   return parsed;
 }
 
-std::array<double, readings> EstimateOptions::asked_deviations() const {
-  std::array<double, readings> asked{};
-  for (std::size_t k = 0; k < readings; ++k) asked[k] = deviations[k].value_or(0);
-  return asked;
+std::array<double, readings> EstimateOptions::requested_deviations() const {
+  std::array<double, readings> requested{};
+  for (std::size_t k = 0; k < readings; ++k) requested[k] = deviations[k].value_or(0);
+  return requested;
 }
 
 EstimatorOptions EstimateOptions::how(const StaticsOptions& statics) const {
@@ -40,7 +40,7 @@ std::array<std::string, readings> deviation_names() {
 
 CLI::Option* add_unknowns(CLI::App& command, EstimateOptions& options) {
   return add_repeated(command, "--unknown", options.unknowns, "NAME",
-                      "What is to be told: a force, wrench or pressure with a `range`, or\nNAME:place, where on its "
+                      "Unknown to estimate: a force, wrench or pressure with a `range`, or\nNAME:place, where on its "
                       "region a force acts, too; a command that\nwas not measured; materials.REGION.stiffness. "
                       "With\n=MEAN+-DEVIATION: known before (default: half of its range)");
 }
@@ -58,7 +58,7 @@ void add_deviations(CLI::App& command, std::array<std::optional<double>, reading
 }
 
 void add_fade(CLI::App& command, EstimateOptions& options, const std::string& then) {
-  add_value(command, "--fade", options.fade_s, "S", "Time in which what pushes may become anything else: " + then,
+  add_value(command, "--fade", options.fade_s, "S", "Time in which the forces may become any others: " + then,
             positive_time());
   command.add_flag("--keep-all", options.keep_all, "Leave no reading out that contradicts the others");
 }

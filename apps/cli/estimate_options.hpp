@@ -6,7 +6,7 @@
 
 namespace softkin::cli {
 
-/// What is to be told, and how well it is read: of every command that estimates.
+/// The unknowns to estimate and the accuracy of the readings: options of every command that estimates.
 struct EstimateOptions {
   std::vector<std::string> unknowns;
   std::array<std::optional<double>, readings> deviations{};  // in the order of Reading
@@ -14,9 +14,9 @@ struct EstimateOptions {
   bool keep_all = false;
 
   /// throws  InvalidInput naming the option
-  [[nodiscard]] std::vector<EstimatedUnknown> asked_unknowns() const;
+  [[nodiscard]] std::vector<EstimatedUnknown> requested_unknowns() const;
   /// 0: not given
-  [[nodiscard]] std::array<double, readings> asked_deviations() const;
+  [[nodiscard]] std::array<double, readings> requested_deviations() const;
   [[nodiscard]] EstimatorOptions how(const StaticsOptions& statics) const;
 };
 

@@ -39,14 +39,14 @@ struct FkOptions : SolveOptions, RunOptions, MapUse {
   [[nodiscard]] bool series() const { return lower_extension(output) == ".pvd"; }
   /// The files to write; a path has so many steps.
   [[nodiscard]] std::vector<Output> outputs(std::size_t steps) const {
-    std::vector<Output> outputs = asked_outputs({{"--output", output}});
+    std::vector<Output> outputs = requested_outputs({{"--output", output}});
     if (series()) outputs.back().shapes = steps;
-    for (Output& each : asked_outputs({{"--report", report},
-                                       {"--trace", trace},
-                                       {"--image", show.image},
-                                       {"--plot", show.plot},
-                                       {"--strains", strains},
-                                       {"--html", page}}))
+    for (Output& each : requested_outputs({{"--report", report},
+                                           {"--trace", trace},
+                                           {"--image", show.image},
+                                           {"--plot", show.plot},
+                                           {"--strains", strains},
+                                           {"--html", page}}))
       outputs.push_back(std::move(each));
     return outputs;
   }
@@ -62,11 +62,11 @@ void add_options(CLI::App& command, FkOptions& options) {
             "F.vtu: the last shape; F.pvd: every step, as F_0000.vtu, ...");
   add_value(command, "--report", options.report, "F.json", "All numbers of all steps, with their strain histograms");
   add_value(command, "--trace", options.trace, "F.csv",
-            "Each step of the way to each shape as it was tried: what it cost,\nand why it was not taken; physical");
+            "Each step of the path to each shape as it was tried: its cost,\nand why it was rejected; physical");
   add_value(command, "--image", options.show.image, "F.png", "Picture of the last shape");
   add_value(command, "--plot", options.show.plot, "F.svg",
             "With --path: commands, markers, pressures and tensions (under\npressure control volumes) over the steps, "
-            "and the markers' ways");
+            "and the markers' trajectories");
   add_value(
       command, "--strains", options.strains, "F.svg",
       "Histograms of the body's strains, a panel a step (twelve at most),\nwith the linear ranges of its materials");
@@ -76,7 +76,7 @@ void add_options(CLI::App& command, FkOptions& options) {
                "controlled by that (air=50,\nair=50kPa, tendon=3N), or by its curve (air=50kPa, "
                "air=150kPa_abs,\nair=50kPa:unloading, skin=2.5kV); repeatable; other actuators\nrest");
   add_value(command, "--start", options.start, "F.vtu",
-            "Begin at a shape that softkin wrote instead of at rest, such as\none that was stopped on its way");
+            "Begin at a shape that softkin wrote instead of at rest, such as\none that was stopped before its end");
   add_value(
       command, "--beyond", options.beyond, "RATIO",
       "Where a pressure or tension comes to its maximum, go on beyond\nit, where it falls, to this volume or length "
@@ -144,10 +144,10 @@ class FkRun {
     if (options_.resume) resume_run(run_, options_.outputs(run_.size()), "step", options_.json);
     turn_.catch_up(run_);
     const std::size_t first = run_.done();
-    EquilibriumProgress share;
+    EquilibriumProgress fraction;
     const runs::Advance end = advance_run(
         run_, table_, "step", options_.json,
-        [&](RunProgress& line, const Progress& p) { line.show(EquilibriumProgress::text(p), share.share(p)); },
+        [&](RunProgress& line, const Progress& p) { line.show(EquilibriumProgress::text(p), fraction.fraction(p)); },
         [&] {
           traces_.push_back(run_.last().trace);
           return runs::row_of(model_, run_.done() - 1, run_.last(), turn_.next(run_.last()));
@@ -173,7 +173,7 @@ class FkRun {
     if (!options_.json) print(line + "\n");
   }
 
-  /// The files that show the last step, finished or stopped on its way, and the report.
+  /// Writes the report and the files that show the last step, or the shape on its path where it was stopped.
   void finish() {
     run_.finish();
     const auto* stopped = run_.stopped();
@@ -239,17 +239,17 @@ class FkRun {
     if (!options_.strains.empty()) say("strains: " + options_.strains);
     if (!options_.report.empty()) say("report: " + options_.report);
     if (!options_.trace.empty()) say("trace: " + options_.trace);
-    if (!options_.page.empty()) say(page_.told());
+    if (!options_.page.empty()) say(page_.reported());
   }
 
   [[nodiscard]] int stopped() const {
     const bool files = !options_.outputs(run_.size()).empty();
     const bool resumable = options_.series() && !options_.report.empty() && !options_.path.empty();
-    Stopped told{run_.done(), run_.size(), "step", files ? "the files that were asked for" : "", resumable};
-    if (run_.stopped()) told.record = &run_.stopped()->record;
+    Stopped reported{run_.done(), run_.size(), "step", files ? "the files that were requested" : "", resumable};
+    if (run_.stopped()) reported.record = &run_.stopped()->record;
     if (run_.stopped() && !options_.output.empty())
-      told.shape = options_.series() ? stopped_file(options_.output).string() : options_.output;
-    return tell_stopped(told);
+      reported.shape = options_.series() ? stopped_file(options_.output).string() : options_.output;
+    return report_stopped(reported);
   }
 
   [[nodiscard]] int judge() {
@@ -261,7 +261,7 @@ class FkRun {
     OverlapTally overlaps(model_);
     std::vector<std::size_t> unstable;
     run_.log().each([&](std::size_t number, const StepRecord& step) {
-      if (number + 1 < run_.done()) {  // the findings tell of the last one
+      if (number + 1 < run_.done()) {  // the findings report those of the last one
         overlaps.add(number, step);
         if (step.physical.unstable_modes > 0) unstable.push_back(number);
       }
@@ -275,7 +275,7 @@ class FkRun {
     return all.empty() ? done : not_converged;
   }
 
-  /// Tells which steps ended so, and of the last of them how.
+  /// Lists the steps that ended with a status, and how the last of them ended.
   void complain(Status status, const std::vector<std::size_t>& numbers, const StepRecord& last) const {
     std::string text = name_of(status);
     if (run_.size() > 1) text += (numbers.size() == 1 ? " in step " : " in steps ") + list_text(numbers);
@@ -303,13 +303,13 @@ void check_beyond(const Model& model, const FkOptions& options) {
   if (options.beyond == 0) return;
   if (model.formulation != Formulation::physical || std::none_of(model.actuators.begin(), model.actuators.end(), loads))
     throw InvalidInput(
-        "--beyond goes on beyond the maximum of a pressure or tension, and no actuator of this robot is commanded by "
+        "--beyond continues beyond the maximum of a pressure or tension, and no actuator of this robot is commanded by "
         "one (control: pressure, control: tension): leave it out");
   if (!options.map.empty() && !options.polish)
     throw InvalidInput("--beyond is for the solver, not for a map: it needs --polish, or no --map");
 }
 
-std::vector<ActuationStep> asked_steps(const Model& model, const FkOptions& options) {
+std::vector<ActuationStep> requested_steps(const Model& model, const FkOptions& options) {
   const Settings settings = read_settings(model, "--set", options.settings);
   if (!options.path.empty()) return read_actuation_path(model, options.path, settings);
   return {{with_settings(model.rest_actuation(), settings)}};
@@ -323,9 +323,9 @@ int run_fk(const FkOptions& options) {
   check_map_use(options, options, inputs);
   ProgressLine line;
   line.show(-1, "reading the scene");
-  const Model model = asked_robot(options, inputs);
+  const Model model = requested_robot(options, inputs);
   check_beyond(model, options);
-  const std::vector<ActuationStep> steps = asked_steps(model, options);
+  const std::vector<ActuationStep> steps = requested_steps(model, options);
   if (steps.front().time) check_times(model, options.path, options, options);
   (void)runs::read_marker_line(model, options.turn);  // before anything is written
   std::vector<Output> outputs = options.outputs(steps.size());

@@ -138,8 +138,8 @@ class ShownTrajectory {
     page_.write();
     if (options_.json) show_report(run_);
     if (end != runs::Advance::made)
-      return tell_stopped(stopped_of(run_, "waypoint", options_.folder, options_.files().run().shapes));
-    return tell(follow_.records());
+      return report_stopped(stopped_of(run_, "waypoint", options_.folder, options_.files().run().shapes));
+    return describe(follow_.records());
   }
 
  private:
@@ -147,7 +147,7 @@ class ShownTrajectory {
     if (!options_.json) print(line + "\n");
   }
 
-  [[nodiscard]] int tell(const std::vector<WaypointRecord>& done) const {
+  [[nodiscard]] int describe(const std::vector<WaypointRecord>& done) const {
     say(summary_of(done, reach_mm_, options_.nearest()));
     if (options_.nearest()) say(runs::jumps_of(done));
     OverlapTally overlaps(model_);
@@ -156,7 +156,7 @@ class ShownTrajectory {
     const runs::FollowFolder files = options_.files();
     say("commands: " + files.commands().string() + "; plot: " + files.plot().string() +
         "; shapes: " + files.run().shapes.string() + " (open it in ParaView)");
-    if (!options_.page.empty()) say(page_.told());
+    if (!options_.page.empty()) say(page_.reported());
     std::vector<std::size_t> unstable;
     for (std::size_t i = 0; i < done.size(); ++i)
       if (done[i].physical.unstable_modes > 0) unstable.push_back(i);
@@ -184,7 +184,7 @@ int run_follow(const FollowOptions& options) {
   check_map_use(options, options, inputs);
   ProgressLine line;
   line.show(-1, "reading the scene");
-  const Model model = asked_robot(options, inputs);
+  const Model model = requested_robot(options, inputs);
   MarkerPath path = read_marker_path(options.path, model, options.marker);
   if (path.waypoints.front().time) check_times(model, options.path, options, options);
   const std::vector<std::string> doubts = doubts_about(model, path);

@@ -21,12 +21,12 @@ namespace {
 struct GraspOptions : SolveOptions {
   std::string path, body, table, output;
   std::vector<std::string> settings, pulls;
-  std::optional<double> most_N;
+  std::optional<double> max_N;
   ShowOptions show;
   bool json = false, may_replace = false;
 
   [[nodiscard]] std::vector<Output> outputs() const {
-    return asked_outputs({{"--table", table}, {"--output", output}, {"--image", show.image}});
+    return requested_outputs({{"--table", table}, {"--output", output}, {"--image", show.image}});
   }
 };
 
@@ -39,7 +39,7 @@ void add_options(CLI::App& command, GraspOptions& options) {
   add_value(command, "--body", options.body, "NAME", "Which body is released and pulled (default: the only one)");
   add_repeated(command, "--pull", options.pulls, "DIR",
                "Direction of a pull: x, -x, y, -y, z, -z or DX,DY,DZ;\nrepeatable (default: those six)");
-  add_value(command, "--most", options.most_N, "N", "No larger pull is tried [N]", positive_force());
+  add_value(command, "--most", options.max_N, "N", "No larger pull is tried [N]", positive_force());
   add_value(command, "--table", options.table, "F.csv", "The pulls as a table");
   add_value(command, "-o,--output", options.output, "F.vtu", "The grasp, before it is pulled");
   add_value(command, "--image", options.show.image, "F.png", "Picture of the grasp");
@@ -50,7 +50,7 @@ void add_options(CLI::App& command, GraspOptions& options) {
   command.add_flag("--json", options.json, "Print the pulls as JSON instead of the table");
 }
 
-std::vector<PullDirection> asked_directions(const GraspOptions& options) {
+std::vector<PullDirection> requested_directions(const GraspOptions& options) {
   if (options.pulls.empty()) return axes_to_pull_along();
   std::vector<PullDirection> directions;
   for (const std::string& pull : options.pulls) directions.push_back({pull, read_direction("--pull", pull)});
@@ -71,7 +71,7 @@ class GraspRun {
       : model_(statics.model()), statics_(statics), options_(options), body_(body) {}
 
   int run(const std::vector<Actuation>& closing, const std::vector<PullDirection>& directions) {
-    const auto stage = [&](const std::string& done, const Equilibrium& shape) { tell_stage(done, shape); };
+    const auto stage = [&](const std::string& done, const Equilibrium& shape) { report_stage(done, shape); };
     const Grasp grasp = close_around(statics_, closing, body_, options_.statics(), shown(), stage);
     line_.clear();
     if (!grasp.held) {
@@ -94,7 +94,7 @@ class GraspRun {
   }
 
   /// What is there of a grasp, whatever becomes of the rest.
-  void tell_stage(const std::string& done, const Equilibrium& shape) {
+  void report_stage(const std::string& done, const Equilibrium& shape) {
     line_.clear();
     if (!options_.output.empty())
       runs::write_shape(options_.output, model_, shape.state, statics_.measured(shape.state), true);
@@ -119,8 +119,7 @@ class GraspRun {
     if (!options_.json) print(table.header() + "\n");
     bool stopped = false, lost = false;
     for (const PullDirection& direction : directions) {
-      const Pull found =
-          largest_pull(statics_, grasp, {body_, direction, options_.most_N}, options_.statics(), shown());
+      const Pull found = largest_pull(statics_, grasp, {body_, direction, options_.max_N}, options_.statics(), shown());
       line_.clear();
       stopped = found.last.report.stopped;
       lost = lost || found.status == Status::not_converged;
@@ -149,7 +148,7 @@ class GraspRun {
 };
 
 /// How the gripper closes.
-std::vector<Actuation> asked_closing(const Model& model, const GraspOptions& options) {
+std::vector<Actuation> requested_closing(const Model& model, const GraspOptions& options) {
   const Settings settings = read_settings(model, "--set", options.settings);
   if (options.path.empty()) return {with_settings(model.rest_actuation(), settings)};
   std::vector<Actuation> closing;
@@ -160,14 +159,14 @@ std::vector<Actuation> asked_closing(const Model& model, const GraspOptions& opt
 
 int run_grasp(const GraspOptions& options) {
   check_usage(options);
-  const std::vector<PullDirection> directions = asked_directions(options);
+  const std::vector<PullDirection> directions = requested_directions(options);
   std::vector<fs::path> inputs{options.scene};
   if (!options.path.empty()) inputs.emplace_back(options.path);
   ProgressLine line;
   line.show(-1, "reading the scene");
-  const Model model = asked_robot(options, inputs);
+  const Model model = requested_robot(options, inputs);
   const Index body = read_body(model, "--body", options.body);
-  const std::vector<Actuation> closing = asked_closing(model, options);
+  const std::vector<Actuation> closing = requested_closing(model, options);
   check_outputs(options.outputs(), inputs, options.may_replace);
   line.show(-1, "assembling");
   const Statics statics(model);

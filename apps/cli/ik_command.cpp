@@ -28,7 +28,7 @@ namespace {
 
 /// Where the search begins, and what it may change.
 struct Search {
-  std::vector<runs::NamedGoal> asked;
+  std::vector<runs::NamedGoal> requested;
   std::vector<Goal> goals;
   Actuation start;
   std::optional<State> shape{};  // at the start; none: not known
@@ -44,10 +44,10 @@ State shape_of(const Model& model, const std::string& file) {
   return shape;
 }
 
-Search asked_search(const Model& model, const IkOptions& options) {
+Search requested_search(const Model& model, const IkOptions& options) {
   Search search;
-  search.asked = asked_goals(model, options);
-  for (const runs::NamedGoal& goal : search.asked) search.goals.push_back(goal.goal);
+  search.requested = requested_goals(model, options);
+  for (const runs::NamedGoal& goal : search.requested) search.goals.push_back(goal.goal);
   const bool from_file = !options.start_file().empty();
   if (from_file) search.shape = shape_of(model, options.start_file());
   const Settings start = from_file ? Settings(model.actuators.size()) : read_settings(model, "--start", options.start);
@@ -116,7 +116,7 @@ class IkRun {
                 runs::plot_of_search(found_, search_.inverse.tolerance_mm, options_.scene, record.misses));
     if (!options_.json) {
       const std::string found = findings_text(model_, record);
-      const runs::InverseTables tables = runs::inverse_tables(model_, search_.asked, found_, record);
+      const runs::InverseTables tables = runs::inverse_tables(model_, search_.requested, found_, record);
       print(table_text(tables.actuators));
       for (const Table* table : {&tables.goals, &tables.forces})
         if (!table->rows.empty()) print(table_text(*table));
@@ -125,7 +125,7 @@ class IkRun {
     }
     const InverseOptions how = options_.inverse();
     runs::RecordLog report = runs::inverse_report(model_, options_.scene, options_.report,
-                                                  {how, search_.asked, found_, record}, answers_.map());
+                                                  {how, search_.requested, found_, record}, answers_.map());
     report.finish();
     if (options_.json) report.report(print_piece);
     print(std::string());
@@ -157,8 +157,8 @@ int run_ik(const IkOptions& options) {
   check_map_use(options, options, inputs);
   ProgressLine line;
   line.show(-1, "reading the scene");
-  const Model model = asked_robot(options, inputs);
-  const Search search = asked_search(model, options);
+  const Model model = requested_robot(options, inputs);
+  const Search search = requested_search(model, options);
   check_outputs(options.outputs(), inputs, options.may_replace);
   line.show(-1, "assembling");
   catch_interrupt();

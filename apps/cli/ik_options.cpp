@@ -27,7 +27,7 @@ void add_goals(CLI::App& command, IkOptions& options) {
             "How far away a wrong direction counts [mm] (default: as far as\nits markers are apart at rest)",
             positive_length());
   add_repeated(command, "--weight", options.goals.weights, "M=W",
-               "MARKER=W, FROM:TO=W or NAME=W: weight in the sum of squares of\nwhat is asked of them (default: 1); "
+               "MARKER=W, FROM:TO=W or NAME=W: weight in the sum of squares of\ntheir targets (default: 1); "
                "repeatable");
 }
 
@@ -72,7 +72,8 @@ void add_files(CLI::App& command, IkOptions& options) {
 }  // namespace
 
 std::vector<Output> IkOptions::outputs() const {
-  return asked_outputs({{"--output", output}, {"--report", report}, {"--image", show.image}, {"--plot", show.plot}});
+  return requested_outputs(
+      {{"--output", output}, {"--report", report}, {"--image", show.image}, {"--plot", show.plot}});
 }
 
 std::string IkOptions::start_file() const {
@@ -105,7 +106,7 @@ void check_usage(const IkOptions& options) {
   if (!options.goals.any())
     throw InvalidInput("nothing to reach: ik needs a --target MARKER=X,Y,Z, a --plane, a --direction or a --press");
   if (!options.goals.presses.empty() && !options.map.empty())
-    throw InvalidInput("--press is solved for: a map tells no forces, so it does not go with --map");
+    throw InvalidInput("--press is solved for: a map has no forces, so it does not go with --map");
   if (options.goals.tolerance_force_N && options.goals.presses.empty())
     throw InvalidInput("--tolerance-force is that of a force: it needs --press");
   if (!options.workspace.empty() && !options.start.empty())
@@ -131,11 +132,11 @@ void check_usage(const IkOptions& options) {
   check_solver(options);
 }
 
-std::vector<runs::NamedGoal> asked_goals(const Model& model, const IkOptions& options) {
+std::vector<runs::NamedGoal> requested_goals(const Model& model, const IkOptions& options) {
   runs::GoalTexts texts = options.goals;
   texts.tolerance_mm = options.inverse().tolerance_mm;
   texts.before_name = "--";
-  return runs::asked_goals(model, texts);
+  return runs::requested_goals(model, texts);
 }
 
 }  // namespace softkin::cli

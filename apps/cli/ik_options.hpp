@@ -2,7 +2,7 @@
 
 #include <optional>
 #include <softkin/kinematics/inverse.hpp>
-#include <softkin/runs/asked_goals.hpp>
+#include <softkin/runs/requested_goals.hpp>
 #include <string>
 #include <vector>
 
@@ -35,7 +35,7 @@ void add_options(CLI::App& command, IkOptions& options);
 /// Throws InvalidInput where the options contradict each other or name files of another form.
 void check_usage(const IkOptions& options);
 
-/// See runs::asked_goals.
-[[nodiscard]] std::vector<runs::NamedGoal> asked_goals(const Model& model, const IkOptions& options);
+/// See runs::requested_goals.
+[[nodiscard]] std::vector<runs::NamedGoal> requested_goals(const Model& model, const IkOptions& options);
 
 }  // namespace softkin::cli

@@ -16,7 +16,7 @@ struct ExportOptions : runs::MapExport {
   bool may_replace = false;
 
   [[nodiscard]] std::vector<Output> outputs() const {
-    return asked_outputs({{"--c", c}, {"--numpy", numpy}, {"--js", js}, {"--js", js_types()}});
+    return requested_outputs({{"--c", c}, {"--numpy", numpy}, {"--js", js}, {"--js", js_types()}});
   }
 };
 

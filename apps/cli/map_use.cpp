@@ -12,12 +12,12 @@ void add_map_use(CLI::App& command, MapUse& use) {
             "Kinematic map of the robot (softkin map): answers in its place,\nin microseconds, within the errors that "
             "it tells");
   command.add_flag("--polish", use.polish,
-                   "With --map: the solver goes on from the map's answers, to its\nown accuracy");
+                   "With --map: the solver continues from the map's answers, to its\nown accuracy");
 }
 
 void check_map_use(const MapUse& use, const SolveOptions& options, std::vector<std::filesystem::path>& inputs) {
   if (use.map.empty()) {
-    if (use.polish) throw InvalidInput("--polish goes on from the answers of a map: it needs --map F.skmap");
+    if (use.polish) throw InvalidInput("--polish continues from the answers of a map: it needs --map F.skmap");
     return;
   }
   inputs.emplace_back(use.map);

@@ -16,14 +16,14 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// softkin-measure, which stands beside this program; or, where pip installed it among Python's packages, in bin of a
+/// softkin-measure, which is next to this program; or, where pip installed it among Python's packages, in bin of a
 /// folder above, as a program of Python's. Empty where there is none.
 fs::path measuring_program() {
-  constexpr int most_above = 4;  // PREFIX/lib/python3.11/site-packages/softkin.scripts/softkin
+  constexpr int max_above = 4;  // PREFIX/lib/python3.11/site-packages/softkin.scripts/softkin
   fs::path folder = fs::read_symlink("/proc/self/exe").parent_path();
   if (fs::path program = folder / "softkin-measure"; fs::exists(program)) return program;
   if (folder.filename() != "softkin.scripts") return {};
-  for (int above = 0; above < most_above; ++above) {
+  for (int above = 0; above < max_above; ++above) {
     folder = folder.parent_path();
     if (fs::path program = folder / "bin" / "softkin-measure"; fs::exists(program)) return program;
   }

@@ -15,7 +15,7 @@ namespace softkin::cli {
 
 namespace {
 
-constexpr std::size_t most_regions = 40, most_parts = 20, most_notes = 20, most_losses = 20;
+constexpr std::size_t max_regions = 40, max_parts = 20, max_notes = 20, max_losses = 20;
 
 const Column left{.left = true}, right;
 
@@ -50,8 +50,7 @@ std::string text_of(const std::vector<EmptySpace>& spaces) {
   if (spaces.empty()) return "";
   std::vector<std::string> lines;
   for (const EmptySpace& space : spaces) lines.push_back(text_of(space));
-  return counted(spaces.size(), "empty space") + " that the elements enclose\n" +
-         joined(cut(lines, most_parts), "    ");
+  return counted(spaces.size(), "empty space") + " that the elements enclose\n" + joined(cut(lines, max_parts), "    ");
 }
 
 std::string text_of(const MeshInfo& info) {
@@ -83,7 +82,7 @@ std::string text_of(const MeshInfo& info) {
   const std::string none = m.regions.empty() ? "  none: the file names no part of the mesh; a scene can define some by "
                                                "shapes (docs/scene.md, regions)\n"
                                              : "";
-  return joined(table.body(), "") + none + joined(cut(regions.body(), most_regions), "  ") + text_of(info.empty_spaces);
+  return joined(table.body(), "") + none + joined(cut(regions.body(), max_regions), "  ") + text_of(info.empty_spaces);
 }
 
 std::string text_of(const std::vector<MeshFinding>& findings) {
@@ -111,7 +110,7 @@ std::string parts_text(const MeshVerdict& verdict) {
                      : verdict.parts.size() == 1 ? ": a scene must hold it"
                                                  : ": a scene must hold each";
   return counted(verdict.parts.size(), "part") + " connected through elements" + hint + "\n" +
-         joined(cut(table.body(), most_parts), "    ");
+         joined(cut(table.body(), max_parts), "    ");
 }
 
 std::string text_of(const SceneVerdict& scene) {
@@ -119,7 +118,7 @@ std::string text_of(const SceneVerdict& scene) {
   std::string text = "scene compiles";
   if (!scene.warnings.empty()) text += ", but warns:\n" + joined(scene.warnings, "    ");
   if (scene.notes.empty()) return scene.warnings.empty() ? text + "\n" : text;
-  return text + (scene.warnings.empty() ? ", and" : "it") + " notes:\n" + joined(cut(scene.notes, most_notes), "    ");
+  return text + (scene.warnings.empty() ? ", and" : "it") + " notes:\n" + joined(cut(scene.notes, max_notes), "    ");
 }
 
 std::string judgement(const MeshVerdict& verdict) {
@@ -151,7 +150,7 @@ std::string text_of(const MeshConversion& result) {
     text += ", " + tetrahedra_text(result.tetrahedra, result.order) + ", " + counted(result.prisms, "prism") + ", " +
             counted(result.regions.size(), "region") + "\n";
   if (result.not_kept.empty()) return text;
-  return text + "not kept:\n" + joined(cut(result.not_kept, most_losses), "    ");
+  return text + "not kept:\n" + joined(cut(result.not_kept, max_losses), "    ");
 }
 
 template <class Result>

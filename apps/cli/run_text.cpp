@@ -13,8 +13,8 @@ namespace softkin::cli {
 
 namespace {
 
-std::string percent(double share) {
-  return decimal(100 * share, 1) + " %";
+std::string percent(double fraction) {
+  return decimal(100 * fraction, 1) + " %";
 }
 
 }  // namespace
@@ -25,16 +25,16 @@ std::string resumed_text(std::size_t done, std::size_t all, const std::string& w
          (done < all ? " were done before: going on" : " were done before: nothing is left");
 }
 
-int tell_stopped(const Stopped& stopped) {
+int report_stopped(const Stopped& stopped) {
   std::string text = why_stopped();
   if (stopped.all > 1) text += " after " + std::to_string(stopped.done) + " of " + counted(stopped.all, stopped.what);
   if (stopped.done > 0 && !stopped.where.empty()) text += "; they are in " + stopped.where;
-  if (stopped.done > 0 && stopped.resumes) text += ", the same command with --resume goes on";
+  if (stopped.done > 0 && stopped.resumes) text += ", the same command with --resume continues";
   if (stopped.record) {
     const StepRecord& record = *stopped.record;
-    const std::string where = stopped.all > 1 ? " of the way to the next" : " of the way";
-    if (record.reached_share) text += "; at " + percent(*record.reached_share) + where;
-    if (!stopped.shape.empty()) text += "; the last good shape is in " + stopped.shape + ", --start goes on from it";
+    const std::string where = stopped.all > 1 ? " of the path to the next" : " of the path";
+    if (record.reached_fraction) text += "; at " + percent(*record.reached_fraction) + where;
+    if (!stopped.shape.empty()) text += "; the last good shape is in " + stopped.shape + ", --start continues from it";
   }
   std::fprintf(stderr, "softkin: %s\n", text.c_str());
   return not_converged;
@@ -45,26 +45,27 @@ RunProgress::RunProgress(std::size_t first, std::size_t all, std::string what)
 
 void RunProgress::begin(std::size_t record) {
   at_ = record;
-  share_ = 0;
+  fraction_ = 0;
 }
 
-void RunProgress::show(const std::string& detail, double share) {
-  share_ = std::clamp(share, 0.0, 1.0);
-  const double done = static_cast<double>(at_ - first_) + share_, all = static_cast<double>(all_ - first_);
+void RunProgress::show(const std::string& detail, double fraction) {
+  fraction_ = std::clamp(fraction, 0.0, 1.0);
+  const double done = static_cast<double>(at_ - first_) + fraction_, all = static_cast<double>(all_ - first_);
   const double elapsed = seconds_now() - start_;
   std::string text = std::to_string(at_) + "/" + std::to_string(all_) + " " + what_ + "s, " + duration(elapsed);
   if (const auto left = left_.at(elapsed, done / all)) text += ", " + duration(*left) + " left";
-  line_.show((static_cast<double>(at_) + share_) / static_cast<double>(all_), text + ", " + detail);
+  line_.show((static_cast<double>(at_) + fraction_) / static_cast<double>(all_), text + ", " + detail);
 }
 
-/// Before the first equilibrium on the way moves tell: they shrink by about the same factor each iteration, so that
-/// their logarithm tells how far a step is that leads there at once, as most do.
-double EquilibriumProgress::share(const Progress& p) {
+/// Before the first equilibrium on the path, progress is estimated from the step lengths: they shrink by about the same
+/// factor in each iteration, so that their logarithm measures the progress of a step that converges at once, as most
+/// do.
+double EquilibriumProgress::fraction(const Progress& p) {
   if (p.iteration == 1) {
     first_move_ = p.step_mm;
     guess_ = 0;
   }
-  if (p.share > 0) return p.share;
+  if (p.fraction > 0) return p.fraction;
   const double gone = std::log(p.step_mm / first_move_) / std::log(p.tolerance_mm / first_move_);
   if (std::isfinite(gone)) guess_ = std::clamp(gone, guess_, 1.0);
   return guess_;
@@ -72,7 +73,7 @@ double EquilibriumProgress::share(const Progress& p) {
 
 std::string EquilibriumProgress::text(const Progress& p) {
   std::string text = "iteration " + std::to_string(p.iteration) + ": " + number(p.step_mm, 2) + " mm";
-  if (p.share >= 0) text += ", " + number(100 * p.share, 2) + " % of the way";
+  if (p.fraction >= 0) text += ", " + number(100 * p.fraction, 2) + " % of the path";
   return text;
 }
 

@@ -16,22 +16,22 @@
 
 namespace softkin::cli {
 
-/// What a run that goes record by record says of itself. what: "step", "waypoint" or "sample".
+/// Returns the message of a resumed run: how many records are done. what: "step", "waypoint" or "sample".
 [[nodiscard]] std::string resumed_text(std::size_t done, std::size_t all, const std::string& what);
 
-/// How far a run came that was stopped, and what is there of it.
+/// The progress of a run that was stopped, and what it leaves on disk.
 struct Stopped {
   std::size_t done = 0, all = 0;
   std::string what;                          // "step"
   std::string where{};                       // what is finished is kept
   bool resumes = false;                      // by --resume
-  const runs::StepRecord* record = nullptr;  // on the way to the next; null: none
+  const runs::StepRecord* record = nullptr;  // the shape on the path to the next; null: none
   std::string shape{};                       // its file; empty: not written
 };
-/// On stderr; returns the exit code.
-[[nodiscard]] int tell_stopped(const Stopped& stopped);
+/// Prints the message on stderr; returns the exit code.
+[[nodiscard]] int report_stopped(const Stopped& stopped);
 
-/// Of a run that --resume goes on with. series: of its shapes
+/// Returns the progress of a run that --resume continues. series: file of its shapes
 template <class Record>
 Stopped stopped_of(const runs::Run<Record>& run, const std::string& what, const std::string& where,
                    const std::filesystem::path& series) {
@@ -42,7 +42,7 @@ Stopped stopped_of(const runs::Run<Record>& run, const std::string& what, const 
   return stopped;
 }
 
-/// Takes over what is on disk, and says so; what a killed run left half written beside its outputs is removed.
+/// Takes over the records on disk and prints their number; removes half-written files that a killed run left.
 template <class Record>
 void resume_run(runs::Run<Record>& run, const std::vector<Output>& outputs, const std::string& what, bool quiet) {
   std::string remark;
@@ -60,12 +60,12 @@ class LineTurn {
     if (line) meter_.emplace(line->at_rest(model));
   }
 
-  /// [degrees]; none: not asked for
+  /// Returns the turn in the next record [degrees]; none where --turn is not given.
   std::optional<double> next(const runs::StepRecord& record) {
     if (!line_) return std::nullopt;
     return meter_->next(line_->in(record.markers));
   }
-  /// Those of a run that is resumed.
+  /// Follows the turn through the records of a resumed run.
   template <class Record>
   void catch_up(runs::Run<Record>& run) {
     if (line_) run.log().each([&](std::size_t, const Record& record) { (void)next(record); });
@@ -76,7 +76,7 @@ class LineTurn {
   std::optional<runs::TurnMeter> meter_;
 };
 
-/// On stdout.
+/// Prints the report on stdout.
 template <class Record>
 void show_report(runs::Run<Record>& run) {
   run.log().report(print_piece);
@@ -90,8 +90,8 @@ class RunProgress {
   RunProgress(std::size_t first, std::size_t all, std::string what);
 
   void begin(std::size_t record);
-  /// detail: of the record that is being made. share: how much of it is done, 0 to 1
-  void show(const std::string& detail, double share = 0);
+  /// detail: of the record that is being made. fraction: how much of it is done, 0 to 1
+  void show(const std::string& detail, double fraction = 0);
   void clear() { line_.clear(); }
 
  private:
@@ -100,13 +100,13 @@ class RunProgress {
   std::string what_;
   double start_;  // [s]
   TimeLeft left_;
-  double share_ = 0;  // of this record
+  double fraction_ = 0;  // of this record
 };
 
-/// How far an equilibrium is, from what the solver tells.
+/// Estimates the progress towards an equilibrium from the solver's progress reports.
 class EquilibriumProgress {
  public:
-  [[nodiscard]] double share(const Progress& progress);
+  [[nodiscard]] double fraction(const Progress& progress);
   [[nodiscard]] static std::string text(const Progress& progress);
 
  private:
@@ -122,18 +122,18 @@ using runs::StepRecord;
 /// interrupts.
 ///
 /// what  a record is: "step"
-/// tell  shows how far the record is that is being made: void(RunProgress&, const Progress&)
+/// describe  shows the progress of the current record: void(RunProgress&, const Progress&)
 /// row   of the table, for the last record: Table::Row()
-template <class Record, class Tell, class Row>
-runs::Advance advance_run(runs::Run<Record>& run, const Table& table, const std::string& what, bool quiet, Tell tell,
-                          Row row) {
+template <class Record, class Reporter, class Row>
+runs::Advance advance_run(runs::Run<Record>& run, const Table& table, const std::string& what, bool quiet,
+                          Reporter describe, Row row) {
   const bool fits = fits_output(table.header());
   if (fits && !quiet && !run.is_complete()) print(table.header() + "\n");
   RunProgress line(run.done(), run.size(), what);
   while (!run.is_complete()) {
     line.begin(run.done());
     const auto go_on = [&](const Progress& progress) {
-      tell(line, progress);
+      describe(line, progress);
       return !interrupted();
     };
     const bool over = interrupted() && run.done() > 0;  // else there is a shape to begin with

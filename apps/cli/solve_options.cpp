@@ -13,13 +13,13 @@ namespace softkin::cli {
 
 namespace {
 
-constexpr int most_threads = 512;
-constexpr int most_iterations = 1'000'000'000;
+constexpr int max_threads = 512;
+constexpr int max_iterations = 1'000'000'000;
 
 }  // namespace
 
-int thread_count(int asked) {
-  return asked > 0 ? asked : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
+int thread_count(int requested) {
+  return requested > 0 ? requested : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
 }
 
 CLI::Validator integer_from(std::int64_t low, std::int64_t high) {
@@ -139,7 +139,7 @@ void add_solver(CLI::App& command, SolveOptions& options, const std::string& thr
       "Give up on a shape after so many, of Newton's method (default: " + std::to_string(newton.iteration_limit()) +
           ")\nor of Algorithm 1 (" + std::to_string(local_global.iteration_limit()) +
           "); where the path to it advances\nin steps, the limit is one of each step",
-      integer_from(1, most_iterations));
+      integer_from(1, max_iterations));
   add_value(command, "--anderson", options.anderson, "N",
             "local-global: earlier iterations that Anderson acceleration\ncombines, 0 to 20; 0: Algorithm 1 as "
             "printed (default: " +
@@ -159,7 +159,7 @@ void add_solver(CLI::App& command, SolveOptions& options, const std::string& thr
           "Stop after so long, with the last good shape [s]; counts from the\nstart of the command (default: never)")
       ->type_name("S")
       ->check(positive_time());
-  add_value(command, "--threads", options.threads, "N", threads, integer_from(0, most_threads));
+  add_value(command, "--threads", options.threads, "N", threads, integer_from(0, max_threads));
 }
 
 void add_page(CLI::App& command, std::string& page, const std::string& what) {
@@ -196,7 +196,7 @@ void check_extension(const std::string& option, const std::string& file,
   throw InvalidInput(option + " " + file + ": must end in " + known);
 }
 
-std::vector<Output> asked_outputs(const std::vector<std::pair<std::string, std::string>>& files) {
+std::vector<Output> requested_outputs(const std::vector<std::pair<std::string, std::string>>& files) {
   std::vector<Output> outputs;
   for (const auto& [option, file] : files)
     if (!file.empty()) outputs.push_back({option, file});
@@ -220,8 +220,8 @@ void check_solver(const SolveOptions& options) {
     throw InvalidInput("--anderson accelerates Algorithm 1: it needs --solver local-global");
 }
 
-RobotSpec asked_spec(const SolveOptions& options, std::vector<std::filesystem::path>& inputs) {
-  RobotSpec spec = read_asked_scene(options, inputs);
+RobotSpec requested_spec(const SolveOptions& options, std::vector<std::filesystem::path>& inputs) {
+  RobotSpec spec = read_requested_scene(options, inputs);
   if (spec.formulation == Formulation::physical && options.solver() == Solver::local_global)
     throw InvalidInput(
         "--solver local-global is for the target-shape formulation, and this robot is physical: leave it out, or add "
@@ -236,8 +236,8 @@ RobotSpec asked_spec(const SolveOptions& options, std::vector<std::filesystem::p
   return spec;
 }
 
-Model asked_robot(const SolveOptions& options, std::vector<std::filesystem::path>& inputs) {
-  Model model = compile(asked_spec(options, inputs));
+Model requested_robot(const SolveOptions& options, std::vector<std::filesystem::path>& inputs) {
+  Model model = compile(requested_spec(options, inputs));
   for (const std::string& each : options.materials) model.notes.push_back("Changed in the scene: --material " + each);
   for (const std::string& each : options.changes) model.notes.push_back("Changed in the scene: --change " + each);
   return model;
@@ -245,7 +245,7 @@ Model asked_robot(const SolveOptions& options, std::vector<std::filesystem::path
 
 InverseOptions MethodOptions::by_method() const {
   InverseOptions result = usual_options(method == "gradient" ? InverseMethod::gradient : InverseMethod::newton);
-  result.tolerance_mm = tolerance_asked_mm.value_or(result.tolerance_mm);
+  result.tolerance_mm = tolerance_requested_mm.value_or(result.tolerance_mm);
   result.max_iterations = descents.value_or(result.max_iterations);
   return result;
 }
@@ -259,7 +259,7 @@ void add_method(CLI::App& command, MethodOptions& options, const std::string& to
     text += ",\nor " + name + ": " + what;
   }
   add_value(command, "--method", options.method, "NAME", text, one_of(names));
-  add_value(command, "--tolerance", options.tolerance_asked_mm, "MM",
+  add_value(command, "--tolerance", options.tolerance_requested_mm, "MM",
             tolerance + " [mm] (default:\n0.001; gradient: 0.2)", positive_length());
 }
 

@@ -17,8 +17,8 @@
 
 namespace softkin::cli {
 
-/// Which robot, and how its equilibria are solved: what every command that solves is asked.
-struct SolveOptions : AskedScene {
+/// The robot and the solver settings: options of every command that solves for equilibria.
+struct SolveOptions : RequestedScene {
   std::string solver_name = "newton";
   double tolerance_mm = StaticsOptions().step_tolerance_mm;
   int max_iterations = StaticsOptions().max_iterations;
@@ -32,7 +32,7 @@ struct SolveOptions : AskedScene {
   [[nodiscard]] StaticsOptions statics() const;
 };
 
-/// Whether a run goes on where it was interrupted, and whether it prints its report.
+/// Options that resume an interrupted run and that print its report.
 struct RunOptions {
   bool json = false, resume = false, may_replace = false;
   std::string page{};
@@ -60,8 +60,8 @@ void add_view(CLI::App& command, ShowOptions& options);
 void check_extension(const std::string& option, const std::string& file,
                      const std::vector<std::pair<std::string, std::string>>& endings);
 /// Those of them that are given.
-[[nodiscard]] std::vector<Output> asked_outputs(const std::vector<std::pair<std::string, std::string>>& files);
-/// What --resume reads before it goes on: it refuses the file itself, with the reason, where that is none of the run's.
+[[nodiscard]] std::vector<Output> requested_outputs(const std::vector<std::pair<std::string, std::string>>& files);
+/// The file that --resume reads first: it refuses the file itself, with the reason, where that is none of the run's.
 void leave_to_resume(std::vector<Output>& outputs, const std::filesystem::path& file);
 /// Throws InvalidInput where there is a view without a picture, or it is no direction.
 void check_view(const ShowOptions& options);
@@ -69,17 +69,17 @@ void check_view(const ShowOptions& options);
 /// Throws InvalidInput where the options contradict each other.
 void check_solver(const SolveOptions& options);
 
-/// The robot of the scene as it was asked for, as it is written and compiled.
+/// The robot of the scene with the requested changes: as a description, and compiled.
 ///
 /// inputs  the files that the scene names are added
 /// throws  InvalidInput naming option, or file and line
-[[nodiscard]] RobotSpec asked_spec(const SolveOptions& options, std::vector<std::filesystem::path>& inputs);
-[[nodiscard]] Model asked_robot(const SolveOptions& options, std::vector<std::filesystem::path>& inputs);
+[[nodiscard]] RobotSpec requested_spec(const SolveOptions& options, std::vector<std::filesystem::path>& inputs);
+[[nodiscard]] Model requested_robot(const SolveOptions& options, std::vector<std::filesystem::path>& inputs);
 
 /// Of those that work side by side, each on a piece of its own; 0: as many as the machine has.
-[[nodiscard]] int thread_count(int asked);
+[[nodiscard]] int thread_count(int requested);
 
-// What CLI11 says of a number in words of its own.
+// CLI11's own texts for numbers.
 [[nodiscard]] CLI::Validator integer_from(std::int64_t low, std::int64_t high);
 [[nodiscard]] CLI::Validator finite_number(bool negative_too);
 /// what: it must be
@@ -93,15 +93,15 @@ void check_solver(const SolveOptions& options);
 /// By which method inverse kinematics is solved, and how far off it may end.
 struct MethodOptions {
   std::string method = "newton";
-  std::optional<double> tolerance_asked_mm;  // none: the method's
-  std::optional<int> descents;               // i_max of Algorithm 2
+  std::optional<double> tolerance_requested_mm;  // none: the method's
+  std::optional<int> descents;                   // i_max of Algorithm 2
 
   /// All else as it is by default.
   [[nodiscard]] InverseOptions by_method() const;
 };
 
 /// tolerance: what it is the tolerance of, for the help.
-/// more: methods beside those of inverse kinematics, and what they are.
+/// more: methods besides those of inverse kinematics, with their descriptions.
 void add_method(CLI::App& command, MethodOptions& options, const std::string& tolerance,
                 const std::vector<std::pair<std::string, std::string>>& more = {});
 /// Throws InvalidInput where the options contradict each other.

@@ -64,20 +64,21 @@ ProgressLine::~ProgressLine() {
   clear();
 }
 
-void ProgressLine::show(double share, const std::string& text) {
+void ProgressLine::show(double fraction, const std::string& text) {
   constexpr double between = 0.1, between_lines = 10;  // [s]
   const double now = seconds_now();
   if (now - last_ < (terminal_ ? between : between_lines)) return;
   last_ = now;
   if (!terminal_) {
-    std::fprintf(stderr, "softkin: %s%s\n", share >= 0 ? (decimal(100 * share, 1) + " %: ").c_str() : "", text.c_str());
+    std::fprintf(stderr, "softkin: %s%s\n", fraction >= 0 ? (decimal(100 * fraction, 1) + " %: ").c_str() : "",
+                 text.c_str());
     return;
   }
   shown_ = true;
   std::string line = text;
-  if (share >= 0) {
+  if (fraction >= 0) {
     constexpr std::size_t width = 20;
-    const auto full = static_cast<std::size_t>(std::clamp(share, 0.0, 1.0) * width);
+    const auto full = static_cast<std::size_t>(std::clamp(fraction, 0.0, 1.0) * width);
     line = "[" + std::string(full, '#') + std::string(width - full, ' ') + "] " + text;
   }
   line.resize(std::min(line.size(), terminal_width() - 1));  // a line that wraps cannot be rewritten
@@ -153,7 +154,7 @@ int answer_usage(const CLI::App& app, const CLI::ParseError& error, const std::s
 }
 
 int refuse_usage(const std::string& message, const std::string& command) {
-  complain(message + " (" + command + " --help tells more)");
+  complain(message + " (" + command + " --help shows more)");
   return bad_input;
 }
 

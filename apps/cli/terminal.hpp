@@ -17,9 +17,9 @@ namespace softkin::cli {
 /// From here on Ctrl-C only raises a flag; a second one ends the program at once.
 void catch_interrupt();
 [[nodiscard]] bool interrupted();
-/// The same from a deadline on.
+/// Raises the same flag at a deadline.
 void stop_at(const Deadline& deadline);
-/// Why it is to stop: "interrupted" or "the budget of 5 s was spent".
+/// Returns why the program is to stop: "interrupted" or "the budget of 5 s was spent".
 [[nodiscard]] std::string why_stopped();
 
 /// One line on stderr that is rewritten in place; where stderr is not a terminal a new one every ten seconds.
@@ -30,9 +30,9 @@ class ProgressLine {
   ProgressLine(const ProgressLine&) = delete;
   ProgressLine& operator=(const ProgressLine&) = delete;
 
-  /// At most ten times a second, cut to the width of the terminal. text: ASCII. share: of the work, 0 to 1, or below 0
-  /// where it is not known.
-  void show(double share, const std::string& text);
+  /// Shows a line at most ten times a second, cut to the width of the terminal. text: ASCII. fraction: of the work, 0
+  /// to 1; below 0 where it is unknown.
+  void show(double fraction, const std::string& text);
   void clear();
 
  private:
@@ -41,15 +41,15 @@ class ProgressLine {
   double last_ = 0;  // [s]
 };
 
-/// Of a clock that never jumps.
+/// Returns the time of a monotonic clock [s].
 [[nodiscard]] double seconds_now();
 
-/// The first lines, at most so many, and what was left out: "... and N more".
+/// Returns the first lines, and how many were left out: "... and N more". most: lines to keep
 [[nodiscard]] std::vector<std::string> cut(std::vector<std::string> lines, std::size_t most);
 
 [[nodiscard]] std::string joined(const std::vector<std::string>& lines, const std::string& indent);
 
-/// Does a line fit the terminal? On standard output that is none everything does.
+/// Does a line fit the terminal? Every line does where standard output is no terminal.
 [[nodiscard]] bool fits_output(const std::string& line);
 
 /// The table, its rows turned where it is wider than the terminal.
@@ -62,13 +62,13 @@ class ProgressLine {
 void print(const std::string& text);
 void print_piece(std::string_view text);  // without a flush
 
-/// Help and version are printed; anything else is bad usage, told in one line. command: whose --help tells more.
+/// Prints help and version; reports anything else as bad usage in one line. command: whose --help explains the usage
 [[nodiscard]] int answer_usage(const CLI::App& app, const CLI::ParseError& error, const std::string& command);
 
-/// Bad usage, told in one line.
+/// Reports bad usage in one line.
 [[nodiscard]] int refuse_usage(const std::string& message, const std::string& command);
 
-/// The exit code of what was chosen; what it throws is told in one line.
+/// Returns the exit code of the chosen command; reports its exceptions in one line.
 [[nodiscard]] int outcome_of(const Run& run);
 
 }  // namespace softkin::cli

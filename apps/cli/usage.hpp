@@ -6,9 +6,9 @@
 
 namespace softkin::cli {
 
-/// What is wrong with the names of the options and commands on a command line: "there is no option --reprot; did you
-/// mean --report?"; "" where all are known. Told before what is missing.
-/// command: the one that is meant, as far as known
+/// Returns what is wrong with the names of the options and commands on a command line: "there is no option --reprot;
+/// did you mean --report?"; "" where all exist. It is reported before missing arguments.
+/// command: receives the command that is meant, as far as it is recognised
 [[nodiscard]] std::string misspelt(const CLI::App& app, int argc, const char* const* argv, std::string& command);
 
 /// Help whose lines fit a page, whatever the texts' own line ends; lines that begin with a blank stay as they are.

@@ -68,13 +68,13 @@ void check_usage(const WalkOptions& options) {
 /// "stride: 5.12 mm per cycle from cycle 2 on".
 std::string stride_text(const std::vector<double>& strides) {
   const double last = strides.back();
-  std::size_t settled = strides.size();  // cycles before this one have another stride
-  while (settled > 0 && std::abs(strides[settled - 1] - last) <= same_stride_mm) --settled;
+  std::size_t steady = strides.size();  // cycles before this one have another stride
+  while (steady > 0 && std::abs(strides[steady - 1] - last) <= same_stride_mm) --steady;
   std::string text = "stride: " + decimal(last, stride_decimals) + " mm per cycle";
-  if (settled + 1 >= strides.size()) {
+  if (steady + 1 >= strides.size()) {
     if (strides.size() > 1) text += " in the last one, which is not that of the one before: walk more --cycles";
-  } else if (settled > 0) {
-    text += " from cycle " + std::to_string(settled + 1) + " on";
+  } else if (steady > 0) {
+    text += " from cycle " + std::to_string(steady + 1) + " on";
   }
   return text;
 }
@@ -102,14 +102,14 @@ class ShownWalk {
     page_.write();
     if (options_.json) show_report(run_);
     if (end == runs::Advance::interrupted)
-      return tell_stopped(stopped_of(run_, "step", options_.folder, options_.files().run().shapes));
+      return report_stopped(stopped_of(run_, "step", options_.folder, options_.files().run().shapes));
     if (end == runs::Advance::lost) return lost();
-    if (!options_.json) tell();
+    if (!options_.json) describe();
     return done;
   }
 
  private:
-  void tell() {
+  void describe() {
     OverlapTally overlaps(model_);
     std::size_t number = 0;
     for (const WalkRecord& record : walk_.records()) overlaps.add(number++, record);
@@ -118,7 +118,7 @@ class ShownWalk {
     const runs::WalkFolder files = options_.files();
     print("steps: " + files.table().string() + "; plot: " + files.plot().string() +
           "; shapes: " + files.run().shapes.string() + " (open it in ParaView)\n");
-    if (!options_.page.empty()) print(page_.told() + "\n");
+    if (!options_.page.empty()) print(page_.reported() + "\n");
   }
 
   [[nodiscard]] int lost() const {
@@ -140,7 +140,7 @@ int run_walk(const WalkOptions& options) {
   std::vector<fs::path> inputs{options.scene, options.gait};
   ProgressLine line;
   line.show(-1, "reading the scene");
-  const Model model = asked_robot(options, inputs);
+  const Model model = requested_robot(options, inputs);
   std::vector<runs::GaitStep> steps = runs::repeated(
       model, options.gait, read_actuation_path(model, options.gait, Settings(model.actuators.size())), options.cycles);
   std::vector<Output> outputs = options.outputs(steps.size());
@@ -160,7 +160,7 @@ int run_walk(const WalkOptions& options) {
 
 void add_walk(CLI::App& app, Run& run) {
   add_command(
-      app, run, "walk", "Walking: a gait with feet that slide one way better than the other",
+      app, run, "walk", "Walking: a gait with feet that slide more easily in one direction than in the other",
       "The scene's key 'feet' says what stands on the floor (docs/walking.md). Exit code: 0 done, 1 an equilibrium "
       "did\n"
       "not converge, or interrupted, 2 bad usage or bad input.\n"

@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace {
 
-constexpr std::int64_t most_samples = 100'000'000;
+constexpr std::int64_t max_samples = 100'000'000;
 
 /// What the user asks of `softkin workspace`. An empty file name: not given.
 struct WorkspaceOptions : SolveOptions, RunOptions {
@@ -29,7 +29,7 @@ struct WorkspaceOptions : SolveOptions, RunOptions {
   std::optional<std::uint64_t> seed;
 
   [[nodiscard]] std::vector<Output> outputs() const {
-    return asked_outputs(
+    return requested_outputs(
         {{"--output", output}, {"--cloud", cloud}, {"--hull", hull}, {"--plot", plot}, {"--html", page}});
   }
   [[nodiscard]] Sampling kind() const {
@@ -60,7 +60,7 @@ void add_sampling(CLI::App& command, WorkspaceOptions& options) {
                   "fills it")
       ->type_name("N")
       ->required()
-      ->check(integer_from(1, most_samples));
+      ->check(integer_from(1, max_samples));
   add_value(command, "--sampling", options.sampling, "NAME",
             "grid (default): as many values for every actuator, ends\nincluded; sobol: a low-discrepancy "
             "sequence; random: uniform",
@@ -84,7 +84,7 @@ bool has_triangles(const runs::Reach& reach) {
 }
 
 /// "tip reaches x 20.1 to 118.3, ... mm", the hull and the files, a line each.
-std::string reach_text(const runs::Reach& reach, const WorkspaceOptions& options, const std::string& told_page) {
+std::string reach_text(const runs::Reach& reach, const WorkspaceOptions& options, const std::string& reported_page) {
   if (reach.samples.empty()) return "no sample has an equilibrium: nothing to show\nsamples: " + options.output;
   std::string text = reach.marker + " reaches";
   for (int axis = 0; axis < 3; ++axis)
@@ -97,20 +97,20 @@ std::string reach_text(const runs::Reach& reach, const WorkspaceOptions& options
   if (!options.cloud.empty()) text += "\ncloud: " + options.cloud + " (open it in ParaView)";
   if (has_triangles(reach)) text += "\nhull: " + options.hull;
   if (!options.plot.empty()) text += "\nplot: " + options.plot;
-  if (!told_page.empty()) text += "\n" + told_page;
+  if (!reported_page.empty()) text += "\n" + reported_page;
   return text;
 }
 
 /// What all ranks know.
-struct Asked {
+struct Requested {
   Model model;
   SamplingOptions sampling;
   WorkspacePlan plan;
   WorkspaceHead head;
   std::vector<fs::path> inputs;
 
-  explicit Asked(const WorkspaceOptions& options) : inputs{options.scene} {
-    model = asked_robot(options, inputs);
+  explicit Requested(const WorkspaceOptions& options) : inputs{options.scene} {
+    model = requested_robot(options, inputs);
     (void)runs::shown_marker(model, options.marker);
     sampling = {options.kind(), options.samples, options.seed.value_or(0)};
     if (sampling.kind == Sampling::grid) sampling.samples = full_grid(model, options.samples);
@@ -121,24 +121,24 @@ struct Asked {
 
 class WorkspaceRun {
  public:
-  WorkspaceRun(const WorkspaceOptions& options, const Asked& asked, const runs::Ranks& ranks)
+  WorkspaceRun(const WorkspaceOptions& options, const Requested& requested, const runs::Ranks& ranks)
       : options_(options),
-        asked_(asked),
+        requested_(requested),
         ranks_(ranks),
-        columns_(runs::workspace_columns(asked.model)),
-        page_(options.page, asked.model, runs::kept_command()) {}
+        columns_(runs::workspace_columns(requested.model)),
+        page_(options.page, requested.model, runs::kept_command()) {}
 
   /// Rank 0: before anything is written.
   void begin() {
     std::vector<Output> outputs = options_.outputs();
     if (options_.resume) leave_to_resume(outputs, options_.output);
-    check_outputs(outputs, asked_.inputs, options_.may_replace);
+    check_outputs(outputs, requested_.inputs, options_.may_replace);
     folders_.emplace(outputs);
-    file_.emplace(options_.output, asked_.head, columns_, asked_.plan, options_.resume);
+    file_.emplace(options_.output, requested_.head, columns_, requested_.plan, options_.resume);
     if (options_.resume) remove_torn_files(options_.outputs());
-    say(options_.scene + ": " + runs::model_summary(asked_.model, options_.solver_name));
-    std::string text = samples_text() + ", " + runs::sampling_text(asked_.model, asked_.sampling);
-    if (asked_.sampling.samples != options_.samples)
+    say(options_.scene + ": " + runs::model_summary(requested_.model, options_.solver_name));
+    std::string text = samples_text() + ", " + runs::sampling_text(requested_.model, requested_.sampling);
+    if (requested_.sampling.samples != options_.samples)
       text += "; the full grid nearest to " + std::to_string(options_.samples);
     say(text);
     if (ranks_.size() > 1) say(std::to_string(ranks_.size()) + " ranks");
@@ -150,10 +150,11 @@ class WorkspaceRun {
     solve();
     if (!ranks_.leads()) return done;
     if (!file_->complete())
-      return tell_stopped({static_cast<std::size_t>(file_->done()), samples(), "sample", options_.output, true});
-    const runs::Reach reach = runs::reach_of(asked_.model, file_->finish(), options_.marker, !options_.hull.empty());
+      return report_stopped({static_cast<std::size_t>(file_->done()), samples(), "sample", options_.output, true});
+    const runs::Reach reach =
+        runs::reach_of(requested_.model, file_->finish(), options_.marker, !options_.hull.empty());
     if (!reach.samples.empty()) write(reach);
-    tell(reach, seconds_now() - start);
+    describe(reach, seconds_now() - start);
     return judge();
   }
 
@@ -162,7 +163,7 @@ class WorkspaceRun {
     if (!options_.json) print(line + "\n");
   }
 
-  [[nodiscard]] std::size_t samples() const { return asked_.plan.samples(); }
+  [[nodiscard]] std::size_t samples() const { return requested_.plan.samples(); }
   [[nodiscard]] std::string samples_text() const { return counted(samples(), "sample"); }
 
   void say_resumed() const {
@@ -179,21 +180,21 @@ class WorkspaceRun {
     if (ranks_.leads()) {
       const auto show = [&, before = file_->done(), start = seconds_now()] { show_progress(line, before, start); };
       desk.emplace(
-          asked_.plan, *file_, [] { return !interrupted(); }, show);
+          requested_.plan, *file_, [] { return !interrupted(); }, show);
       show();
     }
     const auto work = [&](GroupDesk& groups) {
       if (ranks_.size() == 1 && file_->complete()) return;
-      const Statics assembled(asked_.model);
-      solve_groups(assembled, asked_.plan, options_.statics(), thread_count(options_.threads), groups,
+      const Statics assembled(requested_.model);
+      solve_groups(assembled, requested_.plan, options_.statics(), thread_count(options_.threads), groups,
                    [](const Progress&) { return !interrupted(); });
     };
-    ranks_.share(asked_.model, asked_.plan, desk ? &*desk : nullptr, work);
+    ranks_.distribute(requested_.model, requested_.plan, desk ? &*desk : nullptr, work);
   }
 
   /// before: samples that were done at the start [s]
   void show_progress(ProgressLine& line, Index before, double start) const {
-    const double now = file_->done(), all = asked_.plan.samples(), made = now - before;
+    const double now = file_->done(), all = requested_.plan.samples(), made = now - before;
     const double elapsed = seconds_now() - start;
     std::string text =
         std::to_string(file_->done()) + "/" + std::to_string(samples()) + " samples, " + duration(elapsed);
@@ -204,22 +205,22 @@ class WorkspaceRun {
   }
 
   void write(const runs::Reach& reach) {
-    if (!options_.cloud.empty()) runs::write_cloud(options_.cloud, asked_.model, reach);
+    if (!options_.cloud.empty()) runs::write_cloud(options_.cloud, requested_.model, reach);
     if (has_triangles(reach)) runs::write_hull(options_.hull, *reach.hull);
     if (!options_.plot.empty()) write_svg(options_.plot, runs::plot_of_reach(reach));
-    page_.show_reach(runs::shown_marker(asked_.model, options_.marker), reach.positions);
+    page_.show_reach(runs::shown_marker(requested_.model, options_.marker), reach.positions);
     page_.write();
   }
 
-  void tell(const runs::Reach& reach, double seconds) const {
+  void describe(const runs::Reach& reach, double seconds) const {
     const Index converged = file_->count(Status::converged);
     if (options_.json)
       return print(runs::workspace_summary(
-                       options_.scene, asked_.head, reach, asked_.plan.samples(),
+                       options_.scene, requested_.head, reach, requested_.plan.samples(),
                        [this](Status status) { return file_->count(status); }, seconds) +
                    "\n");
     say(std::to_string(converged) + " of " + samples_text() + " converged; " + duration(seconds));
-    say(reach_text(reach, options_, page_.told()));
+    say(reach_text(reach, options_, page_.reported()));
   }
 
   [[nodiscard]] int judge() const {
@@ -233,11 +234,11 @@ class WorkspaceRun {
              "shape" +
                  (shapeless == 0 ? "" : ", but " + std::to_string(shapeless) + " have none"));
     complain(Status::not_converged, "did not converge (status not_converged); they are rows without values");
-    return file_->count(Status::converged) == asked_.plan.samples() ? done : not_converged;
+    return file_->count(Status::converged) == requested_.plan.samples() ? done : not_converged;
   }
 
   const WorkspaceOptions& options_;
-  const Asked& asked_;
+  const Requested& requested_;
   const runs::Ranks& ranks_;
   WorkspaceColumns columns_;
   runs::RunPage page_;
@@ -258,15 +259,15 @@ void add_options(CLI::App& command, WorkspaceOptions& options) {
 int run_workspace(const WorkspaceOptions& options) {
   const runs::Ranks ranks;
   try {
-    std::optional<Asked> asked;
+    std::optional<Requested> requested;
     ranks.together([&] {
       check_usage(options);
-      asked.emplace(options);
+      requested.emplace(options);
     });
     std::string text;
-    for (const auto& [key, value] : asked->head) text += key + ": " + value + "\n";
+    for (const auto& [key, value] : requested->head) text += key + ": " + value + "\n";
     ranks.agree_on(text);
-    WorkspaceRun run(options, *asked, ranks);
+    WorkspaceRun run(options, *requested, ranks);
     catch_interrupt();
     ranks.together([&] {
       if (ranks.leads()) run.begin();

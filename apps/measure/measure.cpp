@@ -14,7 +14,7 @@ using vision::PhotoSeries;
 
 namespace {
 
-constexpr std::size_t most_losses = 5;
+constexpr std::size_t max_losses = 5;
 
 /// What is written, checked against what is read.
 std::vector<Output> checked_outputs(const PicturesOptions& options) {
@@ -62,7 +62,7 @@ int measure_film(const PicturesOptions& options) {
                   options.fps > 0 ? std::optional(options.fps) : std::nullopt);
   {
     ProgressLine progress;
-    while (track.advance()) progress.show(track.share(), "frame " + std::to_string(track.frames()));
+    while (track.advance()) progress.show(track.fraction(), "frame " + std::to_string(track.frames()));
   }
   const OutputFolders folders(outputs);
   write_file(options.output, track.csv());
@@ -72,7 +72,7 @@ int measure_film(const PicturesOptions& options) {
     std::string text = "wrote " + options.output + ": " + counted(track.table().rows.size(), "frame") + " of " +
                        std::to_string(track.frames()) + ", " + number(track.rate(), 6) + " frames per second" +
                        (options.fps > 0 ? "" : ", as the video says") + "\n" + joined(track.measurer().notes(), "");
-    if (!track.left_out().empty()) text += "left out:\n" + joined(cut(track.left_out(), most_losses), "    ");
+    if (!track.left_out().empty()) text += "left out:\n" + joined(cut(track.left_out(), max_losses), "    ");
     print(text);
   }
   return track.left_out().empty() ? done : not_converged;

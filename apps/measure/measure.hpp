@@ -6,7 +6,7 @@
 
 namespace softkin::cli {
 
-/// What the user asked of `softkin measure PICTURES`.
+/// The options of `softkin measure PICTURES`.
 struct PicturesOptions : vision::MeasureOptions {
   std::vector<std::string> pictures;
   std::string output;

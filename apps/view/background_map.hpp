@@ -10,7 +10,7 @@
 
 namespace softkin::view {
 
-/// Makes a kinematic map on a thread of its own, which gives way to others.
+/// Builds a kinematic map on a thread of its own, of the lowest priority.
 class BackgroundMap {
  public:
   /// A map of the whole shape, or why there is none.

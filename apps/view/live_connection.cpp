@@ -40,19 +40,19 @@ void Connection::show(Bytes frame) {
   write();
 }
 
-void Connection::tell_state() {
+void Connection::report_state() {
   state_due_ = true;
   write();
 }
 
-void Connection::tell(Bytes text) {
+void Connection::send(Bytes text) {
   texts_.push_back(std::move(text));
   write();
 }
 
 void Connection::refuse(const Refusal& refusal) {
   if (++refusals_ >= host_.limits().refusals) return close(websocket::close_code::policy_error);
-  tell(std::make_shared<const std::string>(refused_text(refusal)));
+  send(std::make_shared<const std::string>(refused_text(refusal)));
 }
 
 void Connection::close(websocket::close_code code) {
@@ -236,13 +236,13 @@ void Connection::check_id(const ClientMessage& message) {
   last_id_ = id;
 }
 
-/// What is to be told before the newest shape; nothing while something is on its way.
+/// Writes pending messages before the newest shape; does nothing while a write is in progress.
 void Connection::write() {
   if (writing_ || !is_open()) return;
   if (std::exchange(state_due_, false)) {
     std::string state = state_text(host_.state_of(*this));
-    if (state != told_state_) texts_.push_back(std::make_shared<const std::string>(state));
-    told_state_ = std::move(state);
+    if (state != reported_state_) texts_.push_back(std::make_shared<const std::string>(state));
+    reported_state_ = std::move(state);
   }
   const bool is_text = !texts_.empty();
   const Bytes bytes = is_text ? std::exchange(texts_.front(), nullptr) : std::exchange(frame_, nullptr);

@@ -43,7 +43,7 @@ using Stream = beast::basic_stream<tcp, net::any_io_executor, Pace>;
 
 class Connection;
 
-/// What connections need of who accepted them.
+/// The interface of a connection to the server that accepted it.
 class Host {
  public:
   virtual ~Host() = default;
@@ -65,18 +65,18 @@ class Connection : public std::enable_shared_from_this<Connection> {
 
   /// Reads the request and answers it.
   void begin();
-  /// Says that there are too many, whatever is asked.
+  /// Answers any request with the error that there are too many connections.
   void refuse();
 
-  // Of what watches.
+  // For connections that watch.
   [[nodiscard]] bool has_secret() const { return has_secret_; }
   void show(Bytes frame);
   [[nodiscard]] bool has_frame() const { return frame_ != nullptr; }
-  void tell_state();
-  void tell(Bytes text);
+  void report_state();
+  void send(Bytes text);
   void refuse(const Refusal& refusal);
 
-  /// Says why it ends; without a word where there is no WebSocket yet.
+  /// Closes with a reason; without one where there is no WebSocket yet.
   void close(websocket::close_code code);
   /// Ends at once.
   void drop();
@@ -118,7 +118,7 @@ class Connection : public std::enable_shared_from_this<Connection> {
   std::size_t written_ = 0;
   std::deque<Bytes> texts_;  // fewer than the refusals that end it, a state and a map
   bool state_due_ = false;
-  std::string told_state_;
+  std::string reported_state_;
   Bytes frame_;  // the newest
 };
 

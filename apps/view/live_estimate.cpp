@@ -106,10 +106,10 @@ std::string LiveEstimator::text_for_page() const {
                        {"unit", reading_units[static_cast<std::size_t>(column.kind)]},
                        {"deviation", setup_.deviations[c]}});
   }
-  return runs::line_of({{"columns", columns}, {"told", told_actuators()}, {"fade_s", setup_.how.fade_s}});
+  return runs::line_of({{"columns", columns}, {"told", reported_actuators()}, {"fade_s", setup_.how.fade_s}});
 }
 
-const Estimate& LiveEstimator::tell(std::uint64_t asker, const ReadingsRequest& request,
+const Estimate& LiveEstimator::send(std::uint64_t asker, const ReadingsRequest& request,
                                     const ProgressCallback& progress) {
   const auto now = Clock::now();
   double elapsed = 0;
@@ -123,41 +123,41 @@ const Estimate& LiveEstimator::tell(std::uint64_t asker, const ReadingsRequest& 
   else if (last_ != Clock::time_point{})
     elapsed = std::chrono::duration<double>(now - last_).count();
   asker_ = asker;
-  const Estimate& told = estimator_.update(request.commands, values_, elapsed, progress);
-  if (told.status != Status::converged) return told;
+  const Estimate& reported = estimator_.update(request.commands, values_, elapsed, progress);
+  if (reported.status != Status::converged) return reported;
   last_s_ = request.time_s;
   last_ = now;
-  return told;
+  return reported;
 }
 
-std::string LiveEstimator::told_text(const Estimate& told) const {
-  Json json{{"status", name_of(told.status)}, {"remark", told.remark}};
-  if (told.status != Status::converged) return runs::line_of(json);
+std::string LiveEstimator::reported_text(const Estimate& reported) const {
+  Json json{{"status", name_of(reported.status)}, {"remark", reported.remark}};
+  if (reported.status != Status::converged) return runs::line_of(json);
   Json forces = Json::array();
-  for (const runs::ForcePicture& force : pictures_.of(told)) forces.push_back(force_json(force));
-  json["numbers"] = runs::told_numbers_json(told);
-  json["places"] = runs::told_places_json(told);
-  json["chi_square"] = told.chi_square;
-  json["freedoms"] = told.freedoms;
-  json["misfit"] = told.misfit();
-  json["left_out"] = runs::left_out_json(told, estimator_.groups());
-  json["words"] = estimate_words(told, estimator_.groups());
-  json["seconds"] = told.seconds;
-  json["readings"] = runs::read_json(told, columns_, values_);
+  for (const runs::ForcePicture& force : pictures_.of(reported)) forces.push_back(force_json(force));
+  json["numbers"] = runs::reported_numbers_json(reported);
+  json["places"] = runs::reported_places_json(reported);
+  json["chi_square"] = reported.chi_square;
+  json["freedoms"] = reported.freedoms;
+  json["misfit"] = reported.misfit();
+  json["left_out"] = runs::left_out_json(reported, estimator_.groups());
+  json["words"] = estimate_words(reported, estimator_.groups());
+  json["seconds"] = reported.seconds;
+  json["readings"] = runs::read_json(reported, columns_, values_);
   json["forces"] = std::move(forces);
   return runs::line_of(json);
 }
 
-std::string stream_line(const std::string& told, const std::optional<double>& time_s, std::uint64_t passed_over) {
+std::string stream_line(const std::string& reported, const std::optional<double>& time_s, std::uint64_t passed_over) {
   Json line{{"t_s", time_s ? Json(*time_s) : Json()}};
-  line.update(Json::parse(told));
+  line.update(Json::parse(reported));
   line.erase("readings");
   line.erase("forces");
   line["passed_over"] = passed_over;
   return runs::line_of(line);
 }
 
-std::string nothing_told_text(const std::string& why) {
+std::string nothing_reported_text(const std::string& why) {
   return runs::line_of({{"status", name_of(Status::not_converged)}, {"remark", why}});
 }
 

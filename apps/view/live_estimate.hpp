@@ -8,7 +8,7 @@
 
 namespace softkin::view {
 
-/// What is to be told, and what may be read.
+/// The unknowns to estimate, and the columns that may be read.
 struct EstimateSetup {
   std::vector<EstimatedUnknown> unknowns;
   std::vector<PoseColumn> columns;
@@ -16,7 +16,7 @@ struct EstimateSetup {
   EstimatorOptions how;
 };
 
-/// The setup of what may be read of a robot: the columns of kinds whose deviation is given.
+/// Returns the setup for a robot: its columns of the kinds of reading whose deviation is given.
 ///
 /// deviations  of each kind, in its unit; 0: not given
 /// options     that give them, for messages
@@ -25,53 +25,54 @@ struct EstimateSetup {
                                            const std::array<double, readings>& deviations,
                                            const std::array<std::string, readings>& options, EstimatorOptions how);
 
-/// Tells what readings say, each time from the last estimate. For one thread at a time. Its estimator has the columns
-/// of the kinds that were read so far: those of others would keep it from what markers and sensors alone let it do.
+/// Estimates unknowns from readings, each time starting from the last estimate. For one thread at a time. Its estimator
+/// has the columns of the kinds that were read so far only: other columns would rule out the faster methods that apply
+/// to markers and sensors alone.
 class LiveEstimator {
  public:
   /// model must outlive the object. throws InvalidInput as Estimator does
   LiveEstimator(const Model& model, EstimateSetup setup);
 
   [[nodiscard]] const std::vector<PoseColumn>& columns() const { return setup_.columns; }
-  [[nodiscard]] std::vector<Index> told_actuators() const { return estimator_.told_actuators(); }
+  [[nodiscard]] std::vector<Index> reported_actuators() const { return estimator_.reported_actuators(); }
   /// Must every reading have its time?
   [[nodiscard]] bool fades() const { return setup_.how.fade_s > 0; }
-  /// What the page must know to ask for readings, JSON: "columns" with "name", "group", "axis", "unit" and "deviation",
-  /// "told" actuators, "fade_s".
+  /// Returns what the page needs in order to send readings, as JSON: "columns" with "name", "group", "axis", "unit" and
+  /// "deviation", "told" (the estimated actuators), "fade_s".
   [[nodiscard]] std::string page_text() const { return page_text_; }
 
-  /// asker: where it is another than before, another clock and perhaps another scene, the last estimate is forgotten
-  [[nodiscard]] const Estimate& tell(std::uint64_t asker, const ReadingsRequest& request,
+  /// asker: where it differs from the last one (another clock, perhaps another scene), the last estimate is discarded
+  [[nodiscard]] const Estimate& send(std::uint64_t asker, const ReadingsRequest& request,
                                      const ProgressCallback& progress);
-  /// What was told last, as JSON for the page; numbers, places and forces only where it converged.
-  [[nodiscard]] std::string told_text(const Estimate& told) const;
+  /// Returns an estimate as JSON for the page; numbers, places and forces only where it converged.
+  [[nodiscard]] std::string reported_text(const Estimate& reported) const;
 
  private:
   using Clock = std::chrono::steady_clock;
   using Kinds = std::array<bool, readings>;
 
   [[nodiscard]] std::string text_for_page() const;
-  /// Takes readings of all columns; the estimator is made anew where these are of a kind that it does not have.
+  /// Takes readings of all columns; rebuilds the estimator where it lacks a kind that was read.
   void have(const Eigen::VectorXd& values);
 
   const Model& model_;
   EstimateSetup setup_;
   Estimator estimator_;
   std::string page_text_;
-  Kinds read_{}, has_{};             // by who asks now; of the estimator
-  std::vector<PoseColumn> columns_;  // the same
-  Eigen::VectorXd values_;           // of these, that were told from last
+  Kinds read_{}, has_{};             // kinds that the asker has read; those of the estimator
+  std::vector<PoseColumn> columns_;  // of the estimator
+  Eigen::VectorXd values_;           // of these, in the last readings
   runs::ForcePictures pictures_;
   std::uint64_t asker_ = 0;
-  std::optional<double> last_s_{};  // time of what was told last
-  Clock::time_point last_{};        // the same, of readings that tell none
+  std::optional<double> last_s_{};  // time of the last readings
+  Clock::time_point last_{};        // the same, of readings without a time
 };
 
-/// One line to who streamed the readings: "t_s", what told_text() has but for what only pictures need, and
-/// "passed_over", how many lines were not told since the one before.
-[[nodiscard]] std::string stream_line(const std::string& told, const std::optional<double>& time_s,
+/// Returns one line for the writer of the readings: "t_s", the entries of reported_text() except those for pictures
+/// alone, and "passed_over", the number of lines without an estimate since the one before.
+[[nodiscard]] std::string stream_line(const std::string& reported, const std::optional<double>& time_s,
                                       std::uint64_t passed_over);
-/// What told_text() has where nothing could be told.
-[[nodiscard]] std::string nothing_told_text(const std::string& why);
+/// Returns the counterpart of reported_text() where no estimate is possible.
+[[nodiscard]] std::string nothing_reported_text(const std::string& why);
 
 }  // namespace softkin::view

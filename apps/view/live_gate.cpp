@@ -30,7 +30,7 @@ Entry entry_of(const RequestHead& head, int port) {
 
 double Allowance::left(Time now) const {
   const double seconds = last_ == Time{} ? 0 : std::chrono::duration<double>(now - last_).count();
-  return std::min(most_, left_ + rate_ * std::max(0.0, seconds));
+  return std::min(max_, left_ + rate_ * std::max(0.0, seconds));
 }
 
 void Allowance::take(double count, Time now) {
@@ -49,13 +49,13 @@ LivePage live_page(std::string_view page, std::string document, const std::strin
   LivePage live;
   live.policy = std::string(page.substr(begin + content.size(), end - begin - content.size())) +
                 "; connect-src 'self' ws://127.0.0.1:" + number + " ws://localhost:" + number;
-  const std::string told =
+  const std::string reported =
       std::string(page.substr(0, begin)) + std::string(content) + live.policy + std::string(page.substr(end));
   live.policy += "; frame-ancestors 'self' http://127.0.0.1:* http://localhost:*";  // notebooks show it
   document.pop_back();
   document += std::string(",\"live\":{\"path\":\"") + live_path + "\",\"model\":\"" + model + "\"" +
               (estimate.empty() ? "" : ",\"estimate\":" + estimate) + "}}";
-  live.html = runs::page_html(told, document);
+  live.html = runs::page_html(reported, document);
   return live;
 }
 

@@ -15,7 +15,7 @@ using Clock = std::chrono::steady_clock;
 /// What a connection that is ended stays open for, so that the other side reads why [s].
 inline constexpr double linger_s = 2;
 
-/// What a request for the server says of itself. count: of the header fields of that name.
+/// The head of a request to the server. count: of the header fields of that name.
 struct RequestHead {
   std::string_view method, target, host, origin;
   std::size_t hosts = 1, origins = 0;
@@ -24,28 +24,28 @@ struct RequestHead {
 
 enum class Entry { page, live, forbidden, not_found, not_allowed };
 
-/// Who is let in. Only pages of this server's own address may speak with it: a page of another site that a browser was
-/// told to look for at 127.0.0.1 (DNS rebinding) names its own host, and one that connects from elsewhere its origin.
+/// Decides who is let in. Only pages of this server's own address may connect: a page of another site whose name
+/// resolves to 127.0.0.1 (DNS rebinding) names its own host, and a page that connects from elsewhere names its origin.
 [[nodiscard]] Entry entry_of(const RequestHead& head, int port);
 
-/// At most so many a second over time, and so many at once.
+/// Limits a rate: at most per_second in the long run, and at_once in a burst.
 class Allowance {
  public:
   using Time = Clock::time_point;
 
-  Allowance(double per_second, double at_once) : rate_(per_second), most_(at_once), left_(at_once) {}
+  Allowance(double per_second, double at_once) : rate_(per_second), max_(at_once), left_(at_once) {}
 
-  /// How many may be taken [-].
+  /// Returns how many may be taken now [-].
   [[nodiscard]] double left(Time now) const;
-  /// Less so many, down to below 0.
+  /// Takes count of them; what is left may fall below 0.
   void take(double count, Time now);
 
  private:
-  double rate_, most_, left_;
+  double rate_, max_, left_;
   Time last_{};
 };
 
-/// A page and who may do what in it.
+/// A page and its security policy.
 struct LivePage {
   std::string html;
   std::string policy;  // Content-Security-Policy, for the header
@@ -59,7 +59,7 @@ inline constexpr const char* live_path = "/live";
 /// page      with a meta tag of its Content-Security-Policy
 /// document  JSON, an object with at least one key
 /// model     hexadecimal
-/// estimate  what the page must know to ask for readings, JSON; empty: nothing is told
+/// estimate  what the page needs in order to send readings, JSON; empty: nothing is estimated
 /// throws    InvalidInput where the page has no such tag, or no place for a document
 [[nodiscard]] LivePage live_page(std::string_view page, std::string document, const std::string& model, int port,
                                  const std::string& estimate = "");

@@ -131,8 +131,9 @@ ClientMessage message_of(const Json& json, const Model& model, std::size_t readi
   const std::string type = message.text("type");
   if (type == "hello") return Hello{message.text("secret")};
   const bool moves = type == "command" || type == "target";
-  if (type == "readings" && readings == 0) message.refuse("nothing is told here: start softkin view with --unknown");
-  if (moves && readings > 0) message.refuse("what pushes is told here: send readings");
+  if (type == "readings" && readings == 0)
+    message.refuse("nothing is estimated here: start softkin view with --unknown");
+  if (moves && readings > 0) message.refuse("forces are estimated here: send readings");
   if (type == "command") return command_of(message, model);
   if (type == "target") return target_of(message, model);
   if (type == "readings") return readings_of(message, model, readings);

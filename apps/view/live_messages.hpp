@@ -12,7 +12,7 @@
 
 namespace softkin::view {
 
-// What server and page say to each other, as text and bytes; nothing here knows the network.
+// The messages between server and page, as text and bytes, independent of the network.
 
 /// A message is no longer than this [bytes].
 inline constexpr std::size_t longest_message = 4096;
@@ -22,7 +22,7 @@ constexpr std::size_t longest_message_of(std::size_t readings) {
   return longest_message + digits * readings;
 }
 
-/// Of a request, given by who asks: 1 to 2^53. 0: of none.
+/// Number of a request, given by its sender: 1 to 2^53. 0: of no request.
 using RequestId = std::uint64_t;
 
 struct Hello {
@@ -39,10 +39,10 @@ struct TargetRequest {
   Index marker = 0;
   Vec3 at = Vec3::Zero();  // [mm]
 };
-/// What was read, to be told from.
+/// Readings to estimate from.
 struct ReadingsRequest {
   RequestId id = 0;
-  Actuation commands;              // m, inside the ranges; those that are told do not count
+  Actuation commands;              // m, inside the ranges; those that are estimated do not count
   Eigen::VectorXd values;          // of the columns; NaN: not read
   std::optional<double> time_s{};  // when it was read; none: now
 };
@@ -50,13 +50,13 @@ struct Take {};
 struct Release {};
 using ClientMessage = std::variant<Hello, CommandRequest, TargetRequest, ReadingsRequest, Take, Release>;
 
-/// Of a request; none: of what is none.
+/// Returns the number of a request; none for other messages.
 [[nodiscard]] std::optional<RequestId> id_of(const ClientMessage& message);
 
-/// A reading is no larger than this, in its unit: so far the squares of what readings miss can be added up.
+/// A reading is no larger than this, in its unit: up to here the squares of residuals can be summed.
 inline constexpr double largest_reading = 1e9;
 
-/// What is refused, in a sentence, and of which request, where it tells.
+/// A refused message: why, in a sentence, and the number of the request where it has one.
 class Refusal : public InvalidInput {
  public:
   explicit Refusal(const std::string& why, std::optional<RequestId> id = {}) : InvalidInput(why), id_(id) {}
@@ -66,17 +66,17 @@ class Refusal : public InvalidInput {
   std::optional<RequestId> id_;
 };
 
-/// How far from the robot a target may be asked for, in each coordinate [mm]: a hundred of its diagonals from where it
-/// is at rest.
+/// Returns the largest distance of a target in each coordinate [mm]: a hundred diagonals of the robot from its place at
+/// rest.
 [[nodiscard]] double farthest_target_mm(const Model& model);
 
-/// A page's message, JSON; keys that are not known do not count.
+/// Reads a page's message, JSON; unknown keys are ignored.
 ///
-/// readings  columns of which something may be read; 0: nothing is told here
-/// returns   with as many commands as there are actuators, inside their ranges; with a marker that there is and a place
+/// readings  number of columns that may be read; 0: nothing is estimated
+/// returns   with as many commands as there are actuators, inside their ranges; with an existing marker and a place
 ///           within farthest_target_mm(); with as many readings as there are columns, NaN or up to largest_reading.
-///           Where something is told, neither a command nor a target alone
-/// throws    Refusal, and nothing else, on whatever is not that
+///           Where something is estimated, neither a command nor a target alone
+/// throws    Refusal, and nothing else, on any other text
 [[nodiscard]] ClientMessage read_client_message(std::string_view text, const Model& model, std::size_t readings = 0);
 /// Throws Refusal naming the actuator where a command is outside its range.
 void check_command(const Actuator& actuator, double value, std::optional<RequestId> id = {});
@@ -84,7 +84,7 @@ void check_command(const Actuator& actuator, double value, std::optional<Request
 /// How a search for a target ended.
 struct TargetAnswer {
   Index marker = 0;
-  Vec3 at = Vec3::Zero();  // asked for [mm]
+  Vec3 at = Vec3::Zero();  // requested [mm]
   double error_mm = 0;     // of the shape that is shown
   bool reached = false;
   std::string why;  // not reached: why; else empty
@@ -104,7 +104,7 @@ struct LiveShape {
   std::vector<std::string> arrays;  // that follow the positions
   std::vector<float> numbers;       // positions, x y z by vertex [mm]; then a number per vertex of each of the arrays
   std::size_t vertices = 0;
-  std::string estimate{};  // JSON of what readings told; empty: none were asked about
+  std::string estimate{};  // JSON of the estimate from readings; empty: there were no readings
 };
 
 /// Length of the head (uint32), the head (JSON, padded with blanks to a multiple of four), the numbers as float32; all
@@ -122,7 +122,7 @@ struct LiveState {
 };
 [[nodiscard]] std::string state_text(const LiveState& state);
 [[nodiscard]] std::string refused_text(const Refusal& refusal);
-/// map: as runs::PageDocument tells it
+/// map: as runs::PageDocument writes it
 [[nodiscard]] std::string map_text(std::string_view map);
 
 /// Are both the same? Takes as long wherever they differ.

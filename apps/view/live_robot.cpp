@@ -13,8 +13,8 @@ namespace {
 
 using Clock = std::chrono::steady_clock;
 
-// how long what is under way may still take when something newer is asked for; the little for searches lets them come
-// on where requests never end [s]
+// time that work in progress may still take once a newer request arrives; the short one for searches lets them advance
+// where requests never end [s]
 constexpr double patience_of_solves = 0.3, patience_of_searches = 0.05;
 
 double seconds_since(Clock::time_point begin) {
@@ -41,7 +41,7 @@ std::vector<std::optional<double>> measures_of(const Model& model, const State& 
   return measures;
 }
 
-/// How a shape that stays stands to a target that was asked for.
+/// Returns the distance of an unchanged shape from a requested target.
 TargetAnswer target_answer(const Model& model, const TargetRequest& request, const Points& positions) {
   const Vec3 place = model.markers[request.marker].at(positions);
   return {request.marker, request.at, (place - request.at).norm(), false, ""};
@@ -136,7 +136,7 @@ void LiveRobot::work() {
   changed_.notify_all();
 }
 
-/// Whatever goes wrong is told in a frame; the robot stays where it is.
+/// Every failure is reported in a frame; the robot keeps its shape.
 void LiveRobot::answer(const LiveRequest& request) {
   try {
     std::visit(
@@ -147,7 +147,7 @@ void LiveRobot::answer(const LiveRequest& request) {
           else if constexpr (std::is_same_v<What, TargetRequest>)
             search(what, request.asker);
           else
-            tell(what, request.asker);
+            send(what, request.asker);
         },
         request.what);
   } catch (const std::exception& error) {
@@ -155,7 +155,7 @@ void LiveRobot::answer(const LiveRequest& request) {
     shape.id = std::visit([](const auto& what) { return what.id; }, request.what);
     shape.status = name_of(Status::not_converged);
     shape.remark = error.what();
-    if (std::holds_alternative<ReadingsRequest>(request.what)) shape.estimate = nothing_told_text(error.what());
+    if (std::holds_alternative<ReadingsRequest>(request.what)) shape.estimate = nothing_reported_text(error.what());
     say(request.asker, std::move(shape));
   }
 }
@@ -242,27 +242,27 @@ void LiveRobot::search(const TargetRequest& request, std::uint64_t asker) {
   }
 }
 
-/// The shape is that which was told, with its forces.
-void LiveRobot::tell(const ReadingsRequest& request, std::uint64_t asker) {
-  if (estimator_ == nullptr) throw InvalidInput("nothing is told of this robot");
-  const Estimate& told = estimator_->tell(asker, request, [this](const Progress&) { return !is_stopped(); });
-  if (told.status == Status::interrupted) return;
+/// Sends the estimated shape, with its forces.
+void LiveRobot::send(const ReadingsRequest& request, std::uint64_t asker) {
+  if (estimator_ == nullptr) throw InvalidInput("nothing is estimated of this robot");
+  const Estimate& reported = estimator_->send(asker, request, [this](const Progress&) { return !is_stopped(); });
+  if (reported.status == Status::interrupted) return;
   std::optional<LiveShape> shape;
-  if (told.status == Status::converged) {
-    Equilibrium found{told.state, told.actuation, {}};
-    found.report.status = told.status;
-    found.report.iterations = told.iterations;
-    found.report.seconds = told.seconds;
+  if (reported.status == Status::converged) {
+    Equilibrium found{reported.state, reported.actuation, {}};
+    found.report.status = reported.status;
+    found.report.iterations = reported.iterations;
+    found.report.seconds = reported.seconds;
     shape = live_shape(statics_, page_, found);
     if (shape) stand(std::move(found), std::move(*shape));
   }
   LiveShape answer = shape_;
   answer.id = request.id;
-  answer.estimate = estimator_->told_text(told);
+  answer.estimate = estimator_->reported_text(reported);
   if (!shape) {
-    answer.status = name_of(told.status);
-    answer.remark = told.remark;
-    answer.seconds = told.seconds;
+    answer.status = name_of(reported.status);
+    answer.remark = reported.remark;
+    answer.seconds = reported.seconds;
   }
   say(asker, std::move(answer));
 }

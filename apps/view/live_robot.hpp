@@ -15,9 +15,9 @@
 
 namespace softkin::view {
 
-/// What a robot is asked for.
+/// A request to the robot.
 struct LiveRequest {
-  std::uint64_t asker = 0;  // who has control, for who gets the answer
+  std::uint64_t asker = 0;  // who has control and gets the answer
   std::variant<CommandRequest, TargetRequest, ReadingsRequest> what;
 };
 
@@ -33,30 +33,30 @@ struct LiveAnswer {
 [[nodiscard]] std::optional<LiveShape> live_shape(const Statics& statics, const runs::PageDocument& page,
                                                   const Equilibrium& found);
 
-/// A robot that is bent while it is asked: a thread that solves the newest request, each from the last equilibrium.
+/// A robot that deforms interactively: a thread solves the newest request, each from the last equilibrium.
 ///
-/// Where something newer is asked for, a search for a target ends, and so does an equilibrium that takes longer than
-/// 0.3 s; neither is answered then. What does not converge is answered with the last shape that did. What is out of
-/// reach is answered at once from the last shape, and again where another start then finds better. What is told from
-/// readings is told to its end, so that a stream that is faster than the solver is answered, too.
+/// A newer request ends a search for a target, and an equilibrium that takes longer than 0.3 s; neither is answered
+/// then. A solve that does not converge is answered with the last shape that did. A target out of reach is answered at
+/// once from the last shape, and again where another start then finds a better one. An estimate from readings is always
+/// completed, so that a stream that is faster than the solver is answered, too.
 class LiveRobot {
  public:
   /// Called by the robot's thread for every answer.
   using Publish = std::function<void(std::shared_ptr<const LiveAnswer>)>;
 
-  /// All must outlive the object. rest: an equilibrium, where it begins; page: of the same model; estimator: tells from
-  /// readings, none: those are answered by an error
+  /// All must outlive the object. rest: the equilibrium to begin from; page: of the same model; estimator: estimates
+  /// from readings; null: readings are answered by an error
   LiveRobot(const Statics& statics, const runs::PageDocument& page, const StaticsOptions& options, Equilibrium rest,
             Publish publish, LiveEstimator* estimator = nullptr);
   ~LiveRobot();
   LiveRobot(const LiveRobot&) = delete;
   LiveRobot& operator=(const LiveRobot&) = delete;
 
-  /// Instead of what was asked before and is not begun. May be called on any thread.
+  /// Replaces a request that has not begun. May be called on any thread.
   void ask(LiveRequest request);
 
-  /// No further answers. false: the solver has not ended within so many seconds, and the object cannot be destroyed
-  /// before it does.
+  /// Ends the answers. false: the solver has not ended within these seconds, and the object cannot be destroyed before
+  /// it does.
   bool stop(double seconds);
 
  private:
@@ -64,7 +64,7 @@ class LiveRobot {
   void answer(const LiveRequest& request);
   void solve(const CommandRequest& request, std::uint64_t asker);
   void search(const TargetRequest& request, std::uint64_t asker);
-  void tell(const ReadingsRequest& request, std::uint64_t asker);
+  void send(const ReadingsRequest& request, std::uint64_t asker);
   [[nodiscard]] InverseResult searched(const std::vector<Goal>& goals, int other_starts) const;
   [[nodiscard]] ProgressCallback patience(double seconds) const;
   [[nodiscard]] bool has_newer() const;

@@ -12,7 +12,7 @@ namespace softkin::view {
 
 namespace {
 
-constexpr std::size_t refused_at_once = 64;  // connections that are only told that there are too many
+constexpr std::size_t refused_at_once = 64;  // connections that only receive the error that there are too many
 constexpr auto sweep_every = std::chrono::milliseconds(250);
 
 }  // namespace
@@ -53,9 +53,9 @@ struct LiveServer::Parts : Host {
     if (connection.has_secret() && control_.holder == nullptr && !control_.lent) {
       give_control(&connection);
     } else {
-      connection.tell_state();  // the others with the next sweep
+      connection.report_state();  // the others with the next sweep
     }
-    if (map_) connection.tell(map_);
+    if (map_) connection.send(map_);
     if (current_) connection.show(nobodys_frame());
   }
 
@@ -93,7 +93,7 @@ struct LiveServer::Parts : Host {
     ++control_.turn;
     for (Connection* each : greeted_) {
       if (each->has_frame()) each->show(nobodys_frame());  // its number is of another's request
-      each->tell_state();
+      each->report_state();
     }
   }
 
@@ -103,7 +103,7 @@ struct LiveServer::Parts : Host {
     give_control(lent ? nullptr : std::exchange(control_.lender, nullptr));
   }
 
-  /// The shape for who did not ask for it.
+  /// The shape for clients that did not request it.
   Bytes nobodys_frame() {
     if (!nobodys_frame_) nobodys_frame_ = std::make_shared<const std::string>(frame_bytes(current_->shape, 0));
     return nobodys_frame_;
@@ -112,9 +112,10 @@ struct LiveServer::Parts : Host {
   void take_shape(std::shared_ptr<const LiveAnswer> answer) {
     current_ = std::move(answer);
     nobodys_frame_.reset();
-    const bool asked = control_.holder != nullptr && current_->asker == control_.turn;
-    const Bytes frame =
-        asked ? std::make_shared<const std::string>(frame_bytes(current_->shape, current_->shape.id)) : nobodys_frame();
+    const bool requested = control_.holder != nullptr && current_->asker == control_.turn;
+    const Bytes frame = requested
+                            ? std::make_shared<const std::string>(frame_bytes(current_->shape, current_->shape.id))
+                            : nobodys_frame();
     if (control_.holder != nullptr) control_.holder->show(frame);
     for (Connection* each : greeted_)
       if (each != control_.holder) each->show(frame);
@@ -122,7 +123,7 @@ struct LiveServer::Parts : Host {
 
   void take_map(Bytes text) {
     map_ = std::move(text);
-    for (Connection* each : greeted_) each->tell(map_);
+    for (Connection* each : greeted_) each->send(map_);
   }
 
   void accept() {
@@ -152,9 +153,9 @@ struct LiveServer::Parts : Host {
       const auto now = Clock::now();
       for (const auto* set : {&connections_, &refused_})
         for (const auto& each : std::vector(set->begin(), set->end())) each->sweep(now);
-      if (const Presence there = presence(); there != told_) {
-        told_ = there;
-        for (Connection* each : greeted_) each->tell_state();
+      if (const Presence there = presence(); there != reported_) {
+        reported_ = there;
+        for (Connection* each : greeted_) each->report_state();
         if (notice_) notice_(there);
       }
       sweep();
@@ -187,16 +188,16 @@ struct LiveServer::Parts : Host {
   Notice notice_;
 
   Connections connections_, refused_;
-  /// Who says what the robot does.
+  /// The client that controls the robot.
   struct Control {
     Connection* holder = nullptr;
     Connection* lender = nullptr;  // had control before the robot was lent
     bool lent = false;             // to a stream of readings
-    std::uint64_t turn = 0;        // counts who had control
+    std::uint64_t turn = 0;        // counts changes of control
   };
   Control control_;
   std::set<Connection*> greeted_;  // of connections_
-  Presence told_;
+  Presence reported_;
   std::shared_ptr<const LiveAnswer> current_;
   Bytes nobodys_frame_;
   Bytes map_;  // that was made meanwhile

@@ -50,7 +50,7 @@ class LineReader {
   }
 
   [[nodiscard]] ReadingsRequest line(std::optional<double> after) {
-    if (columns_.timed && !line_.time_s) throw Refusal("t_s is missing: what was told fades in time");
+    if (columns_.timed && !line_.time_s) throw Refusal("t_s is missing: estimates fade in time");
     if (after && line_.time_s && !(*line_.time_s > *after)) throw Refusal("t_s must increase from line to line");
     if (line_.values.array().isNaN().all()) throw Refusal("every reading is missing");
     return std::move(line_);
@@ -71,12 +71,12 @@ class LineReader {
   void take_command(const std::string& key, Index actuator, const Json& value) {
     const std::size_t at = actuator;
     const Actuator& of = columns_.model.actuators[at];
-    if (std::find(columns_.told.begin(), columns_.told.end(), actuator) != columns_.told.end())
-      throw Refusal(key + " is to be told: leave it out");
+    if (std::find(columns_.reported.begin(), columns_.reported.end(), actuator) != columns_.reported.end())
+      throw Refusal(key + " is to be estimated: leave it out");
     if (key != of.name && key != command_column(of))
       throw Refusal(key + " is no command of '" + of.name + "': its column is '" + command_column(of) + "'");
     if (commanded_[at]) throw Refusal(key + ": another key commands the same");
-    if (value.is_null()) throw Refusal(key + " is a command: leave it out where it rests, or let it be told");
+    if (value.is_null()) throw Refusal(key + " is a command: leave it out where it rests, or let it be estimated");
     commanded_[at] = true;
     const double command = finite_at(key, value);
     check_command(of, command);
@@ -97,8 +97,9 @@ class LineReader {
 
 }  // namespace
 
-LineColumns::LineColumns(const Model& of, std::vector<PoseColumn> columns, std::vector<Index> are_told, bool is_timed)
-    : model(of), readings(std::move(columns)), told(std::move(are_told)), timed(is_timed) {
+LineColumns::LineColumns(const Model& of, std::vector<PoseColumn> columns, std::vector<Index> are_reported,
+                         bool is_timed)
+    : model(of), readings(std::move(columns)), reported(std::move(are_reported)), timed(is_timed) {
   for (std::size_t r = 0; r < readings.size(); ++r) {
     by_name.emplace(readings[r].name, static_cast<Index>(r));
     // as tables have it: x_mm of the only marker

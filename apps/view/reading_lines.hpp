@@ -11,7 +11,7 @@
 
 namespace softkin::view {
 
-// What is streamed to a robot whose readings are told from: JSON, a line each; nothing here knows the network.
+// The lines of a stream of readings to estimate from: JSON, an object a line; independent of the network.
 
 /// A line is no longer than this [bytes], without its end.
 inline constexpr std::size_t longest_line = 65536;
@@ -20,13 +20,13 @@ inline constexpr std::size_t longest_line = 65536;
 struct LineColumns {
   /// model     must outlive the object
   /// readings  its columns that may be read
-  /// told      commands that are told, which no line has
+  /// reported  commands that are estimated, which no line has
   /// timed     must every line have t_s?
-  LineColumns(const Model& model, std::vector<PoseColumn> readings, std::vector<Index> told, bool timed);
+  LineColumns(const Model& model, std::vector<PoseColumn> readings, std::vector<Index> reported, bool timed);
 
   const Model& model;
   std::vector<PoseColumn> readings;
-  std::vector<Index> told;
+  std::vector<Index> reported;
   bool timed;
   std::map<std::string, Index, std::less<>> by_name{};  // of the readings
 };

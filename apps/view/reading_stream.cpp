@@ -22,12 +22,12 @@ using net::ip::tcp;
 using ErrorCode = boost::system::error_code;
 
 constexpr auto look_every = std::chrono::milliseconds(250);
-constexpr double longest_answer_s = 600;                        // to who has said all
+constexpr double longest_answer_s = 600;                        // to a writer that has sent all
 constexpr std::uint64_t first_writer = std::uint64_t{1} << 63;  // askers below it are pages
 
 class Writer;
 
-/// What connections need of who accepted them.
+/// The interface of a connection to the stream that accepted it.
 class WriterHost {
  public:
   virtual ~WriterHost() = default;
@@ -36,8 +36,8 @@ class WriterHost {
   /// Throws Refusal: another token, or another one writes.
   virtual void let_in(Writer& writer, const std::string& token) = 0;
   virtual void ask(ReadingsRequest request) = 0;
-  /// Is every line of the one who writes told, or passed over?
-  [[nodiscard]] virtual bool has_told_all() const = 0;
+  /// Is every line of the current writer estimated or passed over?
+  [[nodiscard]] virtual bool has_reported_all() const = 0;
   virtual void retire(Writer& writer) = 0;  // it is ending: it streams no more
   virtual void leave(const std::shared_ptr<Writer>& writer) = 0;
 };
@@ -53,13 +53,13 @@ class Writer : public std::enable_shared_from_this<Writer> {
 
   void begin() { read(); }
 
-  /// Of readings that were told; in the place of one that waits.
+  /// Sends an estimate, in place of one that still waits.
   void show(std::string line) {
-    told_ = std::move(line);
+    reported_ = std::move(line);
     write();
   }
 
-  /// The rest of what is to be said is said, and it ends.
+  /// Writes the pending lines, then ends.
   void end() {
     if (std::exchange(ending_, true)) return;
     since_ = Clock::now();
@@ -95,7 +95,7 @@ class Writer : public std::enable_shared_from_this<Writer> {
     if (ending_) return;
     if (error == net::error::not_found)  // the buffer is full
       return refuse("a line is at most " + std::to_string(longest_line) + " bytes long", true);
-    if (error == net::error::eof && let_in_) {  // what it asked is still answered
+    if (error == net::error::eof && let_in_) {  // its last line is still answered
       has_said_all_ = true;
       since_ = Clock::now();
       if (!text_.empty()) take_line(std::exchange(text_, ""));
@@ -136,17 +136,17 @@ class Writer : public std::enable_shared_from_this<Writer> {
     write();
   }
 
-  /// Errors first; nothing while something is on its way.
+  /// Writes errors first; does nothing while a write is in progress.
   void write() {
     if (writing_) return;
     if (!errors_.empty()) {
       writes_ = std::move(errors_.front()) + "\n";
       errors_.pop_front();
-    } else if (told_) {
-      writes_ = *std::exchange(told_, std::nullopt) + "\n";
+    } else if (reported_) {
+      writes_ = *std::exchange(reported_, std::nullopt) + "\n";
     } else {
       if (ending_) return hang_up();
-      if (has_said_all_ && host_.has_told_all()) end();
+      if (has_said_all_ && host_.has_reported_all()) end();
       return;
     }
     writing_ = true;
@@ -170,12 +170,12 @@ class Writer : public std::enable_shared_from_this<Writer> {
   WriterHost& host_;
   tcp::socket socket_;
   Allowance lines_;
-  std::string text_;                 // that was read, and is not yet taken
-  std::array<char, 4096> rest_{};    // that is not read for what it says; text_ may still be waited for
-  std::string writes_;               // that is on its way
-  std::deque<std::string> errors_;   // fewer than the refusals that end it
-  std::optional<std::string> told_;  // the newest
-  std::optional<double> last_s_;     // of the line before
+  std::string text_;                     // that was read, and is not yet processed
+  std::array<char, 4096> rest_{};        // input that is discarded; text_ may still be pending
+  std::string writes_;                   // that is being written
+  std::deque<std::string> errors_;       // fewer than the refusals that end it
+  std::optional<std::string> reported_;  // the newest
+  std::optional<double> last_s_;         // of the line before
   int refusals_ = 0;
   bool let_in_ = false, has_said_all_ = false, writing_ = false, ending_ = false;
   Clock::time_point opened_ = Clock::now(), since_{};  // since_: a write began, or an end
@@ -205,18 +205,18 @@ struct ReadingStream::Parts : WriterHost {
     if (writer_ != nullptr) throw Refusal("another one streams readings");
     writer_ = &writer;
     ++asker_;
-    asked_ = told_ = 0;
+    requested_ = reported_ = 0;
     times_.clear();
     lend_(true);
   }
 
   void ask(ReadingsRequest request) override {
-    request.id = ++asked_;
+    request.id = ++requested_;
     times_.emplace_back(request.id, request.time_s);
     ask_({asker_, std::move(request)});
   }
 
-  [[nodiscard]] bool has_told_all() const override { return told_ == asked_; }
+  [[nodiscard]] bool has_reported_all() const override { return reported_ == requested_; }
 
   void retire(Writer& writer) override {
     if (writer_ != &writer) return;
@@ -237,7 +237,7 @@ struct ReadingStream::Parts : WriterHost {
       time_s = times_.front().second;
       times_.pop_front();
     }
-    writer_->show(stream_line(answer.shape.estimate, time_s, id - std::exchange(told_, id) - 1));
+    writer_->show(stream_line(answer.shape.estimate, time_s, id - std::exchange(reported_, id) - 1));
   }
 
   void accept() {
@@ -284,8 +284,8 @@ struct ReadingStream::Parts : WriterHost {
   std::set<std::shared_ptr<Writer>> writers_;  // with those that have shown no token
   Writer* writer_ = nullptr;                   // of them, that streams
   std::uint64_t asker_ = first_writer;
-  RequestId asked_ = 0, told_ = 0;                                 // of this writer's lines, the last
-  std::deque<std::pair<RequestId, std::optional<double>>> times_;  // of those that are asked about
+  RequestId requested_ = 0, reported_ = 0;                         // of this writer's lines, the last
+  std::deque<std::pair<RequestId, std::optional<double>>> times_;  // of the requests without an answer
   bool stopping_ = false;
   std::thread thread_;
 };

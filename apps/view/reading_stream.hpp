@@ -9,7 +9,7 @@
 
 namespace softkin::view {
 
-/// How much a stream bears with. Seconds where a name ends in _s.
+/// The limits of a stream. Seconds where a name ends in _s.
 struct StreamLimits {
   std::size_t connections = 16;  // more are closed
   double lines_per_second = 1000, lines_at_once = 1000;
@@ -18,12 +18,12 @@ struct StreamLimits {
   double stalled_s = 30;  // in which no byte of what is written is taken
 };
 
-/// Takes readings at 127.0.0.1, a JSON line each, from one writer at a time, on a thread of its own. The newest line is
-/// asked about; answers go back as lines. Whoever is slow to read gets fewer of them, the newest ones.
+/// Takes readings at 127.0.0.1, a JSON line each, from one writer at a time, on a thread of its own. Requests an
+/// estimate from the newest line; answers go back as lines. A slow reader gets fewer of them, the newest ones.
 class ReadingStream {
  public:
   using Ask = std::function<void(LiveRequest)>;
-  /// Called with true when a writer has shown the token, with false when it has gone.
+  /// Called with true when a writer has shown the token, with false when it has disconnected.
   using Lend = std::function<void(bool)>;
 
   /// Listens.
@@ -42,12 +42,12 @@ class ReadingStream {
   ///
   /// columns  of its lines
   /// token    that a writer must show; not empty
-  /// ask      takes what is to be told, with an asker that no page has, another for each writer
+  /// ask      receives the requests, with an asker that no page has, a new one for each writer
   void begin(LineColumns columns, std::string token, Ask ask, Lend lend);
 
   // May be called on any thread.
 
-  /// What was told. Answers to others do not count.
+  /// Sends an estimate to the writer. Answers to others are ignored.
   void answer(std::shared_ptr<const LiveAnswer> answer);
   /// Closes all connections, and ends.
   void stop();

@@ -40,23 +40,23 @@ struct ViewOptions : SolveOptions {
   EstimateOptions estimate;
   std::optional<int> readings_port;
 
-  [[nodiscard]] bool tells() const { return !estimate.unknowns.empty(); }
+  [[nodiscard]] bool reports() const { return !estimate.unknowns.empty(); }
 };
 
-/// What is told of a robot needs an unknown, and what an unknown needs is not bent by a map.
+/// Options of estimation need an unknown, and estimation excludes a map that bends the robot in the page.
 void check_telling(const ViewOptions& options) {
   const auto refuse = [](const std::string& why) { throw InvalidInput(why); };
-  if (options.tells()) {
+  if (options.reports()) {
     if (!options.map.empty() || options.make_map)
       refuse(std::string(options.make_map ? "--make-map" : "--map") +
-             ": what is told of --unknown is told by the solver alone; leave out one of them");
+             ": --unknown is estimated by the solver alone; leave out one of them");
     return;
   }
   for (std::size_t k = 0; k < readings; ++k)
-    if (options.estimate.deviations[k]) refuse(deviation_names()[k] + ": it needs --unknown, what is to be told");
-  if (options.estimate.fade_s > 0) refuse("--fade: it needs --unknown, what is to be told");
-  if (options.estimate.keep_all) refuse("--keep-all: it needs --unknown, what is to be told");
-  if (options.readings_port) refuse("--readings-port: it needs --unknown, what is to be told");
+    if (options.estimate.deviations[k]) refuse(deviation_names()[k] + ": it needs --unknown, the number to estimate");
+  if (options.estimate.fade_s > 0) refuse("--fade: it needs --unknown, the number to estimate");
+  if (options.estimate.keep_all) refuse("--keep-all: it needs --unknown, the number to estimate");
+  if (options.readings_port) refuse("--readings-port: it needs --unknown, the number to estimate");
 }
 
 void add_view_options(CLI::App& command, ViewOptions& options) {
@@ -71,7 +71,7 @@ void add_view_options(CLI::App& command, ViewOptions& options) {
   command.add_flag("--no-open", options.no_open, "Start no browser");
   add_unknowns(command, options.estimate);
   add_deviations(command, options.estimate.deviations);
-  add_fade(command, options.estimate, "readings\ngo on from each other (default: each tell by themselves)");
+  add_fade(command, options.estimate, "readings\nstart from each other (default: each is estimated by itself)");
   add_value(
       command, "--readings-port", options.readings_port, "N",
       "Take readings at 127.0.0.1 too, as JSON lines with the columns of\n`softkin estimate` (0: at any port that "
@@ -81,7 +81,7 @@ void add_view_options(CLI::App& command, ViewOptions& options) {
   add_solver(command, options);
 }
 
-/// What nobody guesses: 128 bits, hexadecimal.
+/// Returns a random secret: 128 bits, hexadecimal.
 std::string fresh_secret() {
   unsigned char bytes[16];
   if (::getrandom(bytes, sizeof bytes, 0) != static_cast<ssize_t>(sizeof bytes))
@@ -94,8 +94,8 @@ std::string fresh_secret() {
   return text;
 }
 
-/// Starts what opens addresses on this desktop, where there is one; tells where that fails. In a group of its own:
-/// Ctrl-C is not for the browser.
+/// Starts the desktop's program for addresses, where there is one; reports where that fails. It runs in a process group
+/// of its own: Ctrl-C does not reach the browser.
 void open_browser(const std::string& address) {
   if (std::getenv("DISPLAY") == nullptr && std::getenv("WAYLAND_DISPLAY") == nullptr) return;
   posix_spawn_file_actions_t files;
@@ -125,19 +125,19 @@ std::string fingerprint_of(const Model& model, const ViewOptions& options) {
   const std::string solver = options.solver_name + " " + exact(options.tolerance_mm) + " " +
                              std::to_string(options.max_iterations) + " " + std::to_string(options.statics().anderson) +
                              (options.stable ? " stable" : "");
-  std::string told = exact(options.estimate.fade_s) + (options.estimate.keep_all ? " all" : "");
-  for (const std::string& unknown : options.estimate.unknowns) told += " " + unknown;
-  for (const double deviation : options.estimate.asked_deviations()) told += " " + exact(deviation);
+  std::string reported = exact(options.estimate.fade_s) + (options.estimate.keep_all ? " all" : "");
+  for (const std::string& unknown : options.estimate.unknowns) reported += " " + unknown;
+  for (const double deviation : options.estimate.requested_deviations()) reported += " " + exact(deviation);
   return view::fingerprint_of_texts({SOFTKIN_VERSION, softkin::fingerprint_of(model), solver,
-                                     options.map.empty() ? "" : read_file(options.map), told});
+                                     options.map.empty() ? "" : read_file(options.map), reported});
 }
 
 /// The shape at rest; Ctrl-C ends the search for it.
 Equilibrium at_rest(const Statics& statics, const StaticsOptions& options) {
   ProgressLine line;
-  EquilibriumProgress share;
+  EquilibriumProgress fraction;
   return statics.solve(statics.model().rest_actuation(), statics.rest(), options, [&](const Progress& p) {
-    line.show(share.share(p), EquilibriumProgress::text(p));
+    line.show(fraction.fraction(p), EquilibriumProgress::text(p));
     return !interrupted();
   });
 }
@@ -174,10 +174,10 @@ class ViewRun {
   ViewRun(const Model& model, const ViewOptions& options)
       : model_(model), options_(options), statics_(model), document_(model, runs::kept_command()) {
     if (!options.map.empty()) map_.emplace(runs::read_map_of(model, options.map));
-    if (options.tells())
-      estimator_.emplace(
-          model, view::estimate_setup(model, options.estimate.asked_unknowns(), options.estimate.asked_deviations(),
-                                      deviation_names(), options.estimate.how(options.statics())));
+    if (options.reports())
+      estimator_.emplace(model, view::estimate_setup(model, options.estimate.requested_unknowns(),
+                                                     options.estimate.requested_deviations(), deviation_names(),
+                                                     options.estimate.how(options.statics())));
   }
 
   /// stream: of readings; null: none
@@ -207,9 +207,9 @@ class ViewRun {
           server.show(std::move(answer));
         },
         estimator_ ? &*estimator_ : nullptr);
-    std::string told = "view: " + address + "\n";
-    if (stream != nullptr) told += begin(*stream, server, robot);
-    print(told + "Ctrl-C ends it; whoever has the address bends the robot\n");
+    std::string reported = "view: " + address + "\n";
+    if (stream != nullptr) reported += begin(*stream, server, robot);
+    print(reported + "Ctrl-C ends it; anyone who has the address can bend the robot\n");
     if (!options_.no_open) open_browser(address);
     ServingLine line;
     std::optional<view::BackgroundMap> maker;
@@ -236,7 +236,7 @@ class ViewRun {
   std::string begin(view::ReadingStream& stream, view::LiveServer& server, view::LiveRobot& robot) {
     const std::string token = fresh_secret();
     stream.begin(
-        {model_, estimator_->columns(), estimator_->told_actuators(), estimator_->fades()}, token,
+        {model_, estimator_->columns(), estimator_->reported_actuators(), estimator_->fades()}, token,
         [&robot](view::LiveRequest request) { robot.ask(std::move(request)); },
         [&server](bool lent) { server.lend(lent); });
     return "readings: JSON lines at 127.0.0.1:" + std::to_string(stream.port()) + ", the first {\"token\": \"" + token +
@@ -279,7 +279,7 @@ int run_view(const ViewOptions& options) {
   std::vector<fs::path> inputs{options.scene};
   ProgressLine line;
   line.show(-1, "reading the scene");
-  const Model model = asked_robot(options, inputs);
+  const Model model = requested_robot(options, inputs);
   line.show(-1, "assembling");
   ViewRun run(model, options);
   line.clear();
@@ -291,15 +291,16 @@ int run_view(const ViewOptions& options) {
 }  // namespace
 
 void add_view_command(CLI::App& app, Run& run) {
-  add_command(app, run, "view", "The robot live in a browser: bent while it is dragged, by the solver",
-              "Serves a page at 127.0.0.1 until Ctrl-C. Who opens the printed address has control; who opens it "
-              "without what\n"
-              "follows the # only watches. With --unknown the page tells what pushes the robot, from what was read.\n"
-              "Exit code: 0 ended by Ctrl-C, 1 no equilibrium at rest, 2 bad usage or bad input.\n"
-              "Examples:\n"
-              "  softkin view examples/pneumatic_finger/pneumatic_finger.yaml\n"
-              "  softkin view examples/estimate/finger.yaml --unknown touch:place --deviation 0.2     # what pushes it",
-              add_view_options, run_view);
+  add_command(
+      app, run, "view", "The robot live in a browser: bent while it is dragged, by the solver",
+      "Serves a page at 127.0.0.1 until Ctrl-C. Who opens the printed address has control; who opens it "
+      "without what\n"
+      "follows the # only watches. With --unknown the page shows the forces on the robot, estimated from readings.\n"
+      "Exit code: 0 ended by Ctrl-C, 1 no equilibrium at rest, 2 bad usage or bad input.\n"
+      "Examples:\n"
+      "  softkin view examples/pneumatic_finger/pneumatic_finger.yaml\n"
+      "  softkin view examples/estimate/finger.yaml --unknown touch:place --deviation 0.2     # forces on it",
+      add_view_options, run_view);
 }
 
 }  // namespace softkin::cli

@@ -1,4 +1,4 @@
-"""What softkin.measure finds in pictures and films."""
+"""Results of softkin.measure for pictures and films."""
 
 from __future__ import annotations
 
@@ -59,7 +59,7 @@ class Specimen:
 
 @dataclass(frozen=True)
 class Stretch:
-    """What stretching did to a specimen, against the first picture, with standard errors."""
+    """The changes of a stretched specimen relative to the first picture, with standard errors."""
 
     elongation_mm: float
     """Delta L"""
@@ -87,7 +87,7 @@ class Outline:
 
 @dataclass(frozen=True)
 class Picture:
-    """What a picture shows."""
+    """The markers, angles, specimen and outline that were found in a picture."""
 
     name: str
     markers: dict[str, MarkerPlace]
@@ -98,7 +98,7 @@ class Picture:
 
 
 class _Measured:
-    """What pictures and films have in common."""
+    """The base class of the results for pictures and films."""
 
     _core: _vision.PhotoSeries | _vision.FilmTrack
 
@@ -145,7 +145,7 @@ class Pictures(_Measured, Sequence[Picture]):
 
     @cached_property
     def _pictures(self) -> list[Picture]:
-        return [_picture(told) for told in self.report["pictures"]]
+        return [_picture(entry) for entry in self.report["pictures"]]
 
     def __len__(self) -> int:
         return len(self._pictures)
@@ -166,7 +166,7 @@ class Pictures(_Measured, Sequence[Picture]):
     def stretches(self) -> list[Stretch]:
         """Of a specimen: the pictures after the first against it."""
         keys = ("dl_mm", "dL_error_mm", "dl1_mm", "dL1_error_mm", "E_A_by_E_B", "E_A_by_E_B_error")
-        return [Stretch(*(told[key] for key in keys)) for told in self.report.get("stretches", ())]
+        return [Stretch(*(entry[key] for key in keys)) for entry in self.report.get("stretches", ())]
 
     def __repr__(self) -> str:
         return repr(self.table)
@@ -175,25 +175,25 @@ class Pictures(_Measured, Sequence[Picture]):
         return self.table._repr_html_()
 
 
-def _picture(told: Mapping[str, Any]) -> Picture:
+def _picture(entry: Mapping[str, Any]) -> Picture:
     markers = {
         name: MarkerPlace(np.array([at["x_mm"], at["y_mm"]]), at["error_mm"], np.array([at["x_px"], at["y_px"]]))
-        for name, at in told.get("markers", {}).items()
+        for name, at in entry.get("markers", {}).items()
     }
-    angles = {name: Angle(at["degrees"], at["error_deg"]) for name, at in told.get("angles", {}).items()}
+    angles = {name: Angle(at["degrees"], at["error_deg"]) for name, at in entry.get("angles", {}).items()}
     keys = ("l_mm", "L_error_mm", "l1_mm", "L1_error_mm", "interface_deg", "interface_error_deg", "axis_deg")
-    seen = told.get("specimen")
+    seen = entry.get("specimen")
     specimen = None if seen is None else Specimen(*(seen[key] for key in keys))
-    around = told.get("outline")
+    around = entry.get("outline")
     outline = None
     if around is not None:
         points = np.array([around["x_mm"], around["y_mm"]]).T
         outline = Outline(points, around["length_mm"], around["area_mm2"], around["cut"])
-    return Picture(told["picture"], markers, angles, specimen, outline)
+    return Picture(entry["picture"], markers, angles, specimen, outline)
 
 
 class Track(_Measured):
-    """The way of a film's markers: one row a frame that shows them all."""
+    """The trajectories of a film's markers: one row for each frame that shows all of them."""
 
     _core: _vision.FilmTrack
 
@@ -238,7 +238,7 @@ class Track(_Measured):
 
     @property
     def left_out(self) -> list[str]:
-        """Why each frame is that was left out; the command's exit code is 1 where there is one."""
+        """For each omitted frame, the reason; the command's exit code is 1 where a frame was omitted."""
         return list(self.report["left_out"])
 
     def __repr__(self) -> str:

@@ -1,4 +1,4 @@
-"""What shapes measure."""
+"""Quantities that shapes report."""
 
 from __future__ import annotations
 
@@ -16,10 +16,10 @@ class ActuatorState:
 
     name: str
     kind: str
-    """'pneumatic', 'cable', 'dea', 'magnetic' or 'growth'; of surroundings 'motion', 'force' or 'hold',
-    'turn' of what holds it"""
+    """'pneumatic', 'cable', 'dea', 'magnetic' or 'growth'; of surroundings 'motion', 'force' or 'hold';
+    'turn' of a support"""
     requested: float
-    """what was commanded, in `unit`"""
+    """the command, in `unit`"""
     unit: str
     """'kPa', 'N', 'kV', 'mL', 'mT', 'A', 'mm', 'A m^2', 'deg' or 'degC'; '' for a ratio to rest [-]"""
     ratio: float
@@ -29,9 +29,9 @@ class ActuatorState:
     load: float | None
     """gauge pressure [kPa], tension [N] or voltage [kV]; None where the formulation or the kind has none"""
     by_curve: float | None
-    """what the actuator's curve asks for: gauge pressure [kPa] or voltage [kV]"""
+    """the load that the actuator's curve predicts: gauge pressure [kPa] or voltage [kV]"""
     slack: bool
-    """a cable that carries nothing because its path is shorter than it"""
+    """a cable without tension, because its path is shorter than the cable"""
     charge_nC: float | None = None
     """on the electrodes of a dea under voltage [nC]; else None"""
     capacitance_pF: float | None = None
@@ -39,9 +39,9 @@ class ActuatorState:
     field_kV_mm: float | None = None
     """the largest true field in its layer [kV/mm]"""
     end_tension_N: float | None = None
-    """of a cable that rubs, at its far end [N]; `load` is that at the motor"""
+    """tension of a cable with friction at its far end [N]; `load` is the tension at the motor"""
     sticking: float | None = None
-    """the share of its friction in which it sticks [-]"""
+    """fraction of its friction in the sticking state [-]"""
     amount_mL: float | None = None
     """of a sealed chamber: its gas or liquid, that in its syringe and dead volume with it [mL under atmospheric
     pressure]; else None"""
@@ -52,7 +52,7 @@ class ActuatorState:
         if self.kind != kind:
             raise AttributeError(f"actuator {self.name!r} is a {self.kind}: it has no {what}")
         if self.load is None:
-            why = "its area is controlled" if what == "voltage" else "only the physical formulation knows it"
+            why = "its area is controlled" if what == "voltage" else "only the physical formulation computes it"
             raise AttributeError(f"actuator {self.name!r} has no {what}: {why}")
         return self.load
 
@@ -114,76 +114,76 @@ class Reaction:
 
 @dataclass(frozen=True)
 class MagneticLoad:
-    """What magnetic fields do to the robot."""
+    """The force and moment that magnetic fields exert on the robot."""
 
     force_N: Floats
     """(3,) [N]"""
     moment_Nmm: Floats
     """(3,) about `center_mm` [N mm]"""
     center_mm: Floats
-    """(3,) of the volume of what is magnetic, where it is [mm]"""
+    """(3,) centroid of the magnetic volume in the deformed shape [mm]"""
 
 
 @dataclass(frozen=True)
 class Fibre:
-    """What a thread in the body carries."""
+    """The tension in an embedded fibre."""
 
     name: str
     mean_N: float
-    """tension along it, the mean [N]; below 0: pressed"""
+    """mean tension along the fibre [N]; below 0: compression"""
     largest_N: float
-    """the largest [N], at `at_mm`"""
+    """largest tension [N], at `at_mm`"""
     least_N: float
-    """the least [N]"""
+    """smallest tension [N]"""
     at_mm: Floats
     """(3,) where the tension is largest [mm]"""
     stretch: float
     """length over that at rest [-]"""
     slack: float
-    """share of its length that carries nothing [-]"""
+    """fraction of its length without tension [-]"""
 
 
 @dataclass(frozen=True)
 class Layer:
-    """What a sheet carries."""
+    """The tension in an elastic sheet."""
 
     name: str
     largest_N_mm: float
     """largest principal tension per width [N/mm], at `at_mm`"""
     least_N_mm: float
-    """the least [N/mm]; below 0: pressed"""
+    """smallest principal tension per width [N/mm]; below 0: compression"""
     at_mm: Floats
     """(3,) where the tension is largest [mm]"""
     strain: float
     """largest principal stretch minus 1 [-]"""
     wrinkled: float
-    """share of its area that carries along one direction alone [-]"""
+    """fraction of its area that is in tension along one direction only [-]"""
     slack: float
-    """share of its area that carries nothing [-]"""
+    """fraction of its area without tension [-]"""
 
 
 @dataclass(frozen=True)
 class Contact:
-    """What presses on a part of a robot; physical formulation."""
+    """The contact between two parts; physical formulation."""
 
     on: str
     """'robot', or a region that `contact` names"""
     by: str
     """an obstacle, another such part, or the part itself"""
     force_N: Floats
-    """(3,) that it exerts [N]; of a part on itself 0"""
+    """(3,) contact force of `by` on `on` [N]; 0 where a part touches itself"""
     moment_Nmm: Floats
     """(3,) about the centre [N mm]"""
     center_mm: Floats
-    """(3,) mean of the places that are pressed, by their normal force [mm]"""
+    """(3,) mean of the contact points, weighted by their normal forces [mm]"""
     normal_N: float
     """sum of the magnitudes of all normal forces [N]"""
     pressure_kPa: float
-    """the largest on a vertex [kPa]"""
+    """largest contact pressure at a vertex [kPa]"""
     area_mm2: float
     """[mm^2]"""
     gap_mm: float
-    """the least [mm]"""
+    """smallest gap [mm]"""
 
 
 @dataclass(frozen=True)

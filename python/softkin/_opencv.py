@@ -1,4 +1,4 @@
-"""What softkin.measure leaves to OpenCV, by its package for Python; src/softkin/vision/open_cv.hpp says what each is.
+"""The functions of OpenCV's package for Python that softkin.measure uses: src/softkin/vision/open_cv.hpp.
 
 Called by softkin._vision. Pictures are (h, w) or (h, w, 3) of bytes, points (n, 2) x, y [pixel].
 """
@@ -120,7 +120,7 @@ def calibrated(
     except cv2.error:
         return None
     # These versions count x and y of a corner as two observations, 4.6 as one, which makes larger errors: blur and an uneven
-    # board move both at once. All of softkin tells the larger ones.
+    # board move both at once. softkin reports the larger errors everywhere.
     count, unknowns = sum(map(len, places)), 8 + 6 * len(places)
     spreads = np.ravel(spread) * (np.sqrt((2 * count - unknowns) / (count - unknowns)) if count > unknowns else np.inf)
     numbers = [*(matrix[0, 0], matrix[1, 1], matrix[0, 2], matrix[1, 2]), *np.ravel(lens)[:4], *spreads[:2], error]

@@ -1,4 +1,4 @@
-"""What a robot and a session have in common: solve, inverse, derivatives."""
+"""The common methods of robots and sessions: solve, inverse, derivatives."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from ._kinds import named_file
 from .inverse import Answer, Target, goals_of, places_of, searched, start_of
 from .maps import KinematicMap, session_of
 from .shape import Shape, warn_of
-from .solver import OLD, OLD_OF_SEARCH, USUAL, ProgressFunction, Solver, options_of, telling, with_old
+from .solver import OLD, OLD_OF_SEARCH, USUAL, ProgressFunction, Solver, options_of, progress_callback, with_old
 
 if TYPE_CHECKING:
     from .robot import Robot
@@ -27,10 +27,10 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Sensitivity:
-    """How an equilibrium changes with a number of the robot, per unit of it."""
+    """The sensitivity of an equilibrium to a parameter of the robot, per unit of the parameter."""
 
     value: float
-    """the number as it is"""
+    """present value of the parameter"""
     positions: Floats
     """(n, 3) of the vertices [mm]"""
     markers: Mapping[str, Floats]
@@ -73,21 +73,23 @@ class Solving:
         map        of this robot: answers in the solver's place; outside of it the status is 'limit'
         polish     the solver goes on from the map's answer
         solver     a Solver, or a method as usual: 'newton', 'local-global'
-        beyond     physical: where a pressure or tension comes to its maximum, the way goes on beyond it, where it falls,
-                   to this volume or length over that at rest [-]; None: it ends at the maximum
+        beyond     physical: at a limit point of a pressure or tension the solve continues on the post-limit-point
+                   branch, up to this ratio of volume or length to its rest value [-]; None: it ends there
         elapsed_s  viscous: time since the shape `start`, which the material remembers, without one since a long rest [s];
                    0: the instant answer; None: the relaxed one, whatever was before
-        budget_s   ends after so long, 'not converged', with the last good shape on the way [s]; None: never
+        budget_s   time limit [s]; after it the status is 'not converged', and the shape is the last equilibrium of
+                   the load path; None: no limit
         progress   called with a Progress at most 20 times a second; False stops the solve
-        returns    not converging is its status
+        returns    a shape without convergence is returned too: see its `status`
         """
         if not OLD.isdisjoint(commands):
             solver = with_old("solve", solver, OLD, commands)
         options = options_of(solver, published=True, elapsed_s=elapsed_s, beyond=beyond, budget_s=budget_s)
         robot = self._owner
         by = session_of(robot, map, polish, options, self._session)
-        asked = robot._actuation(actuation, commands)
-        found = Shape(robot, _solved(robot._core, by, asked, self._last if start is None else start, options, progress))
+        requested = robot._actuation(actuation, commands)
+        begin = self._last if start is None else start
+        found = Shape(robot, _solved(robot._core, by, requested, begin, options, progress))
         if self._session is None and budget_s is None and found.status != "interrupted":
             warn_of(found._findings)
         elif self._session is not None and found.converged:
@@ -122,7 +124,7 @@ class Solving:
         progress: ProgressFunction | None = None,
         **markers: Target,
     ) -> Answer:
-        """The actuation that brings markers where they should be and presses as asked, or as near as the ranges allow.
+        """Finds the actuation that brings markers and contact forces to their targets, or as near as the ranges allow.
 
         targets         by the marker's name: (x, y, z) [mm]; None for a coordinate that does not count. Also as
                         keywords: tip=(100, 0, None)
@@ -184,8 +186,8 @@ class Solving:
         shape    an equilibrium that a solve of this robot returned; physical
         numbers  one or several, each a path as of `load(changes=)`: "materials.body.youngs_modulus",
                  "actuators.tendon.friction", "forces.payload.force.3"; not of the mesh
-        returns  by number; where cables rub, of going on in the direction in which they slipped
-        raises   InvalidInput naming the number that the robot has not, or where the shape stands at a limit of
+        returns  by number; for cables with friction, the derivatives for continued slip in the present direction
+        raises   InvalidInput naming the number that the robot does not have, or where the shape stands at a limit of
                  existence or a branch
         """
         robot = self._owner
@@ -213,8 +215,7 @@ class Solving:
         loads: Mapping[str, float] | None = None,
     ) -> dict[str, float]:
         """Derivatives of one value that an equilibrium is given, such as a loss, by numbers of the robot, commands
-        held: the chain rule by the adjoint, one solution however many numbers there are (where something rubs one
-        each).
+        held: the chain rule by the adjoint, with one linear solve for all numbers (with friction, one for each).
 
         shape      an equilibrium that a solve of this robot returned; physical
         numbers    as of sensitivity()
@@ -246,7 +247,7 @@ class Solving:
 def _solved(
     robot: _core.Robot,
     by: _core.Session | None,
-    asked: Floats,
+    requested: Floats,
     start: Shape | ArrayLike | PathLike | None,
     options: _core.SolveOptions,
     progress: ProgressFunction | None,
@@ -258,6 +259,5 @@ def _solved(
         file = named_file("start", start)
     elif start is not None:
         positions = floats("start", start, (len(robot.rest), 3))
-    return _core.solve(
-        robot, by, asked, begin, positions, file, options, None if progress is None else telling(progress)
-    )
+    report = None if progress is None else progress_callback(progress)
+    return _core.solve(robot, by, requested, begin, positions, file, options, report)

@@ -28,7 +28,7 @@ Core = TypeVar("Core", _core.ReportComparison, _core.PathReport)
 
 
 class _Comparison(Generic[Core]):
-    """What both kinds have."""
+    """The base class of both comparisons."""
 
     def __init__(self, core: Core) -> None:
         self._core: Core = core
@@ -39,7 +39,8 @@ class _Comparison(Generic[Core]):
         return parsed(self._core.json())
 
     def save_plot(self, path: PathLike) -> None:
-        """An .svg: of reports turns, distances and loads over the steps, and the marker's ways; of paths these."""
+        """Writes an .svg: of reports turns, distances and loads over the steps, and marker trajectories; of paths the
+        trajectories only."""
         self._core.save_plot(os.fspath(path))
 
 
@@ -48,7 +49,7 @@ class ReportComparison(_Comparison[_core.ReportComparison]):
 
     @property
     def marker(self) -> str:
-        """Whose distance is told."""
+        """The marker whose distance is reported."""
         return self._core.marker
 
     @property
@@ -58,7 +59,7 @@ class ReportComparison(_Comparison[_core.ReportComparison]):
 
     @property
     def turns(self) -> Floats:
-        """(r, k) of the line between two markers since the first step [degrees]; (0, ) where not asked for."""
+        """(r, k) of the line between two markers since the first step [degrees]; (0, ) where not requested."""
         return np.array(self._core.turns)
 
     @property
@@ -117,7 +118,7 @@ def reports(
     """Reports of the same steps side by side.
 
     files   reports of `softkin fk --report` or of paths (their store's report.json); the first is the one to compare with
-    marker  whose distance is told; None: the first
+    marker  the marker whose distance is reported; None: the first
     turn    two markers: by how much the line from one to the other has turned since the first step
     poses   with turn: the time until each of these turns is reached [degrees]
     """

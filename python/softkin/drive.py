@@ -24,7 +24,7 @@ __all__ = ["Marlin", "Plan", "Sent", "plan"]
 
 
 class Plan:
-    """What is to be driven, checked against all limits of the hardware."""
+    """Motor moves and chamber pressures, checked against all limits of the hardware."""
 
     def __init__(self, core: _core.Plan) -> None:
         self._core = core
@@ -51,7 +51,7 @@ class Plan:
 
     @property
     def defaults(self) -> list[str]:
-        """What the hardware file does not say, with what is taken in its place."""
+        """Entries that the hardware file lacks, with the default values that are used."""
         return self._core.defaults
 
     @property
@@ -131,10 +131,11 @@ class Marlin:
         self._core = _core.Link(os.fspath(port), baud, boot_wait_s)
 
     def send(self, plan: Plan, *, log: PathLike | None = None, progress: Callable[[int], object] | None = None) -> Sent:
-        """Sends a plan's moves and waits until they are made. A fault of board, line or port is told by what it returns.
+        """Sends a plan's moves and waits until they are made. The returned object reports a
+        fault of board, line or port.
 
         Ctrl-C stops after the moves that the board has, a second one at once; KeyboardInterrupt is raised then, and
-        `last` tells where the motors stand.
+        `last` contains the positions of the motors.
 
         log       file of every line sent and received, with its time
         progress  called with the lines that were acknowledged
@@ -215,9 +216,9 @@ def plan(
         if steps and steps[0].get("time_s") is not None:
             times = [step["time_s"] for step in steps]
         for info in robot.actuator_infos:
-            told = steps[0]["actuators"][info.name] if steps else {}
+            state = steps[0]["actuators"][info.name] if steps else {}
             # a measured curve comes before the model, and the plan takes its pressures itself
-            if info.kind == "pneumatic" and "pressure_kPa" in told and "curve_pressure_kPa" not in told:
+            if info.kind == "pneumatic" and "pressure_kPa" in state and "curve_pressure_kPa" not in state:
                 given[info.name] = [step["actuators"][info.name]["pressure_kPa"] for step in steps]
     rows = floats("commands", commands, (None, len(robot.actuators)))
     if isinstance(pressures, Mapping):

@@ -1,4 +1,4 @@
-"""What pushes a robot, where, and its shape, from a few readings. docs/estimate.md"""
+"""Estimate external forces, their places and the shape from a few readings. docs/estimate.md"""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ _PLANNED = ("marker_mm", "length_mm", "volume_mm3", "angle_deg", "direction")
 
 @dataclass(frozen=True)
 class ToldNumber:
-    """A command or a component of a force, as readings told it."""
+    """A command or a component of a force, as estimated from readings."""
 
     name: str
     unit: str
@@ -41,14 +41,14 @@ class ToldNumber:
     """standard deviation"""
     known_mean: float
     known_deviation: float
-    """what was known before the readings"""
+    """prior mean and standard deviation, before the readings"""
     at_bound: int
     """-1, 1: at the low or high end of its range; else 0"""
 
 
 @dataclass(frozen=True)
 class ToldPlace:
-    """Where readings told a force to act."""
+    """Where a force was estimated to act."""
 
     force: str
     at_rest: Floats
@@ -61,23 +61,23 @@ class ToldPlace:
 
 @dataclass(frozen=True)
 class PlannedReading:
-    """A reading that is not there yet and would tell most, after those before it."""
+    """A further reading with the largest information gain, given the readings before it."""
 
     name: str
     vertex: int | None
-    """where a further marker is to be; None: a marker, a sensor or a measure of the scene"""
+    """vertex at which a further marker is to be placed; None: a marker, a sensor or a measure of the scene"""
     at_rest: Floats | None
     """(3,) of a marker [mm]"""
     bits: float
     """information about all unknowns"""
     numbers: dict[str, float]
-    """standard deviations that would be left, by the names of commands, in their units"""
+    """remaining standard deviations, by the names of commands, in their units"""
     places: dict[str, float]
     """the same of places, by the names of forces, root of the trace of the covariance [mm]"""
 
 
 class Estimate:
-    """What readings told."""
+    """The unknowns and the shape that were estimated from readings."""
 
     def __init__(self, robot: Robot, core: _core.Told) -> None:
         self._robot = robot
@@ -124,7 +124,7 @@ class Estimate:
 
     @property
     def freedoms(self) -> float:
-        """What the chi-square is to be compared with: readings less what they had to tell."""
+        """Degrees of freedom, the expected value of the chi-square: readings less the unknowns that they determine."""
         return self._core.freedoms
 
     @property
@@ -139,7 +139,7 @@ class Estimate:
 
     @property
     def words(self) -> list[str]:
-        """What the readings hardly tell, and whether they fit the model."""
+        """Unknowns that the readings hardly determine, and whether the readings fit the model."""
         return self._core.words
 
     @property
@@ -162,12 +162,12 @@ class Estimate:
         return self._core.vertex_deviations(len(self._robot.rest))
 
     def __repr__(self) -> str:
-        told = ", ".join(f"{n.name} {n.value:.3g} +- {n.deviation:.2g} {n.unit}" for n in self.numbers.values())
-        return f"<softkin.Estimate {self.status}: {told}>"
+        numbers = ", ".join(f"{n.name} {n.value:.3g} +- {n.deviation:.2g} {n.unit}" for n in self.numbers.values())
+        return f"<softkin.Estimate {self.status}: {numbers}>"
 
 
 class Estimator:
-    """Goes on from its last estimate with every update. For one thread at a time."""
+    """Estimates unknowns from readings; each update starts from the last estimate. For one thread at a time."""
 
     def __init__(
         self,
@@ -198,7 +198,7 @@ class Estimator:
 
     @property
     def told_commands(self) -> list[str]:
-        """Commands that are told and so need no value."""
+        """Commands that are estimated and therefore need no value."""
         return self._core.told_commands
 
     def update(
@@ -210,7 +210,7 @@ class Estimator:
         time_s: float | None = None,
         **commands: Command,
     ) -> Estimate:
-        """What readings tell.
+        """Estimates the unknowns from readings.
 
         readings   by their columns; those that are left out, None or NaN were not read
         actuation  measured commands, as solve's
@@ -221,30 +221,30 @@ class Estimator:
         unknown = set(readings) - set(self.readings)
         if unknown:
             raise InvalidInput(f"no deviation is known of {sorted(map(str, unknown))}; readings are {list(self.readings)}")
-        asked = self._robot._actuation(actuation, commands)
+        requested = self._robot._actuation(actuation, commands)
         values = np.array([reading_of(name, readings.get(name)) for name in self.readings], dtype=np.float64)
         elapsed = self._elapsed(time_s) if self._fades else 0.0
-        return Estimate(self._robot, self._core.update(asked, values, elapsed))
+        return Estimate(self._robot, self._core.update(requested, values, elapsed))
 
     def plan(
         self, estimates: Estimate | Sequence[Estimate], deviations: Mapping[str, float], count: int = 3
     ) -> list[PlannedReading]:
-        """Which further readings would tell most, one after the other: D-optimal, to first order at the estimates.
+        """Plans the further readings with the most information, one by one: D-optimal, to first order at the estimates.
 
         estimates   of this estimator, over which information is averaged
         deviations  of what may be read: marker_mm (of further markers on the surface, too), length_mm, volume_mm3,
-                    angle_deg, direction; a kind that is left out is not looked at
-        count       1 or more; fewer are told where no more would tell anything
+                    angle_deg, direction; a kind that is left out is not considered
+        count       1 or more; the plan is shorter where further readings would add no information
         """
         unknown = set(deviations) - set(_PLANNED)
         if unknown:
             raise InvalidInput(f"a plan is of {list(_PLANNED)}, not of {sorted(unknown)}")
         if any(not (value > 0 and math.isfinite(value)) for value in deviations.values()):
             raise InvalidInput("deviations must be above 0")
-        told = [estimates] if isinstance(estimates, Estimate) else list(estimates)
+        given = [estimates] if isinstance(estimates, Estimate) else list(estimates)
         values = np.array([float(deviations.get(kind, 0)) for kind in _KINDS], dtype=np.float64)
-        numbers = [name for each in told[:1] for name in each.numbers]
-        places = [name for each in told[:1] for name in each.places]
+        numbers = [name for each in given[:1] for name in each.numbers]
+        places = [name for each in given[:1] for name in each.places]
         return [
             PlannedReading(
                 p.name,
@@ -254,7 +254,7 @@ class Estimator:
                 dict(zip(numbers, map(float, p.numbers))),
                 dict(zip(places, map(float, p.places))),
             )
-            for p in self._core.plan([each._core for each in told], values, int(count))
+            for p in self._core.plan([each._core for each in given], values, int(count))
         ]
 
     def _elapsed(self, time_s: float | None) -> float:

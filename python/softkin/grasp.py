@@ -18,7 +18,7 @@ from ._core import InvalidInput
 from ._of_robot import Found
 from .runs import Steps, steps_of
 from .shape import NotConverged, Shape
-from .solver import ProgressFunction, telling
+from .solver import ProgressFunction, progress_callback
 from .table import Table
 
 __all__ = ["Grasp", "Pull"]
@@ -36,23 +36,23 @@ class Pull:
     direction: Floats
     """(3,) of length 1"""
     force_N: float
-    """the largest at which there is an equilibrium; besides weight and what the scene pushes with"""
+    """largest pull with an equilibrium, in addition to the weight and the forces of the scene"""
     moved_mm: float
     """the body's center of mass, from where it was without the pull"""
     normal_N: float
     """sum of the magnitudes of all normal forces on the body, at that force"""
     slipping: float | None
-    """share of them where it slips [-]; None: no friction, or nothing presses"""
+    """fraction of them at slipping contacts [-]; None: no friction, or no contact force"""
     end: str
-    """what gave way: 'slips', 'gives way' (otherwise), 'holds more' (than was tried); else the status"""
+    """how the pull ended: 'slips', 'gives way' (fails otherwise), 'holds more' (than was tried); else the status"""
     status: str
     """'limit': the largest force was found; 'converged': it holds more; 'not converged', 'interrupted'"""
     shape: Shape
-    """the last equilibrium; its `remark` says more about what gave way"""
+    """the last equilibrium; its `remark` contains details of the failure"""
 
 
 class Grasp(Found[_core.Grasp]):
-    """A gripper that was closed around a body and has let go of it, and what it took to pull the body out."""
+    """A gripper that was closed around a body, and the forces that pull the released body out."""
 
     @property
     def body(self) -> str:
@@ -61,12 +61,12 @@ class Grasp(Found[_core.Grasp]):
 
     @property
     def held(self) -> bool:
-        """Was there an equilibrium at every step of the closing, and one without what held the body?"""
+        """Is there an equilibrium at every step of the closing, and one after the body is released?"""
         return self._core.held
 
     @property
     def reason(self) -> str:
-        """What has no equilibrium and why, where not held."""
+        """Where the body is not held: which step has no equilibrium, and why."""
         return self._core.remark
 
     @cached_property
@@ -127,9 +127,8 @@ def grasped(
         raise InvalidInput(f"most_N must be a force > 0 in N, not {most_N}")
     texts = [_direction_text(each) for each in ([directions] if isinstance(directions, str) else directions)]
     steps = _closing(robot, closing, commands)
-    return _core.grasp(
-        robot._core, steps, body or "", texts, most_N, options, None if progress is None else telling(progress)
-    )
+    report = None if progress is None else progress_callback(progress)
+    return _core.grasp(robot._core, steps, body or "", texts, most_N, options, report)
 
 
 def _closing(robot: Compiled, closing: Steps | Commands | None, commands: Mapping[str, Command]) -> _core.Steps:

@@ -1,4 +1,4 @@
-"""Inverse kinematics: what is asked, the search, the answer."""
+"""Inverse kinematics: goals, search, answer."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ from ._of_robot import parsed
 from ._saving import Saving
 from ._warning import warn
 from .shape import NotConverged, Shape
-from .solver import ProgressFunction, telling
+from .solver import ProgressFunction, progress_callback
 
 __all__ = ["Answer"]
 
@@ -29,7 +29,7 @@ Target = Sequence[float | None] | Floats
 
 
 class Answer(Saving[CoreAnswer]):
-    """What inverse kinematics came to."""
+    """The result of inverse kinematics."""
 
     @cached_property
     def shape(self) -> Shape:
@@ -68,13 +68,13 @@ class Answer(Saving[CoreAnswer]):
 
     @property
     def error_mm(self) -> float:
-        """Of the farthest goal of markers [mm]; NaN where there is none, or the start has no equilibrium."""
+        """The largest error of a marker goal [mm]; NaN where there is none, or the start has no equilibrium."""
         errors = self.errors_mm
         return float(errors.max()) if len(errors) else float("nan")
 
     @property
     def error_N(self) -> float:
-        """Of the force that is missed most [N]; NaN where none is asked for, or the start has no equilibrium."""
+        """The largest error of a force [N]; NaN where no force is requested, or the start has no equilibrium."""
         errors = self.errors_N
         return float(errors.max()) if len(errors) else float("nan")
 
@@ -184,12 +184,12 @@ def goals_of(
     for (first, second), direction in (directions or {}).items():
         weight = left.pop((first, second), 1.0)
         goals.direction(first, second, vector("directions", direction), lever_mm, weight)
-    for name, asked in (press or {}).items():
-        force, axes = counted(f"press: the force on {name!r}", "components [N]", asked)
+    for name, requested in (press or {}).items():
+        force, axes = counted(f"press: the force on {name!r}", "components [N]", requested)
         goals.press(name, force, axes, *tolerances, named[name])
         left.pop(name, None)
     if left:
-        raise InvalidInput(f"weights: nothing is asked of {next(iter(left))!r}")
+        raise InvalidInput(f"weights: there is no goal for {next(iter(left))!r}")
     for doubt in goals.check():
         warn(doubt)
     return goals
@@ -239,5 +239,5 @@ def searched(
         preferred,
         free,
         options,
-        None if progress is None else telling(progress),
+        None if progress is None else progress_callback(progress),
     )

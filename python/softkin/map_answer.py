@@ -1,4 +1,4 @@
-"""What maps take, give and tell of themselves."""
+"""Inputs, outputs, answers and checks of kinematic maps."""
 
 from __future__ import annotations
 
@@ -16,20 +16,20 @@ __all__ = ["MapAnswer", "MapCheck", "MapEstimate", "MapInput", "MapOutput", "Map
 
 
 class MapProgress(NamedTuple):
-    """What the making of a map tells while it runs."""
+    """The progress of a map's construction."""
 
     equilibria: int
     checks: int
     """solved so far"""
     error: float
-    """of the last predictions, over the accuracy that is wanted; inf at first"""
+    """of the last predictions, over the requested accuracy; inf at first"""
     doing: str
     """'all cables taut', 'tendon2 slack', 'checking'"""
 
 
 @dataclass(frozen=True)
 class MapInput:
-    """A command that a map takes."""
+    """A command of a map."""
 
     name: str
     """of the actuator"""
@@ -37,21 +37,21 @@ class MapInput:
     """'kPa', 'N', 'mT', 'A', 'mm' or 'A m^2'; '' for a ratio to rest [-]"""
     range: tuple[float, float]
     rest: float
-    """where none is given"""
+    """the value where none is given"""
 
 
 @dataclass(frozen=True)
 class MapOutput:
-    """A number that a map gives."""
+    """A quantity that a map computes."""
 
     name: str
     """'tip_x', 'air_pressure', 'tendon1_ratio'"""
     unit: str
     """'mm', 'kPa', 'N' or ''"""
     accuracy: float
-    """that was asked for, in its unit"""
+    """requested accuracy, in its unit"""
     largest_error: float
-    """at the checks, in its unit"""
+    """largest error at the checks, in its unit"""
     mean_error: float
 
     @property
@@ -65,32 +65,32 @@ class MapCheck:
     """How far a map was from the solver at random actuations that it was not made of. Not a bound."""
 
     points: int
-    """that were compared"""
+    """number of compared points"""
     outside: int
-    """of the random ones, that the map refuses or the robot has no equilibrium for"""
+    """number of random points that lie outside the map or have no equilibrium"""
     seed: int
     shape_accuracy_mm: float
-    """that was asked for of every vertex; 0: the map has no shape"""
+    """requested accuracy of every vertex; 0: the map has no shape"""
     shape_largest_mm: float
     """of any vertex at any point"""
     shape_mean_mm: float
     """of the farthest vertex, mean over the points"""
     strain_largest: float
-    """of the body's least and greatest principal strain, taken from the shape"""
+    """largest error of the body's minimum and maximum principal strain, computed from the shape"""
 
 
 @dataclass(frozen=True, eq=False)
 class MapAnswer:
-    """What a map says of commands: of one set, or of N, where every array has a row for each."""
+    """The outputs of a map for one set of commands, or for N sets, where every array has a row for each set."""
 
     commands: Floats
     """(i,) or (N, i)"""
     outputs: Floats
     """(q,) or (N, q), in the order of the map's outputs, in their units"""
     inside: NDArray[np.bool_]
-    """() or (all,): which of the commands that were asked for are inside the map; those are the N"""
+    """() or (all,): which of the requested commands are inside the map; those are the N"""
     jacobians: Floats | None
-    """(q, i) or (N, q, i) [unit of the output per unit of the command]; None: not asked for"""
+    """(q, i) or (N, q, i) [unit of the output per unit of the command]; None: not requested"""
     of: tuple[MapOutput, ...]
     """the map's outputs"""
 
@@ -130,10 +130,10 @@ class MapAnswer:
     def jacobian(self, marker: str | None = None) -> Floats:
         """(3, i) or (N, 3, i) of a marker by the commands [mm per unit]; None: of all outputs, (q, i) or (N, q, i).
 
-        raises  ValueError where jacobian=True was not said
+        raises  ValueError where solve was called without jacobian=True
         """
         if self.jacobians is None:
-            raise InvalidInput("the Jacobian was not asked for: solve(..., jacobian=True)")
+            raise InvalidInput("the Jacobian was not requested: solve(..., jacobian=True)")
         if marker is None:
             return self.jacobians
         place = self._marker(marker)
@@ -148,26 +148,26 @@ class MapAnswer:
 
 @dataclass(frozen=True, eq=False)
 class MapEstimate:
-    """What outputs of a map told of commands that were not measured, such as forces."""
+    """Estimates of unmeasured commands, such as forces, from measured outputs of a map."""
 
     values: dict[str, float]
     """by the names of the inputs, in their units"""
     deviations: dict[str, float]
-    """standard deviations that are left"""
+    """posterior standard deviations"""
     covariance: Floats
     """(u, u) in the order of `values`"""
     answer: MapAnswer
-    """what the map says of these commands"""
+    """the map's outputs at these commands"""
     chi_square: float
     freedoms: float
-    """what the chi-square is to be compared with: readings less what they had to tell"""
+    """degrees of freedom, the expected value of the chi-square: readings less the unknowns that they determine"""
     misfit: float
     """by how many standard deviations the chi-square is too large; above 3 readings and map do not fit"""
     converged: bool
 
     def __repr__(self) -> str:
-        told = ", ".join(f"{name} {x:.3g} +- {self.deviations[name]:.2g}" for name, x in self.values.items())
-        return f"<softkin.MapEstimate {'' if self.converged else 'not converged: '}{told}>"
+        values = ", ".join(f"{name} {x:.3g} +- {self.deviations[name]:.2g}" for name, x in self.values.items())
+        return f"<softkin.MapEstimate {'' if self.converged else 'not converged: '}{values}>"
 
 
 def markers_of(outputs: tuple[MapOutput, ...]) -> dict[str, int]:

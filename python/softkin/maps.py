@@ -32,12 +32,12 @@ Readings = Mapping[str, float | None]
 
 
 class KinematicMap:
-    """A robot's equilibria in closed form; immutable. Threads may share it; the robot need not be there."""
+    """A robot's equilibria in closed form; immutable and thread-safe. It works without the robot."""
 
     def __init__(self, core: _core.Map) -> None:
         self._core = core
         self._inputs = tuple(MapInput(name, unit, (low, high), rest) for name, unit, low, high, rest in core.inputs)
-        self._outputs = tuple(MapOutput(*told) for told in core.outputs)
+        self._outputs = tuple(MapOutput(*fields) for fields in core.outputs)
         self._places = {each.name: i for i, each in enumerate(self._inputs)}
         self._rest: Floats = np.array([each.rest for each in self._inputs])
         self._sessions: WeakKeyDictionary[Compiled, dict[bool, _core.Session]] = WeakKeyDictionary()
@@ -58,7 +58,7 @@ class KinematicMap:
 
     @property
     def ranges(self) -> Floats:
-        """(i, 2) least and greatest command."""
+        """(i, 2) minimum and maximum command."""
         return np.array([each.range for each in self._inputs])
 
     @cached_property
@@ -74,7 +74,7 @@ class KinematicMap:
 
     @property
     def accurate(self) -> bool:
-        """Was no check farther off than what was asked for?"""
+        """Is every error at the checks within the requested accuracy?"""
         check = self.check
         shape = check.shape_largest_mm <= check.shape_accuracy_mm or not self.vertices
         return check.points > 0 and shape and all(each.largest_error <= each.accuracy for each in self._outputs)
@@ -126,7 +126,7 @@ class KinematicMap:
                   others rest. (N, i): N of them at once
         jacobian  are derivatives wanted, too?
         outside   commands outside the map: 'raise'; 'leave out', of N: the answer has the others, and its `inside`
-                  tells which. There are no rows of NaN, which a controller would pass on to a valve
+                  marks which. There are no rows of NaN, which a controller would pass on to a valve
         threads   of many rows; 0: as many as the machine has; the result is the same
         raises    InvalidInput naming the first row, and the command, outside the map
         """
@@ -167,9 +167,9 @@ class KinematicMap:
 
         readings    by the columns of outputs: tip_x_mm, air_pressure_kPa; NaN: not read
         deviations  of each, > 0, in its unit; a number: of all of them
-        unknowns    inputs to be told: mean and standard deviation before
+        unknowns    inputs to be estimated: prior mean and standard deviation
         commands    the others, as to `solve`; of the unknowns where the search begins, their means if they are not there
-        raises      InvalidInput naming what is not there; where the search begins outside the map
+        raises      InvalidInput naming an unknown output or input; where the search begins outside the map
         """
         if not isinstance(readings, Mapping):
             raise InvalidInput(f"readings must be a dictionary, not {shown(readings)}")
@@ -191,11 +191,11 @@ class KinematicMap:
                 raise InvalidInput(f"the map has no input {name!r}, but {', '.join(map(repr, self._places))}")
         before = np.array([unknowns[name] for name in unknowns], dtype=np.float64).reshape(-1, 2)
         places = [self._places[name] for name in unknowns]
-        told, covariance, computed, chi_square, freedoms, misfit, converged = self._core.estimate(
+        estimated, covariance, computed, chi_square, freedoms, misfit, converged = self._core.estimate(
             places, np.ascontiguousarray(before[:, 0]), np.ascontiguousarray(before[:, 1]), given, values, off
         )
-        answer = MapAnswer(told, computed, np.array(True), None, self._outputs)
-        found = {name: float(told[i]) for name, i in zip(unknowns, places, strict=True)}
+        answer = MapAnswer(estimated, computed, np.array(True), None, self._outputs)
+        found = {name: float(estimated[i]) for name, i in zip(unknowns, places, strict=True)}
         left = dict(zip(unknowns, np.sqrt(np.diag(covariance)).tolist(), strict=True))
         return MapEstimate(found, left, covariance, answer, chi_square, freedoms, misfit, converged)
 
@@ -230,7 +230,7 @@ class KinematicMap:
         self._core.save_npz(ending("path", path, ".npz"))
 
     def _session(self, robot: Compiled, polish: bool) -> _core.Session:
-        """What answers in the solver's place, or gives it its starts."""
+        """The session in which the map replaces the solver or, with `polish`, provides its initial guesses."""
         made = self._sessions.setdefault(robot, {})
         if polish not in made:
             made[polish] = _core.Session(robot._core, self._core, polish)
@@ -249,7 +249,7 @@ class KinematicMap:
             f"<td>{each.accuracy:.2g}</td></tr>"
             for each in self._outputs
         )
-        head = "<tr><th>output</th><th>largest error</th><th>mean</th><th>asked for</th></tr>"
+        head = "<tr><th>output</th><th>largest error</th><th>mean</th><th>accuracy</th></tr>"
         return f"<p>{escape(repr(self)[1:-1])}</p><table>{head}{rows}</table>"
 
 
@@ -275,7 +275,7 @@ def check_map(map: KinematicMap | None, polish: bool, options: _core.SolveOption
 def session_of(
     robot: Compiled, map: KinematicMap | None, polish: bool, options: _core.SolveOptions, own: _core.Session | None
 ) -> _core.Session | None:
-    """What solves: a map, where there is one."""
+    """Returns the session of the map where one is given, otherwise `own`."""
     check_map(map, polish, options)
     return own if map is None else map._session(robot, polish)
 
@@ -299,12 +299,12 @@ def made(
     statics = options_of(replace(solver, threads=1))
     options = _core.MapOptions(*accuracies, most, checks, seed, statics, solver.threads)
 
-    def told(equilibria: int, checked: int, error: float, doing: str) -> None:
+    def report(equilibria: int, checked: int, error: float, doing: str) -> None:
         assert progress is not None
         progress(MapProgress(equilibria, checked, error, doing))
 
     file = "" if store is None else ending("store", store, ".skmap")
-    core, remark = _core.make_map(robot._core, options, file, None if progress is None else told)
+    core, remark = _core.make_map(robot._core, options, file, None if progress is None else report)
     if remark:
-        warn(f"the map is not as accurate as was asked for: {remark}")
+        warn(f"the map is not as accurate as requested: {remark}")
     return KinematicMap(core)

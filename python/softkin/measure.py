@@ -1,6 +1,6 @@
 """Markers, specimens, angles and tracks in mm, out of pictures and films: docs/measure.md.
 
-Needs OpenCV's package for Python, which `pip install 'softkin[measure]'` brings; `available()` tells.
+Needs OpenCV's package for Python: `pip install 'softkin[measure]'`; `available()` reports whether it is installed.
 """
 
 from __future__ import annotations
@@ -272,7 +272,7 @@ def pictures(
     origin       marker that is the origin, where it is in the first picture
     x_axis       markers from which to which x goes, in the first picture
     threads      of OpenCV; 0: one a core
-    progress     called with the share that is done
+    progress     called with the completed fraction
     raises       InvalidInput naming the picture: a marker not found, or found twice, ...
     """
     _check_threads(threads)
@@ -307,7 +307,7 @@ def film(
     files          a video, a folder of numbered pictures, or pictures one after another
     fps            frames per second; None: what the video says
     moving_camera  find the board in each frame, not in the first alone
-    progress       called with the share that is done; < 0: not known
+    progress       called with the completed fraction; < 0: not known
     others         as pictures'
     """
     _check_threads(threads)

@@ -30,7 +30,7 @@ Fields = Mapping[str, NDArray[Any]]  # by name
 
 
 class Content(NamedTuple):
-    """What a shape's .vtu holds beside points and cells."""
+    """The arrays of a shape's .vtu, in addition to points and cells."""
 
     points: Fields
     """of the vertices"""
@@ -42,7 +42,7 @@ class Content(NamedTuple):
 
 @dataclass(frozen=True)
 class Elements:
-    """What a mesh of meshio or PyVista has."""
+    """The elements and regions of a mesh of meshio or PyVista."""
 
     points: NDArray[np.float64]
     """(n, 3)"""
@@ -140,8 +140,8 @@ def _elements(
     """sets: by name, members of each block or None. Of a set of elements and faces the faces are NAME_2d."""
     unknown = sorted({kind for kind, _ in blocks if kind not in PLACES and not kind.startswith(PASSED_OVER)})
     if unknown:
-        told = ", ".join(unknown)
-        raise InvalidInput(f"cells of kind {told}: only tetrahedra, wedges, and triangles as faces are taken")
+        kinds = ", ".join(unknown)
+        raise InvalidInput(f"cells of kind {kinds}: only tetrahedra, wedges, and triangles as faces are taken")
     cells: dict[str, list[Ints]] = {"tetrahedra": [], "prisms": [], "triangles": []}
     firsts = []  # of each block among those of its place
     for kind, block in blocks:

@@ -36,7 +36,7 @@ _unpickled_robots: weakref.WeakValueDictionary[bytes, Robot] = weakref.WeakValue
 
 
 class Robot(Compiled, Solving):
-    """A compiled robot; immutable. Every solve stands for itself, so that threads may share it."""
+    """A compiled robot; immutable. Solves are independent of each other, so that several threads may use one robot."""
 
     def _take(self, core: _core.Robot) -> None:
         super()._take(core)
@@ -51,13 +51,13 @@ class Robot(Compiled, Solving):
         leave_out: bool = True,
         solver: Solver | str = USUAL,
     ) -> Estimator:
-        """Tells what pushes the robot, where, and its shape, from a few readings. docs/estimate.md
+        """Estimates external forces, their places and the shape from a few readings. docs/estimate.md
 
         unknowns    'touch': a force or wrench that has a range; 'touch:place': and where on its region; 'air': a command
                     that is not measured, or a pressure on the surface; each with '=0+-0.5' where it is known before;
                     'materials.body.stiffness=1+-0.2': over what the description says
         deviations  of the readings by their columns: {'tip_x_mm': 0.2, 'air_volume_mm3': 20}
-        fade_s      time in which what pushes may become anything else [s]; 0: each update tells by itself
+        fade_s      time after which the forces may have changed arbitrarily [s]; 0: each update is independent
         leave_out   readings that contradict the others
         """
         return Estimator(self, unknowns, deviations, fade_s=fade_s, leave_out=leave_out, solver=solver)
@@ -85,7 +85,7 @@ class Robot(Compiled, Solving):
         store     folder of report.json and path.pvd with the shapes: a run that was stopped goes on where it was
         commands  of actuators that the steps do not name
         map       of this robot: answers in the solver's place
-        polish    the solver goes on from the map's answers
+        polish    the solver continues from the map's answers
         solver    as solve's
         """
         options = options_of(solver, published=True)
@@ -114,7 +114,7 @@ class Robot(Compiled, Solving):
         descents: int = 30,
         solver: Solver | str = USUAL,
     ) -> FollowRun:
-        """Leads markers along a path: an iterator of waypoints.
+        """Moves markers along a path by inverse kinematics: an iterator of waypoints.
 
         path         (k, 3) places of one marker [mm]; by marker, (k, 3) of each; a column that is NaN does not count;
                      or a CSV file
@@ -141,9 +141,9 @@ class Robot(Compiled, Solving):
         search = _core.InverseOptions("newton" if nearest else method, tolerance_mm, 200, descents, 3, statics)
         by = None if map is None else map._core
         begin = None if start is None else self._actuation(start, {})
-        asked = (search, predict, begin, optional(workspace), nearest, samples, optional(store))
+        arguments = (search, predict, begin, optional(workspace), nearest, samples, optional(store))
         places, name = waypoints_of(self, path, marker, times, max_step_mm)
-        return FollowRun(self, remarked(_core.FollowRun(self._core, by, polish, places, name, *asked)))
+        return FollowRun(self, remarked(_core.FollowRun(self._core, by, polish, places, name, *arguments)))
 
     @takes_old
     def walk(
@@ -155,7 +155,7 @@ class Robot(Compiled, Solving):
         store: PathLike | None = None,
         solver: Solver | str = USUAL,
     ) -> WalkRun:
-        """Walks on two feet that slide one way better than the other: an iterator of steps. docs/walking.md
+        """Walks on two feet with direction-dependent friction: an iterator of steps. docs/walking.md
 
         gait    one cycle of commands as path takes them, (k, m), by name, or a CSV file; its last row is its first
         cycles  how often it is walked, 1 to 100000
@@ -163,7 +163,7 @@ class Robot(Compiled, Solving):
         store   folder of report.json, walk.csv, walk.svg and walk.pvd with the shapes: a walk that was stopped goes on
                 where it was, or with more cycles
         solver  as solve's
-        raises  InvalidInput where the robot has no feet, or is held or loaded along its way
+        raises  InvalidInput where the robot has no feet, or is held or loaded along its direction of travel
         """
         if not 1 <= cycles <= 100_000:
             raise InvalidInput(f"cycles must be a whole number from 1 to 100000, not {cycles}")
@@ -189,7 +189,7 @@ class Robot(Compiled, Solving):
                     each step, or a CSV file
         body        which one is released and pulled; None: the only one
         directions  of the pulls: 'x', '-x', 'y', '-y', 'z', '-z', or (x, y, z) of any length
-        most_N      no larger pull is tried [N]
+        most_N      largest pull that is tried [N]
         progress    as solve's, of each solve; False ends the grasp with what there is
         commands    of actuators that closing does not name
         solver      as solve's
@@ -215,7 +215,7 @@ class Robot(Compiled, Solving):
         sampling  'grid', 'sobol' or 'random'
         seed      of random samples
         store     CSV that grows meanwhile: a workspace that was stopped goes on where it was
-        progress  such as tqdm: called with total=, then told by update(n)
+        progress  such as tqdm: called with total=, then its update(n) is called
         solver    as solve's
         """
         threads = value_of(solver).threads
@@ -247,7 +247,7 @@ class Robot(Compiled, Solving):
                            that was stopped goes on where it was
         progress           called with a MapProgress at most 20 times a second; what it raises stops the work
         solver             as solve's
-        returns            one less accurate than asked for is warned of (SoftkinWarning): `accurate`, `outputs`
+        returns            a map that misses the requested accuracy raises a SoftkinWarning: see `accurate`, `outputs`
         raises             InvalidInput on a robot that no map is made of: without markers, with friction
         """
         accuracies = (accuracy_mm, load_accuracy, shape_accuracy_mm)
@@ -303,7 +303,7 @@ def load(
 
 
 def _unpickled(state: bytes) -> Robot:
-    """One robot for all pickles of it, as long as somebody holds it: shapes that come back share it."""
+    """Returns one robot for all pickles of it while it is referenced, so that unpickled shapes have the same robot."""
     key = hashlib.blake2b(state, digest_size=16).digest()
     robot = _unpickled_robots.get(key)
     if robot is None:

@@ -1,4 +1,4 @@
-"""Shapes: equilibria of a robot, and what they measure."""
+"""Shapes: equilibria of a robot, and the quantities that they report."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ _LOAD_UNITS = {"pneumatic": "kPa", "cable": "N", "dea": "kV"}
 
 
 class NotConverged(RuntimeError):
-    """A shape that was required to be an equilibrium is none. `shape` is what there is."""
+    """A shape that was required to be an equilibrium is none. `shape` is the last shape of the solve."""
 
     def __init__(self, message: str, shape: Shape) -> None:
         super().__init__(message)
@@ -106,7 +106,7 @@ class Shape(Saving[CoreShape]):
 
     @cached_property
     def actuation(self) -> Floats:
-        """(m,) what was asked for, in the order of `robot.actuators`: ratio [-], tension [N], pressure [kPa] or
+        """(m,) requested commands, in the order of `robot.actuators`: ratio [-], tension [N], pressure [kPa] or
         voltage [kV]."""
         return self._core.actuation
 
@@ -114,8 +114,8 @@ class Shape(Saving[CoreShape]):
     def actuators(self) -> dict[str, ActuatorState]:
         """By name: ratio, pressure, tension or voltage."""
         states = {}
-        for info, told in zip(self._robot.actuator_infos, self._core.actuators()):
-            requested, ratio, measure, load, curve, slack, layer, tendon, (amount, volumes) = told
+        for info, values in zip(self._robot.actuator_infos, self._core.actuators()):
+            requested, ratio, measure, load, curve, slack, layer, tendon, (amount, volumes) = values
             charge, capacitance, field = layer or (None, None, None)
             end, sticking = tendon or (None, None)
             states[info.name] = ActuatorState(
@@ -126,7 +126,7 @@ class Shape(Saving[CoreShape]):
 
     @property
     def status(self) -> str:
-        """'converged', 'not converged', 'interrupted' or 'limit' (no equilibrium can be followed as far as asked)."""
+        """'converged', 'not converged', 'interrupted' or 'limit' (the path of equilibria ends before the request)."""
         return self._core.status
 
     @property
@@ -135,7 +135,7 @@ class Shape(Saving[CoreShape]):
 
     @property
     def reached(self) -> float:
-        """Share of the way from the start's actuation to the one asked for at which the shape is [-]."""
+        """The load factor: the completed fraction of the change from the start's actuation to the requested one [-]."""
         return self._core.reached
 
     @property
@@ -154,7 +154,7 @@ class Shape(Saving[CoreShape]):
 
     @property
     def unstable_modes(self) -> int:
-        """Ways in which the equilibrium is unstable; physical formulation."""
+        """The number of unstable modes of the equilibrium; physical formulation."""
         return self._core.unstable_modes
 
     @property
@@ -163,11 +163,11 @@ class Shape(Saving[CoreShape]):
         return self._core.fingerprint
 
     def require(self) -> Shape:
-        """Itself; raises NotConverged where it is no equilibrium of what was asked for."""
+        """Returns itself; raises NotConverged where it is no equilibrium of the requested actuation."""
         if self.converged:
             return self
         why = f": {self.remark}" if self.remark else ""
-        raise NotConverged(f"{self.status} at {100 * self.reached:.4g} % of the way{why}", self)
+        raise NotConverged(f"{self.status} at {100 * self.reached:.4g} % of the load path{why}", self)
 
     @cached_property
     def deformation(self) -> Deformation:
@@ -214,7 +214,7 @@ class Shape(Saving[CoreShape]):
 
     @property
     def vertex_reactions(self) -> Floats:
-        """(n, 3) what supports push and pull at the vertices that they hold [N]; physical formulation."""
+        """(n, 3) reaction forces of the supports at their vertices [N]; physical formulation."""
         return self._core.vertex_reactions
 
     @cached_property
@@ -297,9 +297,9 @@ class Shape(Saving[CoreShape]):
 
     def __repr__(self) -> str:
         commands = zip(self._robot.actuator_infos, self.actuation)
-        asked = ", ".join(f"{info.name}={info.command_text(value)}" for info, value in commands)
+        texts = ", ".join(f"{info.name}={info.command_text(value)}" for info, value in commands)
         places = ", ".join(f"{name} at {_point(place)} mm" for name, place in self.markers.items())
-        return f"<softkin.Shape {asked or 'at rest'}: {self.status}{'; ' + places if places else ''}>"
+        return f"<softkin.Shape {texts or 'at rest'}: {self.status}{'; ' + places if places else ''}>"
 
 
 def _warning_text(line: str) -> str:
@@ -307,7 +307,7 @@ def _warning_text(line: str) -> str:
 
 
 def warn_of(findings: Iterable[tuple[int, bool, str]], raised: set[int] | None = None, where: str = "") -> None:
-    """Raises what is to be warned of as SoftkinWarning.
+    """Raises findings that are warnings as SoftkinWarning.
 
     raised  kinds that were raised before, which are not raised again
     where   before the text: "step 3: "

@@ -1,4 +1,4 @@
-"""How equilibria are solved, and what is told meanwhile."""
+"""Options of the solver, and the progress that it reports."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ __all__ = ["Progress", "Solver"]
 
 @dataclass(frozen=True)
 class Solver:
-    """How equilibria are solved: `solver=` of whatever solves."""
+    """Options of the solver: `solver=` of all calls that solve for equilibria."""
 
     method: str = "newton"
     """'newton', or for target shapes 'local-global': Algorithm 1 of Fang et al. 2020"""
@@ -44,9 +44,9 @@ class Solver:
         object.__setattr__(self, "_options", _core.SolveOptions(method, tolerance_mm or 0.0, *others))
 
     def __repr__(self) -> str:
-        """What is not as usual."""
-        told = [f"{name}={value!r}" for name, value in asdict(self).items() if value != getattr(Solver, name)]
-        return f"Solver({', '.join(told)})"
+        """Shows the options that differ from the defaults."""
+        settings = [f"{name}={value!r}" for name, value in asdict(self).items() if value != getattr(Solver, name)]
+        return f"Solver({', '.join(settings)})"
 
     def __reduce__(self) -> tuple[type[Solver], tuple[Any, ...]]:
         return Solver, astuple(self)
@@ -56,25 +56,25 @@ USUAL = Solver()
 
 
 class Progress(NamedTuple):
-    """What a long solve tells while it runs."""
+    """The progress of a running solve."""
 
     iteration: int
     step_mm: float
-    """largest move of a vertex in the last iteration [mm]; of inverse kinematics the least error so far [mm]"""
+    """largest move of a vertex in the last iteration [mm]; of inverse kinematics the smallest error so far [mm]"""
     tolerance_mm: float
     """the step, or error, at which it stops [mm]"""
     share: float
-    """of the way to what was asked for [-]; < 0: not known"""
+    """completed fraction of the change to the requested commands [-]; < 0: not known"""
 
 
 ProgressFunction = Callable[[Progress], object]
 
 
-def telling(progress: ProgressFunction) -> Callable[[int, float, float, float], bool]:
-    def told(iteration: int, step_mm: float, tolerance_mm: float, share: float) -> bool:
-        return progress(Progress(iteration, step_mm, tolerance_mm, share)) is not False
+def progress_callback(progress: ProgressFunction) -> Callable[[int, float, float, float], bool]:
+    def report(iteration: int, step_mm: float, tolerance_mm: float, fraction: float) -> bool:
+        return progress(Progress(iteration, step_mm, tolerance_mm, fraction)) is not False
 
-    return told
+    return report
 
 
 _named = lru_cache(maxsize=8)(Solver)
@@ -97,7 +97,7 @@ def options_of(
     beyond: float | None = None,
     budget_s: float | None = None,
 ) -> _core.SolveOptions:
-    """With what is asked of one call; published: may it stop as published?"""
+    """Returns the options of one call; published: does the call support as_published?"""
     options = (solver if type(solver) is Solver else value_of(solver))._options
     if options.as_published and not published:
         raise InvalidInput("as_published is for solve and path")

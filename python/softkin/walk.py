@@ -1,4 +1,4 @@
-"""Walks: a gait with feet that slide one way better than the other. docs/walking.md"""
+"""Walks: gaits with feet of direction-dependent friction. docs/walking.md"""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ __all__ = ["WalkRun", "WalkStep"]
 
 @dataclass(frozen=True)
 class WalkStep:
-    """Where a walk has come to."""
+    """A step of a walk."""
 
     number: int
     """of the step, from 0"""
@@ -30,7 +30,7 @@ class WalkStep:
     sliding: str
     """what has slid since the step before: 'none', 'rear', 'front' or 'both'"""
     friction_N: float | None
-    """with which the feet stretch the body, < 0: press it together; None: target shapes know no forces"""
+    """with which the feet stretch the body, < 0: press it together; None: target shapes have no forces"""
     feet_mm: dict[str, float]
     """of the rear and the front foot along the direction of travel, from where the rear one stood at rest"""
     travel_mm: float

@@ -14,8 +14,8 @@
 
 namespace softkin::python {
 
-// Pickles: the bytes of values one after another. A type tells its members once, in an overload of
-// members(archive, value), for both ways. They are read by the version of softkin that wrote them.
+// Pickles: the bytes of values one after another. A type lists its members once, in an overload of
+// members(archive, value), for writing and reading. Pickles are read by the version of softkin that wrote them.
 
 static_assert(std::endian::native == std::endian::little, "pickles are little-endian");
 

@@ -84,7 +84,7 @@ void bind_actuator(nb::module_& module) {
             for (const ConnectedChamber& chamber : connected_chambers(a)) regions.push_back(chamber.region);
             return regions;
           },
-          "Regions of chambers that share one pipe; [] of others.")
+          "Regions of chambers on one pipe; [] of others.")
       .def_prop_ro(
           "load_key", [](const Actuator& a) { return multiplier_key(a); },
           "'pressure_kPa', 'tension_N', 'voltage_kV' or ''.")

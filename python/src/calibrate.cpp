@@ -29,7 +29,7 @@ namespace {
 using calibration::FittedCurve;
 using Files = std::vector<std::string>;
 
-/// A calibration with what is told of it.
+/// A calibration with its report.
 struct Calibration {
   std::string text, json, fragment;  // fragment: the materials of a scene; empty: a simulation is not converged
   std::string failure;               // why; empty: none
@@ -38,12 +38,12 @@ struct Calibration {
   std::string doubt{};  // what is probably not meant; empty: nothing
 };
 
-/// An actuator's curve with what is told of it.
+/// An actuator's curve with its report.
 struct CurveCalibration {
   FittedCurve fitted;
   std::string text, json, file, title;
   std::optional<Table> rows{};                                 // of syringe tests
-  std::optional<calibration::PressureComparison> predicted{};  // where it was asked for
+  std::optional<calibration::PressureComparison> predicted{};  // where it was requested
 };
 
 using BranchOut = std::tuple<std::vector<double>, std::vector<double>, std::vector<double>>;
@@ -52,8 +52,8 @@ BranchOut branch_out(const CurveBranch& branch) {
   return {branch.ratio.x(), branch.ratio.y(), branch.spread};
 }
 
-CurveCalibration told(FittedCurve fitted, const std::string& head, std::string json, const std::string& made_by,
-                      const std::string& title, bool measured) {
+CurveCalibration reported(FittedCurve fitted, const std::string& head, std::string json, const std::string& made_by,
+                          const std::string& title, bool measured) {
   std::string text = head + (measured ? calibration::quality_text(fitted) + "\n" : "\n");
   text += calibration::curve_text(fitted.curve);
   std::string file = actuator_curve_text(fitted.curve, "made by softkin calibrate " + made_by + " from:\n" + head);
@@ -91,8 +91,8 @@ CurveCalibration pressure(const SyringeTests& given) {
     const calibration::PressureComparison* comparison = physics ? &*physics : nullptr;
     std::string json = calibration::pressure_json(given.files, task.setup, results.fitted, comparison);
     Table rows = calibration::syringe_table(task.setup, results.samples);
-    CurveCalibration curve =
-        told(std::move(results.fitted), results.head, std::move(json), "pressure", "volume ratio by Eq. (19)", true);
+    CurveCalibration curve = reported(std::move(results.fitted), results.head, std::move(json), "pressure",
+                                      "volume ratio by Eq. (19)", true);
     curve.rows = std::move(rows);
     if (physics) curve.text += "\n" + calibration::comparison_text(*physics, curve.fitted.curve, *spec);
     curve.predicted = std::move(physics);
@@ -124,13 +124,13 @@ CurveCalibration dea(const Files& tests, const std::string& law, const std::stri
                                   stretch_limit, breakdown_kV_mm};
   auto [fitted, head, computed] = calibration::evaluate(task, "of the elastomer");
   std::string json = calibration::dea_json(tests, fitted, computed ? &*computed : nullptr);
-  return told(std::move(fitted), head, std::move(json), "dea", "area ratio by voltage", !computed);
+  return reported(std::move(fitted), head, std::move(json), "dea", "area ratio by voltage", !computed);
 }
 
-Calibration tensile(const std::string& file, double poisson_ratio, double tolerance_percent, double most_strain,
+Calibration tensile(const std::string& file, double poisson_ratio, double tolerance_percent, double max_strain,
                     const std::string& law, const std::string& region, bool stable,
                     const std::optional<TensileLayout>& layout) {
-  const calibration::TensileTask task{file, poisson_ratio, tolerance_percent, most_strain, law, region, stable};
+  const calibration::TensileTask task{file, poisson_ratio, tolerance_percent, max_strain, law, region, stable};
   const calibration::TensileResults results =
       calibration::evaluate(task, layout ? read_tensile_file(file, *layout) : read_tensile_curve(file));
   return {tensile_text(task, results), tensile_json(task, results), tensile_fragment(task, results), "",
@@ -182,7 +182,7 @@ Calibration specimens(const Specimens& given,
                       const std::optional<nb::typed<nb::callable, nb::object(double)>>& progress) {
   calibration::SpecimenTask task = task_of(given);
   Watch watch{std::nullopt};
-  std::atomic<double> share = 0;
+  std::atomic<double> fraction = 0;
   task.options.go_on = [&watch] { return watch.go_on(); };
   calibration::SpecimenResults results;
   std::string doubt;
@@ -195,12 +195,12 @@ Calibration specimens(const Specimens& given,
     calibration::TestLog log(given.journal, tests_set_up(task, stretched, twists), true);
     task.options.log = &log;
     results = calibration::evaluate(task, std::move(stretched), std::move(twists),
-                                    [&](const std::string&, double done) { share = done; });
+                                    [&](const std::string&, double done) { fraction = done; });
     task.options.log = nullptr;
     if (!results.interrupted) log.remove();
   };
   watch.watch(work, [&] {
-    if (progress) (*progress)(share.load());
+    if (progress) (*progress)(fraction.load());
   });
   Calibration calibrated{specimens_text(task, results),
                          specimens_json(task, results),
@@ -298,7 +298,8 @@ void bind_calibrate(nb::module_& module) {
              nb::arg("most_strain"), nb::arg("law"), nb::arg("region"), nb::arg("stable"), nb::arg("layout").none(),
              nb::call_guard<nb::gil_scoped_release>());
   using calibration::RelaxationTask;
-  nb::class_<RelaxationTask>(module, "RelaxationTask", "Relaxation, creep and cyclic tests and what is asked of them.")
+  nb::class_<RelaxationTask>(module, "RelaxationTask",
+                             "Relaxation, creep and cyclic tests and the fit requested of them.")
       .def(nb::init<>())
       .def_rw("tests", &RelaxationTask::tests)
       .def_rw("creep", &RelaxationTask::creep)

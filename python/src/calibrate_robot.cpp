@@ -14,7 +14,7 @@ namespace softkin::python {
 
 namespace {
 
-/// Measured poses and what is asked of them, as the Python layer has it.
+/// Measured poses and the options of their fit, as the Python layer passes them.
 struct PosesTask {
   std::string scene, poses, outlines, loss = "squares";  // outlines: empty: there are none
   std::vector<std::string> numbers, given, changes;
@@ -26,7 +26,7 @@ struct PosesTask {
   bool ordered = false;
 };
 
-/// A fit with what is told of it.
+/// A fit with its report.
 struct RobotCalibration {
   std::string text, json;
   Table readings;
@@ -49,17 +49,17 @@ calibration::RobotFitOptions options_of(const PosesTask& task, std::size_t poses
 }
 
 calibration::NumberedRobot robot_of(const PosesTask& task) {
-  AskedScene asked;
-  asked.scene = task.scene;
-  asked.changes = task.changes;
+  RequestedScene requested;
+  requested.scene = task.scene;
+  requested.changes = task.changes;
   std::vector<std::filesystem::path> inputs;
-  return {asked, calibration::parse_fitted_numbers("fit", task.numbers), inputs,
+  return {requested, calibration::parse_fitted_numbers("fit", task.numbers), inputs,
           calibration::parse_given_numbers("given", task.given)};
 }
 
 RobotCalibration fit(const PosesTask& task,
-                     const std::optional<nb::typed<nb::callable, nb::object(int, double)>>& tell) {
-  std::optional<RobotCalibration> told;
+                     const std::optional<nb::typed<nb::callable, nb::object(int, double)>>& on_progress) {
+  std::optional<RobotCalibration> reported;
   Watch watch{std::nullopt};
   std::atomic<int> iteration = 0;
   std::atomic<double> rms_mm = 0;
@@ -79,17 +79,17 @@ RobotCalibration fit(const PosesTask& task,
                                             : calibration::fit_robot(robot, poses, options, progress);
     if (found.status == Status::interrupted) return;
     const calibration::RobotFitReport report{robot, poses, options, found, model};
-    told = RobotCalibration{robot_fit_text(report), robot_fit_json(report), robot_fit_table(report), {}};
+    reported = RobotCalibration{robot_fit_text(report), robot_fit_json(report), robot_fit_table(report), {}};
     try {
-      told->plot = robot_fit_plot(report);
+      reported->plot = robot_fit_plot(report);
     } catch (const InvalidInput& error) {
-      told->no_plot = error.what();
+      reported->no_plot = error.what();
     }
   };
   watch.watch(work, [&] {
-    if (tell) (*tell)(iteration.load(), rms_mm.load());
+    if (on_progress) (*on_progress)(iteration.load(), rms_mm.load());
   });
-  return std::move(told).value();
+  return std::move(reported).value();
 }
 
 }  // namespace

@@ -43,9 +43,10 @@ class Link {
   }
 
   /// A stop lasts until its program has ended: neither go_on() nor pause() of another thread takes it back.
-  void order(Order asked) {
+  void order(Order requested) {
     Order now = order_;
-    while ((now < Order::stop || asked == Order::quick_stop) && !order_.compare_exchange_weak(now, asked)) continue;
+    while ((now < Order::stop || requested == Order::quick_stop) && !order_.compare_exchange_weak(now, requested))
+      continue;
   }
   void close() { port_.reset(); }
 

@@ -19,7 +19,7 @@ namespace softkin::python {
 namespace {
 
 /// An estimate with its words and its shape.
-struct Told {
+struct Reported {
   Estimate estimate;
   std::vector<std::string> words, left_out;
   ShapePtr shape;  // null: none was found
@@ -37,35 +37,36 @@ class RobotEstimator {
     estimator_.emplace(robot_->model(), all, columns_, vector_of(deviations), options);
   }
 
-  Told update(const VectorIn& commands, const VectorIn& values, double elapsed_s) {
-    const Actuation asked = vector_of(commands);
+  Reported update(const VectorIn& commands, const VectorIn& values, double elapsed_s) {
+    const Actuation requested = vector_of(commands);
     const Eigen::VectorXd read = vector_of(values);
     return watched(std::nullopt, [&](const ProgressCallback& progress) {
-      Told told{estimator_->update(asked, read, elapsed_s, progress), {}, {}, {}};
-      if (told.estimate.status == Status::interrupted || told.estimate.numbers.empty()) return told;
-      told.words = estimate_words(told.estimate, estimator_->groups());
-      for (const std::size_t g : told.estimate.left_out) told.left_out.push_back(estimator_->groups()[g].name);
-      Equilibrium found{told.estimate.state, told.estimate.actuation, {}};
-      found.report.status = told.estimate.status;
-      told.shape = std::make_shared<Shape>(robot_, std::move(found), options_.statics);
-      return told;
+      Reported reported{estimator_->update(requested, read, elapsed_s, progress), {}, {}, {}};
+      if (reported.estimate.status == Status::interrupted || reported.estimate.numbers.empty()) return reported;
+      reported.words = estimate_words(reported.estimate, estimator_->groups());
+      for (const std::size_t g : reported.estimate.left_out) reported.left_out.push_back(estimator_->groups()[g].name);
+      Equilibrium found{reported.estimate.state, reported.estimate.actuation, {}};
+      found.report.status = reported.estimate.status;
+      reported.shape = std::make_shared<Shape>(robot_, std::move(found), options_.statics);
+      return reported;
     });
   }
 
   /// deviations: of each kind of reading, in its unit; 0: none of the kind
-  std::vector<PlannedReading> plan(const std::vector<const Told*>& told, const VectorIn& deviations, int count) const {
+  std::vector<PlannedReading> plan(const std::vector<const Reported*>& reported, const VectorIn& deviations,
+                                   int count) const {
     PlanOptions options{runs::marker_vertices(robot_->model()), {}, columns_, count};
     const Eigen::VectorXd given = vector_of(deviations);
     for (std::size_t k = 0; k < readings; ++k) options.deviations[k] = given[k];
     std::vector<PlanBasis> estimates;
-    for (const Told* each : told) estimates.emplace_back(each->estimate);
+    for (const Reported* each : reported) estimates.emplace_back(each->estimate);
     return plan_readings(robot_->model(), estimates, options);
   }
 
   void forget() { estimator_->forget(); }
-  [[nodiscard]] std::vector<std::string> told_commands() const {
+  [[nodiscard]] std::vector<std::string> reported_commands() const {
     std::vector<std::string> names;
-    for (const Index a : estimator_->told_actuators()) names.push_back(robot_->model().actuators[a].name);
+    for (const Index a : estimator_->reported_actuators()) names.push_back(robot_->model().actuators[a].name);
     return names;
   }
 
@@ -82,50 +83,50 @@ TableOut matrix_out(const Eigen::MatrixXd& matrix) {
 }
 
 /// Of every vertex, along each axis [mm].
-TableOut vertex_deviations(const Told& told, Index vertices) {
+TableOut vertex_deviations(const Reported& reported, Index vertices) {
   Eigen::MatrixXd deviations(vertices, 3);
-  for (Index v = 0; v < vertices; ++v) deviations.row(v) = told.estimate.vertex_deviation(v).transpose();
+  for (Index v = 0; v < vertices; ++v) deviations.row(v) = reported.estimate.vertex_deviation(v).transpose();
   return matrix_out(deviations);
 }
 
 }  // namespace
 
 void bind_estimate(nb::module_& module) {
-  nb::class_<ToldNumber>(module, "ToldNumber", "A number that readings told, with its standard deviation.")
-      .def_ro("name", &ToldNumber::name)
-      .def_ro("unit", &ToldNumber::unit)
-      .def_ro("value", &ToldNumber::value)
-      .def_ro("deviation", &ToldNumber::deviation)
-      .def_ro("known_mean", &ToldNumber::known_mean)
-      .def_ro("known_deviation", &ToldNumber::known_deviation)
-      .def_ro("at_bound", &ToldNumber::at_bound);
-  nb::class_<ToldPlace>(module, "ToldPlace", "Where readings told a force to act.")
-      .def_ro("force", &ToldPlace::force)
+  nb::class_<EstimatedNumber>(module, "ToldNumber", "A number estimated from readings, with its standard deviation.")
+      .def_ro("name", &EstimatedNumber::name)
+      .def_ro("unit", &EstimatedNumber::unit)
+      .def_ro("value", &EstimatedNumber::value)
+      .def_ro("deviation", &EstimatedNumber::deviation)
+      .def_ro("known_mean", &EstimatedNumber::known_mean)
+      .def_ro("known_deviation", &EstimatedNumber::known_deviation)
+      .def_ro("at_bound", &EstimatedNumber::at_bound);
+  nb::class_<EstimatedPlace>(module, "ToldPlace", "Where a force was estimated to act.")
+      .def_ro("force", &EstimatedPlace::force)
       .def_prop_ro(
-          "at_rest", [](const ToldPlace& p) { return vector_out(p.at_rest); }, nb::rv_policy::automatic)
+          "at_rest", [](const EstimatedPlace& p) { return vector_out(p.at_rest); }, nb::rv_policy::automatic)
       .def_prop_ro(
-          "present", [](const ToldPlace& p) { return vector_out(p.present); }, nb::rv_policy::automatic)
+          "present", [](const EstimatedPlace& p) { return vector_out(p.present); }, nb::rv_policy::automatic)
       .def_prop_ro(
-          "covariance", [](const ToldPlace& p) { return matrix_out(p.covariance); }, nb::rv_policy::automatic);
-  nb::class_<Told>(module, "Told", "What readings told.")
-      .def_prop_ro("status", [](const Told& t) { return std::string(name_of(t.estimate.status)); })
-      .def_prop_ro("remark", [](const Told& t) { return t.estimate.remark; })
-      .def_prop_ro("numbers", [](const Told& t) { return t.estimate.numbers; })
-      .def_prop_ro("places", [](const Told& t) { return t.estimate.places; })
+          "covariance", [](const EstimatedPlace& p) { return matrix_out(p.covariance); }, nb::rv_policy::automatic);
+  nb::class_<Reported>(module, "Told", "What was estimated from readings.")
+      .def_prop_ro("status", [](const Reported& t) { return std::string(name_of(t.estimate.status)); })
+      .def_prop_ro("remark", [](const Reported& t) { return t.estimate.remark; })
+      .def_prop_ro("numbers", [](const Reported& t) { return t.estimate.numbers; })
+      .def_prop_ro("places", [](const Reported& t) { return t.estimate.places; })
       .def_prop_ro(
-          "covariance", [](const Told& t) { return matrix_out(t.estimate.covariance); }, nb::rv_policy::automatic)
+          "covariance", [](const Reported& t) { return matrix_out(t.estimate.covariance); }, nb::rv_policy::automatic)
       .def_prop_ro(
-          "computed", [](const Told& t) { return vector_out(t.estimate.computed); }, nb::rv_policy::automatic)
-      .def_prop_ro("chi_square", [](const Told& t) { return t.estimate.chi_square; })
-      .def_prop_ro("freedoms", [](const Told& t) { return t.estimate.freedoms; })
-      .def_prop_ro("misfit", [](const Told& t) { return t.estimate.misfit(); })
-      .def_prop_ro("seconds", [](const Told& t) { return t.estimate.seconds; })
-      .def_prop_ro("equilibria", [](const Told& t) { return t.estimate.equilibria; })
-      .def_ro("words", &Told::words)
-      .def_ro("left_out", &Told::left_out)
-      .def_ro("shape", &Told::shape)
+          "computed", [](const Reported& t) { return vector_out(t.estimate.computed); }, nb::rv_policy::automatic)
+      .def_prop_ro("chi_square", [](const Reported& t) { return t.estimate.chi_square; })
+      .def_prop_ro("freedoms", [](const Reported& t) { return t.estimate.freedoms; })
+      .def_prop_ro("misfit", [](const Reported& t) { return t.estimate.misfit(); })
+      .def_prop_ro("seconds", [](const Reported& t) { return t.estimate.seconds; })
+      .def_prop_ro("equilibria", [](const Reported& t) { return t.estimate.equilibria; })
+      .def_ro("words", &Reported::words)
+      .def_ro("left_out", &Reported::left_out)
+      .def_ro("shape", &Reported::shape)
       .def("vertex_deviations", &vertex_deviations, nb::arg("vertices"));
-  nb::class_<PlannedReading>(module, "PlannedReading", "A reading that would tell more.")
+  nb::class_<PlannedReading>(module, "PlannedReading", "A reading that would add information.")
       .def_ro("name", &PlannedReading::name)
       .def_ro("vertex", &PlannedReading::vertex)
       .def_prop_ro(
@@ -135,7 +136,7 @@ void bind_estimate(nb::module_& module) {
           "numbers", [](const PlannedReading& p) { return vector_out(p.numbers); }, nb::rv_policy::automatic)
       .def_prop_ro(
           "places", [](const PlannedReading& p) { return vector_out(p.places); }, nb::rv_policy::automatic);
-  nb::class_<RobotEstimator>(module, "Estimator", "Tells what pushes a robot from its readings.")
+  nb::class_<RobotEstimator>(module, "Estimator", "Estimates the forces on a robot from its readings.")
       .def(
           "__init__",
           [](RobotEstimator* self, const RobotPtr& robot, const std::vector<std::string>& unknowns,
@@ -152,7 +153,7 @@ void bind_estimate(nb::module_& module) {
       .def("update", &RobotEstimator::update, nb::arg("commands"), nb::arg("values"), nb::arg("elapsed_s"))
       .def("plan", &RobotEstimator::plan, nb::arg("told"), nb::arg("deviations"), nb::arg("count"))
       .def("forget", &RobotEstimator::forget)
-      .def_prop_ro("told_commands", &RobotEstimator::told_commands);
+      .def_prop_ro("told_commands", &RobotEstimator::reported_commands);
 }
 
 }  // namespace softkin::python

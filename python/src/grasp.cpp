@@ -32,50 +32,50 @@ struct GraspOut {
   [[nodiscard]] ShapePtr shape_of(const Equilibrium& at) const { return std::make_shared<Shape>(robot, at, options); }
 };
 
-/// What is asked of a grasp.
-struct Asked {
+/// The request of a grasp.
+struct Requested {
   Index body = 0;
   std::vector<Actuation> closing;
   std::vector<PullDirection> directions;
-  std::optional<double> most_N;
+  std::optional<double> max_N;
   StaticsOptions options;
 };
 
-Asked asked_of(const Robot& robot, const NamedSteps& closing, const std::string& body,
-               const std::vector<std::string>& directions, std::optional<double> most_N,
-               const StaticsOptions& options) {
-  Asked asked{read_body(robot.model(), "body", body), {}, {}, most_N, options};
-  for (const ActuationStep& step : closing.steps) asked.closing.push_back(step.actuation);
-  for (const std::string& each : directions) asked.directions.push_back({each, read_direction("directions", each)});
-  return asked;
+Requested requested_of(const Robot& robot, const NamedSteps& closing, const std::string& body,
+                       const std::vector<std::string>& directions, std::optional<double> max_N,
+                       const StaticsOptions& options) {
+  Requested requested{read_body(robot.model(), "body", body), {}, {}, max_N, options};
+  for (const ActuationStep& step : closing.steps) requested.closing.push_back(step.actuation);
+  for (const std::string& each : directions) requested.directions.push_back({each, read_direction("directions", each)});
+  return requested;
 }
 
 /// By statics of its own, as the command does it.
 std::shared_ptr<GraspOut> grasp(const RobotPtr& robot, const NamedSteps& closing, const std::string& body,
-                                const std::vector<std::string>& directions, std::optional<double> most_N,
-                                const StaticsOptions& options, const Tell& progress) {
-  const auto work =
-      [robot, asked = asked_of(*robot, closing, body, directions, most_N, options)](const ProgressCallback& callback) {
-        const Model& model = robot->model();
-        const Statics statics(model);
-        const GraspProgress told = [&callback](const std::string&, const Progress& p) { return callback(p); };
-        auto out = std::make_shared<GraspOut>();
-        out->body = asked.body;
-        out->grasp = close_around(statics, asked.closing, asked.body, asked.options, told);
-        for (const PullDirection& direction : asked.directions) {
-          if (!out->grasp.held || (!out->pulls.empty() && out->pulls.back().status == Status::interrupted)) break;
-          out->pulls.push_back(
-              largest_pull(statics, out->grasp.last.state, {asked.body, direction, asked.most_N}, asked.options, told));
-        }
-        return out;
-      };
+                                const std::vector<std::string>& directions, std::optional<double> max_N,
+                                const StaticsOptions& options, const ProgressFunction& progress) {
+  const auto work = [robot, requested = requested_of(*robot, closing, body, directions, max_N, options)](
+                        const ProgressCallback& callback) {
+    const Model& model = robot->model();
+    const Statics statics(model);
+    const GraspProgress reported = [&callback](const std::string&, const Progress& p) { return callback(p); };
+    auto out = std::make_shared<GraspOut>();
+    out->body = requested.body;
+    out->grasp = close_around(statics, requested.closing, requested.body, requested.options, reported);
+    for (const PullDirection& direction : requested.directions) {
+      if (!out->grasp.held || (!out->pulls.empty() && out->pulls.back().status == Status::interrupted)) break;
+      out->pulls.push_back(largest_pull(statics, out->grasp.last.state, {requested.body, direction, requested.max_N},
+                                        requested.options, reported));
+    }
+    return out;
+  };
   std::shared_ptr<GraspOut> out = watched_solve(*robot, progress, work);
   out->robot = robot;
   out->options = options;
   return out;
 }
 
-/// A pull: name and direction; force [N], move [mm], normal force [N]; slipping share; what then; status; shape.
+/// A pull: name and direction; force [N], move [mm], normal force [N]; slipping fraction; outcome; status; shape.
 using PullOut = std::tuple<std::string, std::array<double, 3>, std::array<double, 3>, std::optional<double>,
                            std::string, std::string, ShapePtr>;
 
@@ -114,7 +114,7 @@ void bind_grasp(nb::module_& module) {
       .def_prop_ro("remark", [](const GraspOut& g) { return g.grasp.remark; })
       .def_prop_ro("shape", [](const GraspOut& g) { return g.shape_of(g.grasp.last); })
       .def("pulls", &pulls_of,
-           "Name, direction, (force [N], move [mm], normal force [N]), slipping share, what then, status, shape.")
+           "Name, direction, (force [N], move [mm], normal force [N]), slipping fraction, what then, status, shape.")
       .def("table", &grasp_table)
       .def("pickled",
            [](const GraspOut& g) {

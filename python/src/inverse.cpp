@@ -23,7 +23,7 @@ namespace {
 
 using Three = std::array<double, 3>;
 
-/// What is asked, by name.
+/// The requested goals, by name.
 struct Goals {
   RobotPtr robot;
   std::vector<runs::NamedGoal> named;
@@ -77,7 +77,7 @@ InverseOptions options_of(const std::string& method, std::optional<double> toler
 std::shared_ptr<Answer> inverse(const Goals& goals, const SessionPtr& session, const std::optional<VectorIn>& from,
                                 const ShapePtr& start, const std::shared_ptr<Answer>& last,
                                 const std::optional<VectorIn>& preferred, std::vector<bool> free,
-                                InverseOptions options, const Tell& progress) {
+                                InverseOptions options, const ProgressFunction& progress) {
   const RobotPtr& robot = goals.robot;
   if (start && start->robot() != robot) throw InvalidInput("start is a shape of another robot");
   options.free = std::move(free);

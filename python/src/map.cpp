@@ -29,11 +29,11 @@ Statics statics_of(const Robot& robot, const Map* map, bool polish) {
   return statics_by(robot.model(), map ? &map->map : nullptr, polish);
 }
 
-/// Told of equilibria and checks that were solved, how far off predictions are, and what is done.
+/// Callback with the numbers of equilibria and checks that were solved, the prediction error, and the current activity.
 using MapTell = std::optional<nb::typed<nb::callable, nb::object(Index, Index, double, std::string)>>;
 
-/// store: where the map is to be, and beside it what was found so far; empty: nowhere
-/// returns  with it why it is not as accurate as was asked for
+/// store: the file of the map, with its journal next to it; empty: none
+/// returns  the map, and why it misses the requested accuracy; empty: it does not
 std::tuple<MapPtr, std::string> make_map(const RobotPtr& robot, const MapOptions& options, const std::string& store,
                                          const MapTell& progress) {
   const Model& model = robot->model();
@@ -52,7 +52,7 @@ std::tuple<MapPtr, std::string> make_map(const RobotPtr& robot, const MapOptions
         return watch.go_on();
       });
     } catch (const InvalidInput&) {
-      if (journal) journal->remove();  // no later call could go on with it
+      if (journal) journal->remove();  // no later call could continue it
       throw;
     }
   };
@@ -77,7 +77,7 @@ MapOptions map_options(double accuracy_mm, double load_accuracy, double shape_ac
   options.accuracy_mm = accuracy_mm;
   options.load_accuracy = load_accuracy;
   options.shape_accuracy_mm = shape_accuracy_mm;
-  options.most_equilibria = most;
+  options.max_equilibria = most;
   options.checks = checks;
   options.seed = seed;
   options.statics = statics;
@@ -197,19 +197,20 @@ EstimateOut estimate_at(const Map& map, const std::vector<Index>& inputs, const 
                         const VectorIn& deviations) {
   std::vector<MapUnknown> unknowns;
   for (std::size_t i = 0; i < inputs.size(); ++i) unknowns.push_back({inputs[i], means.data()[i], spreads.data()[i]});
-  const auto told = estimate_by_map(map.map, unknowns, vector_of(commands), vector_of(values), vector_of(deviations));
-  if (!told) throw InvalidInput(refusal(map, commands));
-  const maps::RowMatrix covariance = told->covariance;
-  return {vector_out(told->commands),
+  const auto reported =
+      estimate_by_map(map.map, unknowns, vector_of(commands), vector_of(values), vector_of(deviations));
+  if (!reported) throw InvalidInput(refusal(map, commands));
+  const maps::RowMatrix covariance = reported->covariance;
+  return {vector_out(reported->commands),
           table_of<double>(covariance.data(), inputs.size(), inputs.size()),
-          vector_out(told->computed),
-          told->chi_square,
-          told->freedoms,
-          told->misfit(),
-          told->converged};
+          vector_out(reported->computed),
+          reported->chi_square,
+          reported->freedoms,
+          reported->misfit(),
+          reported->converged};
 }
 
-/// Name, unit, accuracy that was asked for, largest and mean error.
+/// Name, unit, requested accuracy, largest and mean error.
 using OutputOut = std::tuple<std::string, std::string, double, double, double>;
 std::vector<OutputOut> outputs_of(const Map& map) {
   const MapData& data = map.map.data();

@@ -42,9 +42,9 @@ void members(A& archive, LoadBranch& b) {
 template <class A>
 void members(A& archive, PhysicalReport& r) {
   auto& [residual_N, pull_N, unstable_modes, buckled, buckled_mm, snapped_mm, snapped_from, friction_change,
-         unstable_from, branch] = r;
+         slipping_fraction, unstable_from, branch] = r;
   archive(residual_N, pull_N, unstable_modes, buckled, buckled_mm, snapped_mm, snapped_from, friction_change,
-          unstable_from, branch);
+          slipping_fraction, unstable_from, branch);
 }
 template <class A>
 void members(A& archive, SolveReport& r) {
@@ -67,8 +67,8 @@ void remembered(A& archive, std::shared_ptr<const ViscousHistory>& history) {
 }
 template <class A>
 void members(A& archive, State& s) {
-  auto& [positions, actuation, multipliers, share, anchors, eyelets, pressures, history, elapsed_s] = s;
-  archive(positions, actuation, multipliers, share, anchors, eyelets, pressures, elapsed_s);
+  auto& [positions, actuation, multipliers, fraction, anchors, eyelets, pressures, history, elapsed_s] = s;
+  archive(positions, actuation, multipliers, fraction, anchors, eyelets, pressures, elapsed_s);
   remembered(archive, history);
 }
 template <class A>

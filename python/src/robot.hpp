@@ -61,7 +61,7 @@ using MapPtr = std::shared_ptr<Map>;
 struct Session : std::enable_shared_from_this<Session> {
   explicit Session(RobotPtr of) : robot(std::move(of)), statics(robot->model()) {}
   /// by      null: none; answers in the solver's place
-  /// polish  the solver goes on from its answers
+  /// polish  the solver continues from its answers
   /// throws  InvalidInput where it is the map of another robot, or one without shape
   Session(RobotPtr of, MapPtr by, bool polish);
 
@@ -84,7 +84,7 @@ struct RunTurns {
   std::vector<double> lines{};    // of the line between every two, as runs::LineTurns has them
 };
 
-/// An equilibrium and what was asked. The record is made when it is asked for.
+/// An equilibrium and its request. The record is made at the first access.
 class Shape : public std::enable_shared_from_this<Shape> {
  public:
   Shape(RobotPtr robot, Equilibrium found, StaticsOptions options, RunTurns turns = {})

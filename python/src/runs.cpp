@@ -38,7 +38,7 @@ fs::path made(const std::string& folder) {
   return folder;
 }
 
-/// Files of a run that goes on where it was; an empty folder: none.
+/// Files of a run that can be resumed; an empty folder: none.
 runs::RunFiles files_in(const std::string& store) {
   const fs::path folder = made(store);
   return folder.empty() ? runs::RunFiles() : runs::RunFiles{folder / "report.json", folder / "path.pvd"};
@@ -168,17 +168,17 @@ class FollowRun : public Runner<runs::WaypointRecord> {
   [[nodiscard]] Table commands() { return follow_.commands(); }
   [[nodiscard]] Table errors() { return follow_.errors(); }
   /// Status, error [mm], targets by marker, equilibria, why the search stopped, time [s], inserted.
-  using Asked = std::tuple<std::string, double, std::map<std::string, std::vector<std::optional<double>>>, int,
-                           std::string, std::optional<double>, bool>;
-  [[nodiscard]] Asked asked() {
+  using Requested = std::tuple<std::string, double, std::map<std::string, std::vector<std::optional<double>>>, int,
+                               std::string, std::optional<double>, bool>;
+  [[nodiscard]] Requested requested() {
     const runs::WaypointRecord& record = run().last();
-    Asked all{name_of(record.end), record.error_mm,      {}, record.equilibria, record.search_remark,
-              record.asked.time,   record.asked.inserted};
+    Requested all{name_of(record.end),   record.error_mm,          {}, record.equilibria, record.search_remark,
+                  record.requested.time, record.requested.inserted};
     const MarkerPath& path = follow_.path();
     for (std::size_t p = 0; p < path.markers.size(); ++p) {
       auto& target = std::get<2>(all)[model().markers[path.markers[p]].name];
       for (Index axis = 0; axis < 3; ++axis)
-        target.push_back(path.axes[p][axis] ? std::optional(record.asked.targets[p][axis]) : std::nullopt);
+        target.push_back(path.axes[p][axis] ? std::optional(record.requested.targets[p][axis]) : std::nullopt);
     }
     return all;
   }
@@ -376,7 +376,7 @@ void bind_runs(nb::module_& module) {
           nb::arg("samples").none(), nb::arg("store"))
       .def("commands", &FollowRun::commands)
       .def("errors", &FollowRun::errors)
-      .def("asked", &FollowRun::asked)
+      .def("asked", &FollowRun::requested)
       .def("step", &FollowRun::step, "The last record as a step of the report, JSON.");
 }
 

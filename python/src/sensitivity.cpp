@@ -61,7 +61,7 @@ struct Changed {
   [[nodiscard]] double half() const { return perturbation * (value != 0 ? std::abs(value) : 1); }
 };
 
-/// The numbers of a robot that are asked for.
+/// The requested numbers of a robot.
 struct Numbers {
   std::vector<std::unique_ptr<Changed>> all;
   std::vector<Perturbed> perturbed;
@@ -90,17 +90,17 @@ std::vector<NumberSlopes> sensitivity_of(const Shape& shape, const std::vector<s
   {
     const nb::gil_scoped_release released;
     const State& state = shape.found().state;
-    const Numbers asked(shape.robot()->source(), numbers);
+    const Numbers requested(shape.robot()->source(), numbers);
     const ParameterSensitivity found =
-        Perturbations(shape.robot()->statics(), asked.perturbed).at(state, shape.options());
+        Perturbations(shape.robot()->statics(), requested.perturbed).at(state, shape.options());
     if (!found.regular) refuse_singular();
     for (std::size_t p = 0; p < numbers.size(); ++p) {
-      values.push_back(asked.all[p]->value);
+      values.push_back(requested.all[p]->value);
       moves.emplace_back(found.positions[p]);
       loads.emplace_back(found.multipliers.col(p));
       Rows& rows = markers.emplace_back(static_cast<Eigen::Index>(shape.model().markers.size()), 3);
       for (Eigen::Index m = 0; m < rows.rows(); ++m)
-        rows.row(m) = marker_slope(shape.model(), asked.perturbed[p], m, state.positions, found.positions[p]);
+        rows.row(m) = marker_slope(shape.model(), requested.perturbed[p], m, state.positions, found.positions[p]);
     }
   }
   const auto table = [](const Rows& rows) { return table_of<double>(rows.data(), rows.rows(), rows.cols()); };
@@ -110,7 +110,7 @@ std::vector<NumberSlopes> sensitivity_of(const Shape& shape, const std::vector<s
   return out;
 }
 
-/// By the places of the vertices what a number changes by that it is told of by markers, (k, 3).
+/// Returns a gradient by markers, (k, 3), as one by the positions of the vertices.
 Points by_places(const Shape& shape, const Points& by_markers) {
   Points sum = Points::Zero(shape.positions().rows(), 3);
   for (Eigen::Index m = 0; m < by_markers.rows(); ++m)
@@ -125,20 +125,21 @@ VectorOut gradient_of(const Shape& shape, const std::vector<std::string>& number
   Eigen::VectorXd gradient;
   {
     const Points markers = points_of(by_markers);
-    ShapeGradient told{points_of(by_positions), vector_of(by_loads)};
+    ShapeGradient reported{points_of(by_positions), vector_of(by_loads)};
     const nb::gil_scoped_release released;
     const State& state = shape.found().state;
-    const Numbers asked(shape.robot()->source(), numbers);
-    told.by_places += by_places(shape, markers);
+    const Numbers requested(shape.robot()->source(), numbers);
+    reported.by_places += by_places(shape, markers);
     const Eigen::MatrixXd found =
-        Perturbations(shape.robot()->statics(), asked.perturbed).gradients(state, {told}, shape.options());
+        Perturbations(shape.robot()->statics(), requested.perturbed).gradients(state, {reported}, shape.options());
     if (found.cols() != std::ssize(numbers)) refuse_singular();
     gradient = found.row(0).transpose();
     const Points still = Points::Zero(state.positions.rows(), 3);  // how markers move in the shape as it is
     for (std::size_t p = 0; p < numbers.size(); ++p)
       for (Eigen::Index m = 0; m < markers.rows(); ++m)
         if (!markers.row(m).isZero(0))
-          gradient[p] += markers.row(m) * marker_slope(shape.model(), asked.perturbed[p], m, state.positions, still);
+          gradient[p] +=
+              markers.row(m) * marker_slope(shape.model(), requested.perturbed[p], m, state.positions, still);
   }
   return vector_out(gradient);
 }

@@ -68,7 +68,7 @@ std::string report_of(const Shape& shape) {
 
 /// Of a layer under voltage: charge, capacitance, largest field.
 using LayerOut = std::array<double, 3>;
-/// Of a cable that rubs: tension at its far end, share that sticks.
+/// Of a cable with friction: tension at its far end, fraction that sticks.
 using TendonOut = std::array<double, 2>;
 /// Of a sealed chamber: its amount [mL]. Of connected ones: the volume of each [mL].
 using ChamberOut = std::pair<std::optional<double>, std::vector<double>>;
@@ -81,7 +81,7 @@ ActuatorOut actuator_of(const Shape& shape, std::size_t a, const runs::ActuatorR
   std::optional<LayerOut> layer;
   if (record.layer) layer = {record.layer->charge_nC, record.layer->capacitance_pF, record.layer->field_kV_mm};
   std::optional<TendonOut> tendon;
-  if (rubs(actuator))
+  if (has_friction(actuator))
     if (const auto& of = shape.deformation().tendons.at(a)) tendon = {of->end_N, of->sticks};
   const std::optional<double> amount =
       filling_of(actuator) ? std::optional(runs::amount_mL(actuator, record)) : std::nullopt;
@@ -152,12 +152,12 @@ void bind_fields(nb::class_<Shape>& type) {
             std::vector<std::tuple<std::string, std::array<double, 3>, std::array<double, 3>, double, double>> all;
             for (std::size_t f = 0; f < s.record().forces.fibres.size(); ++f) {
               const FibreForces& of = s.record().forces.fibres[f];
-              all.emplace_back(s.model().reinforcement.fibres[f].name, std::array{of.mean_N, of.largest_N, of.least_N},
+              all.emplace_back(s.model().reinforcement.fibres[f].name, std::array{of.mean_N, of.largest_N, of.min_N},
                                array_of(of.where), of.stretch, of.slack);
             }
             return all;
           },
-          "Name, mean, largest and least tension [N], where the largest is [mm], stretch and slack share of each.")
+          "Name, mean, largest and least tension [N], where the largest is [mm], stretch and slack fraction of each.")
       .def_prop_ro(
           "layers",
           [](const Shape& s) {
@@ -165,12 +165,13 @@ void bind_fields(nb::class_<Shape>& type) {
             std::vector<std::tuple<std::string, std::array<double, 2>, Three, Three>> all;
             for (std::size_t l = 0; l < s.record().forces.layers.size(); ++l) {
               const LayerForces& of = s.record().forces.layers[l];
-              all.emplace_back(s.model().reinforcement.layers[l]->name, std::array{of.largest_N_mm, of.least_N_mm},
+              all.emplace_back(s.model().reinforcement.layers[l]->name, std::array{of.largest_N_mm, of.min_N_mm},
                                array_of(of.where), std::array{of.strain, of.wrinkled, of.slack});
             }
             return all;
           },
-          "Name, largest and least tension [N/mm], where the first is [mm], largest strain, shares wrinkled and slack "
+          "Name, largest and least tension [N/mm], where the first is [mm], largest strain, fractions wrinkled and "
+          "slack "
           "of each.")
       .def_prop_ro(
           "contacts",
@@ -185,7 +186,7 @@ void bind_fields(nb::class_<Shape>& type) {
                                std::array{pair.normal_N, pair.pressure_kPa, pair.area_mm2, pair.gap_mm});
             return all;
           },
-          "What touches: names, force [N], moment [N mm], centre [mm]; normal force [N], pressure [kPa], area [mm^2], "
+          "Contacts: names, force [N], moment [N mm], centre [mm]; normal force [N], pressure [kPa], area [mm^2], "
           "gap [mm].")
       .def_prop_ro(
           "contact_pressure",

@@ -26,7 +26,7 @@ namespace {
 
 ShapePtr solve(const RobotPtr& robot, const SessionPtr& session, const VectorIn& actuation, const ShapePtr& start,
                const std::optional<PointsIn>& positions, const std::optional<std::string>& file, StaticsOptions options,
-               const Tell& progress) {
+               const ProgressFunction& progress) {
   if (start && start->robot() != robot) throw InvalidInput("start is a shape of another robot");
   State from = file        ? runs::read_state(*file, robot->model())
                : positions ? State{points_of(*positions)}
@@ -34,14 +34,14 @@ ShapePtr solve(const RobotPtr& robot, const SessionPtr& session, const VectorIn&
                            : robot->statics().rest();
   options.reuse_factor = keeps(session.get());
   const auto work = [robot, session, start, options, from = std::move(from),
-                     asked = vector_of(actuation)](const ProgressCallback& callback) {
+                     requested = vector_of(actuation)](const ProgressCallback& callback) {
     const State& begin = start ? start->found().state : from;
     const Statics& statics = statics_of(*robot, session.get());
-    return statics.solve(asked, begin, remembering(statics, begin, options), callback);
+    return statics.solve(requested, begin, remembering(statics, begin, options), callback);
   };
   Equilibrium found = watched_solve(*robot, progress, work);
   options.history = found.state.history;
-  // what the report tells of options is what the user can set
+  // the report contains the options that the user can set
   options.reuse_factor = true;
   options.deadline = {};
   return std::make_shared<Shape>(robot, std::move(found), options);
@@ -95,7 +95,7 @@ void bind_solve(nb::module_& module) {
             return options;
           },
           nb::arg("elapsed_s").none(), nb::arg("beyond").none(), nb::arg("budget_s").none(),
-          "The same, with what is asked of one call, which ends budget_s from now.")
+          "The same, with the options of one call, which ends budget_s from now.")
       .def_prop_ro(
           "for_the_solver",
           [](const StaticsOptions& options) {
@@ -104,7 +104,7 @@ void bind_solve(nb::module_& module) {
                    options.max_iterations != usual.max_iterations || options.stable || options.beyond > 0 ||
                    options.as_published || options.elapsed_s != usual.elapsed_s;
           },
-          "Is something asked that only the solver can do?");
+          "Does a request need the solver?");
   module.def("solve", &solve, nb::arg("robot"), nb::arg("session").none(), nb::arg("actuation"),
              nb::arg("start").none(), nb::arg("positions").none(), nb::arg("file").none(), nb::arg("options"),
              nb::arg("progress").none());

@@ -15,8 +15,8 @@ namespace nb = nanobind;
 
 /// A solve, watched as the size of the robot asks for. work owns all that it touches.
 template <class Work>
-auto watched_solve(const Robot& robot, const Tell& tell, Work work) {
-  return robot.is_large() ? watched_apart(tell, std::move(work)) : watched(tell, work);
+auto watched_solve(const Robot& robot, const ProgressFunction& on_progress, Work work) {
+  return robot.is_large() ? watched_apart(on_progress, std::move(work)) : watched(on_progress, work);
 }
 
 /// Session's statics, else the robot's, of which every solve stands for itself.

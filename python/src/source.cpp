@@ -62,7 +62,7 @@ void members(A& archive, scene::Node& n) {
 }
 template <class A>
 void members(A& archive, FileContents& f) {
-  archive(f.meshes, f.surfaces, f.sidecars, f.curves, f.scenes, f.samples, f.ways, f.directions);
+  archive(f.meshes, f.surfaces, f.sidecars, f.curves, f.scenes, f.samples, f.routes, f.directions);
 }
 template <class A>
 void members(A& archive, Source& s) {
@@ -71,10 +71,10 @@ void members(A& archive, Source& s) {
 
 RobotSpec Source::spec(bool read) {
   RobotSpec result = parse_scene(*tree, name, files.kept(read));
-  AskedScene asked;
-  asked.formulation = formulation;
-  asked.forces = forces;
-  change(result, asked, "forces");
+  RequestedScene requested;
+  requested.formulation = formulation;
+  requested.forces = forces;
+  change(result, requested, "forces");
   return result;
 }
 

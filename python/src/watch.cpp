@@ -7,7 +7,8 @@ namespace softkin::python {
 
 using Clock = std::chrono::steady_clock;
 
-Watch::Watch(const Tell& tell) : tell_(tell), next_((Clock::now() + between_looks).time_since_epoch().count()) {}
+Watch::Watch(const ProgressFunction& on_progress)
+    : report_(on_progress), next_((Clock::now() + between_looks).time_since_epoch().count()) {}
 
 ProgressCallback Watch::callback() {
   return [this](const Progress& progress) {
@@ -24,8 +25,9 @@ ProgressCallback Watch::callback() {
 bool Watch::look(const Progress* progress) {
   try {
     if (PyErr_CheckSignals() != 0) nb::raise_python_error();
-    if (!tell_ || progress == nullptr) return true;
-    const nb::object answer = (*tell_)(progress->iteration, progress->step_mm, progress->tolerance_mm, progress->share);
+    if (!report_ || progress == nullptr) return true;
+    const nb::object answer =
+        (*report_)(progress->iteration, progress->step_mm, progress->tolerance_mm, progress->fraction);
     if (answer.is(nb::bool_(false))) stopped_ = true;
   } catch (nb::python_error& error) {
     const std::lock_guard lock(mutex_);

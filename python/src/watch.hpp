@@ -18,18 +18,19 @@ namespace softkin::python {
 
 namespace nb = nanobind;
 
-/// What Python gives to be told of progress: iteration, step [mm], tolerance [mm], share; or None.
-using Tell = std::optional<nb::typed<nb::callable, nb::object(int, double, double, double)>>;
+/// Python's progress callback: iteration, step [mm], tolerance [mm], fraction; or None.
+using ProgressFunction = std::optional<nb::typed<nb::callable, nb::object(int, double, double, double)>>;
 
-/// Lets Python have its say while C++ works without the GIL: signals such as Ctrl-C, and a function of the user's.
+/// Serves Python while C++ works without the GIL: signals such as Ctrl-C, and a progress callback of the user's.
 class Watch {
  public:
-  /// tell: called with (iteration, step_mm, tolerance_mm, share) at most 20 times a second; False stops the work; or None
-  explicit Watch(const Tell& tell);
+  /// on_progress: called with (iteration, step_mm, tolerance_mm, fraction) at most 20 times a second; False stops the
+  /// work; or None
+  explicit Watch(const ProgressFunction& on_progress);
 
   /// For work that is done on the calling thread. The watch must outlive it.
   [[nodiscard]] ProgressCallback callback();
-  /// Throws what was raised: KeyboardInterrupt, or what `tell` raised. With the GIL.
+  /// Throws the exception that was raised: KeyboardInterrupt, or one of `on_progress`. Call it with the GIL.
   void rethrow();
 
   /// Does work without the GIL on a thread of its own, and looks for signals meanwhile; calls tick, with the GIL, as
@@ -38,19 +39,19 @@ class Watch {
   [[nodiscard]] bool go_on() const { return !stopped_; }
 
   static constexpr std::chrono::milliseconds between_looks{50};
-  /// With the GIL; false where the work is to stop. progress: to be told, or null
+  /// Call it with the GIL. Returns false where the work is to stop. progress: to report; null: nothing new
   [[nodiscard]] bool look(const Progress* progress);
   [[nodiscard]] bool has_raised() const { return raised_.has_value(); }
 
  private:
-  Tell tell_;
+  ProgressFunction report_;
   std::atomic<bool> stopped_ = false;
   std::atomic<std::chrono::steady_clock::rep> next_;
   std::mutex mutex_;
   std::optional<nb::python_error> raised_;
 };
 
-/// Threads whose work nobody waits for any more; they end by themselves. They are joined before Python ends.
+/// Threads whose results are not needed any more; they end by themselves. They are joined before Python ends.
 class Abandoned {
  public:
   static void take(std::thread thread, std::shared_ptr<std::atomic<bool>> ended);
@@ -59,8 +60,8 @@ class Abandoned {
 
 /// Calls work without the GIL, then throws what was raised meanwhile.
 template <class Work>
-auto watched(const Tell& tell, const Work& work) {
-  Watch watch(tell);
+auto watched(const ProgressFunction& on_progress, const Work& work) {
+  Watch watch(on_progress);
   auto result = [&] {
     nb::gil_scoped_release released;
     return work(watch.callback());
@@ -69,23 +70,23 @@ auto watched(const Tell& tell, const Work& work) {
   return result;
 }
 
-/// The same on a thread of its own, for work that takes long from one look to the next: what is raised does not wait
-/// for it. work is told to stop then, and owns all that it touches; none of it is Python's.
+/// The same on a thread of its own, for work that polls seldom: an exception does not wait for it. The callback then
+/// stops the work, which owns all that it uses; none of it is Python's.
 template <class Work>
-auto watched_apart(const Tell& tell, Work work) -> decltype(work(ProgressCallback())) {
+auto watched_apart(const ProgressFunction& on_progress, Work work) -> decltype(work(ProgressCallback())) {
   using Result = decltype(work(ProgressCallback()));
   struct Shared {
     std::mutex mutex;
     std::condition_variable news;
     std::optional<Result> result;
     std::exception_ptr failure;
-    std::optional<Progress> progress;  // not told yet
+    std::optional<Progress> progress;  // not reported yet
     bool done = false;
     std::atomic<bool> stopped = false;
   };
   const auto shared = std::make_shared<Shared>();
   const auto ended = std::make_shared<std::atomic<bool>>(false);
-  Watch watch(tell);
+  Watch watch(on_progress);
   std::thread thread([shared, ended, work = std::optional<Work>(std::move(work))]() mutable {
     try {
       Result result = (*work)([&shared](const Progress& progress) {

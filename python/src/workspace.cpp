@@ -65,7 +65,7 @@ SamplingOptions sampling_of(const Model& model, Index samples, const std::string
   return options;
 }
 
-/// Told of a number of samples.
+/// Callback with the number of samples.
 using Counter = nb::typed<nb::callable, nb::object(Index)>;
 
 /// Samples that were solved, in their order.

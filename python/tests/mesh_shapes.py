@@ -1,4 +1,4 @@
-"""Surfaces that the tests of softkin.mesh share, and the command softkin."""
+"""Surfaces for the tests of softkin.mesh, and the command softkin."""
 
 from __future__ import annotations
 

@@ -14,7 +14,7 @@ import softkin
 from softkin import calibrate
 
 
-def told(command: str, *arguments: object) -> Any:
+def reported(command: str, *arguments: object) -> Any:
     done = subprocess.run(
         [command, "calibrate", *map(str, arguments), "--json"], check=True, capture_output=True, text=True
     )
@@ -24,7 +24,7 @@ def told(command: str, *arguments: object) -> Any:
 def test_tensile(examples: Path, command: str, tmp_path: Path) -> None:
     test = examples / "two_material_bar/tensile.csv"
     found = calibrate.tensile(test)
-    assert found.report == told(command, "material", "--tensile", test)
+    assert found.report == reported(command, "material", "--tensile", test)
     assert found.failure == "" and "materials:" in found.materials and len(found.residuals) > 10
     found.save(tmp_path / "m.yaml")
     assert (tmp_path / "m.yaml").read_text() == found.materials
@@ -35,12 +35,12 @@ def test_tensile(examples: Path, command: str, tmp_path: Path) -> None:
 
 
 def test_material(examples: Path, command: str) -> None:
-    file, shares = examples / "two_material_bar/specimens.csv", []
-    found = calibrate.material(file, formulation="physical", cells=1, progress=shares.append)
+    file, fractions = examples / "two_material_bar/specimens.csv", []
+    found = calibrate.material(file, formulation="physical", cells=1, progress=fractions.append)
     options = ("--formulation", "physical", "--cells", 1, "--width", 20, "--grip", "clamped", "--law", "neo-hookean")
-    expected = told(command, "material", file, *options, "--poisson-ratio", 0.45)
+    expected = reported(command, "material", file, *options, "--poisson-ratio", 0.45)
     assert found.report == expected  # nothing is marked as a default where all is given
-    assert found.failure == "" and shares
+    assert found.failure == "" and fractions
     for keywords, message in (
         ({"grip": "glued"}, "grip must be"),
         ({"formulation": "x"}, "formulation must be"),
@@ -57,7 +57,7 @@ def test_pressure(examples: Path, command: str, tmp_path: Path) -> None:
     test = examples / "three_chamber_actuator/measured/syringe.csv"
     volumes = ["--chamber-volume", "21mL", "--syringe-volume", "60mL", "--tube-volume", "1.5mL"]
     found = calibrate.pressure(test, chamber_volume="21mL", syringe_volume=60e3, tube_volume="1.5mL")
-    assert found.report == told(command, "pressure", test, *volumes)
+    assert found.report == reported(command, "pressure", test, *volumes)
     loading = found.loading
     assert loading.input.shape == loading.ratio.shape and loading.ratio[0] == 1
     assert found.ratio(float(loading.input[1])) == pytest.approx(loading.ratio[1])
@@ -99,7 +99,7 @@ def test_predicted_pressures(examples: Path, command: str) -> None:
     found = calibrate.pressure(
         test, syringe_volume="60mL", tube_volume="1.5mL", robot=softkin.load(scene), actuator="air1", predict=True
     )
-    assert found.report == told(command, "pressure", test, *options, "--predict")
+    assert found.report == reported(command, "pressure", test, *options, "--predict")
     prediction = found.prediction
     assert prediction is not None and prediction.complete and set(prediction.checks) == {"loading", "unloading"}
     assert prediction.ratio.shape == prediction.pressure_kPa.shape == (8,)
@@ -112,8 +112,8 @@ def test_material_goes_on_where_it_was(examples: Path, tmp_path: Path) -> None:
     file, store = examples / "two_material_bar/specimens.csv", tmp_path / "tests.run"
     whole = calibrate.material(file, formulation="physical", cells=2)
 
-    def stop(share: float) -> None:
-        if store.exists() and share > 0:
+    def stop(fraction: float) -> None:
+        if store.exists() and fraction > 0:
             raise InterruptedError
 
     with pytest.raises(InterruptedError):
@@ -134,7 +134,7 @@ def test_material_warnings_and_refusals(examples: Path, tmp_path: Path) -> None:
 
 def test_dea(examples: Path, command: str) -> None:
     test = examples / "dea_crawler/measured/voltage.csv"
-    assert calibrate.dea(test).report == told(command, "dea", test)
+    assert calibrate.dea(test).report == reported(command, "dea", test)
     computed = calibrate.dea(law="neo-hookean", shear_modulus_MPa=0.07, permittivity=4.4, thickness_mm=0.5, prestretch=2)
     assert computed.ratio(0) == pytest.approx(1) and computed.samples.shape == (0, 4)
     with pytest.raises(ValueError, match="give either tests or law"):
@@ -145,7 +145,7 @@ def test_dea(examples: Path, command: str) -> None:
         loading="constrained", prestretch_across=3,
     )  # fmt: skip
     more = ["--prestretch", "2", "--loading", "constrained", "--prestretch-across", "3"]
-    assert kept.report == told(command, "dea", *stiff, *more)
+    assert kept.report == reported(command, "dea", *stiff, *more)
     with pytest.raises(ValueError, match="law must be"):
         calibrate.dea(law="rubber")
     with pytest.raises(ValueError, match="loading must be"):
@@ -159,7 +159,7 @@ def test_dea(examples: Path, command: str) -> None:
 def test_relaxation(examples: Path, command: str, tmp_path: Path) -> None:
     cycles, creep = examples / "acrylic_strip/cycles.csv", examples / "acrylic_strip/creep.csv"
     found = calibrate.relaxation(cycles, law="gent")
-    assert found.report == told(command, "relaxation", cycles, "--law", "gent")
+    assert found.report == reported(command, "relaxation", cycles, "--law", "gent")
     times = [branch["time_s"] for branch in found.report["branches"]]
     assert len(times) == 3
     for time, made in zip(times, (0.61, 6.56, 61.25)):
@@ -170,7 +170,7 @@ def test_relaxation(examples: Path, command: str, tmp_path: Path) -> None:
     assert (tmp_path / "m.yaml").read_text() == found.materials and "gent with 3 branches" in repr(found)
     held = calibrate.relaxation(creep=[creep], law="gent", constants={"jm": 99.67}, branches=2)
     options = ("--law", "gent", "--constants", "jm=99.67", "--branches", 2)
-    assert held.report == told(command, "relaxation", "--creep", creep, *options)
+    assert held.report == reported(command, "relaxation", "--creep", creep, *options)
     for keywords, message in (
         ({}, "give tests, creep or both"),
         ({"tests": cycles, "law": "hookean"}, "law must be"),
@@ -216,15 +216,15 @@ def test_the_shipped_syringe_reads_what_the_chamber_did(examples: Path, tmp_path
 def test_a_robot_from_its_poses(examples: Path, command: str, tmp_path: Path) -> None:
     scenes = examples.parent / "docs" / "scenes"
     scene, poses = scenes / "finger_order_1.yaml", scenes / "finger_poses.csv"
-    told: list[tuple[int, float]] = []
+    reported: list[tuple[int, float]] = []
     found = calibrate.robot(
         scene,
         poses,
         fit={"materials.body.youngs_modulus": (45, 10, 100), "base.ry": None, "base.z": 0.0},
         keep=2,
-        progress=lambda iteration, rms_mm: told.append((iteration, rms_mm)),
+        progress=lambda iteration, rms_mm: reported.append((iteration, rms_mm)),
     )
-    assert found.converged and told
+    assert found.converged and reported
     assert found.values["materials.body.youngs_modulus"] == pytest.approx(38, abs=0.1)
     assert found.values["base.z"] == pytest.approx(1.5, abs=3 * found.deviations["base.z"])
     options = ["--fit", "materials.body.youngs_modulus=45,10,100", "--fit", "base.ry", "--fit", "base.z", "--keep", "2", "--json"]

@@ -18,8 +18,8 @@ def test_reports(robot: softkin.Robot, command: str, tmp_path: Path) -> None:
     assert found.marker == "tip" and found.distances.shape == (2, 2) and found.turns.size == 0
     assert (found.distances[0] == 0).all() and (found.distances[1] < 1e-2).all()
     assert len(found.steps) == 2 and len(found.times) == 2
-    told = subprocess.run([command, "compare", *map(str, files), "--json"], check=True, capture_output=True, text=True)
-    assert found.report == json.loads(told.stdout)
+    reported = subprocess.run([command, "compare", *map(str, files), "--json"], check=True, capture_output=True, text=True)
+    assert found.report == json.loads(reported.stdout)
     found.save_plot(tmp_path / "c.svg")
     assert (tmp_path / "c.svg").read_text().startswith("<")
     assert repr(found) and "<table>" in found._repr_html_()
@@ -30,8 +30,8 @@ def test_paths(examples: Path, command: str, tmp_path: Path) -> None:
     files = [str(measured / "camera.csv"), str(measured / "camera.csv")]
     found = softkin.compare.paths(files, plane="x-y", by="waypoint")
     options = ["--plane", "x-y", "--by", "waypoint", "--json"]
-    told = subprocess.run([command, "compare", *files, *options], check=True, capture_output=True, text=True)
-    assert found.report == json.loads(told.stdout)
+    reported = subprocess.run([command, "compare", *files, *options], check=True, capture_output=True, text=True)
+    assert found.report == json.loads(reported.stdout)
     assert len(found.heads) >= 2 and len(found.waypoints) > 0 and len(found.errors) >= len(found.waypoints)
     assert np.nanmax(np.abs(found.summary["largest"])) < 1e-12
     found.save_plot(tmp_path / "p.svg")

@@ -22,7 +22,7 @@ def solve(robot: softkin.Robot, ratio: float) -> softkin.Shape:
     return robot.solve(air1=ratio)
 
 
-def test_threads_that_share_a_robot_give_the_serial_results(robot: softkin.Robot) -> None:
+def test_threads_with_one_robot_give_the_serial_results(robot: softkin.Robot) -> None:
     serial = [solve(robot, ratio).fingerprint for ratio in RATIOS]
     with ThreadPoolExecutor(8) as pool:
         shared = [shape.fingerprint for shape in pool.map(lambda ratio: solve(robot, ratio), RATIOS * 2)]
@@ -104,7 +104,7 @@ def resident_kib() -> int:
     raise AssertionError("no VmRSS")
 
 
-@pytest.mark.skipif(not os.path.exists("/proc/self/status"), reason="the system does not tell how much memory is used")
+@pytest.mark.skipif(not os.path.exists("/proc/self/status"), reason="the system does not report memory use")
 def test_memory_does_not_grow() -> None:
     small = beam(4, 5)
     session = small.session()

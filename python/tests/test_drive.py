@@ -82,8 +82,8 @@ def test_plan_is_the_command_s(finger: softkin.Robot, examples: Path, command: s
     path = examples / "three_tendon_finger/path.csv"
     plan = drive.plan(finger, path)
     arguments = [command, "drive", finger.name, str(path), "--dry-run", "--json"]
-    told = subprocess.run(arguments, check=True, capture_output=True, text=True)
-    assert plan.report == json.loads(told.stdout)
+    reported = subprocess.run(arguments, check=True, capture_output=True, text=True)
+    assert plan.report == json.loads(reported.stdout)
     assert plan.gcode == plan.report["gcode"] and plan.schedule == "" and plan.lines == plan.report["lines"]
     assert plan.seconds > 0 and plan.defaults == plan.report["defaults"] and "G-code" in repr(plan)
 
@@ -125,14 +125,14 @@ def test_syringes(examples: Path, tmp_path: Path) -> None:
     commands = [[1, 1, 1], [1.1, 1, 1.05], [1.2, 1, 1.1]]
     pressures = {"air2": [0, 0, 0], "air3": [0, 20, 40]}
     plan = drive.plan(robot, commands, times=[0, 8, 16], hardware=hardware, pressures=pressures)
-    told = {name: syringe["rows"] for name, syringe in plan.report["syringes"].items()}
-    assert [row["pressure_kPa"] for row in told["air3"]] == [0, 20, 40]
-    for row, (ratio, gauge) in zip(told["air3"], ((1, 0), (1.05, 20), (1.1, 40))):
+    reported = {name: syringe["rows"] for name, syringe in plan.report["syringes"].items()}
+    assert [row["pressure_kPa"] for row in reported["air3"]] == [0, 20, 40]
+    for row, (ratio, gauge) in zip(reported["air3"], ((1, 0), (1.05, 20), (1.1, 40))):
         air = (21.1046927 + 61.5) * 100 / (100 + gauge)
         assert row["plunger_mm"] == pytest.approx((ratio * 21.1046927 + 61.5 - air) / 0.66, abs=0.51 / 80)
         assert row["leads_to"] == pytest.approx(ratio, abs=1e-3)
     given = robot.solve(air1=1.1).report["steps"][0]["actuators"]["air1"]["curve_pressure_kPa"]
-    assert told["air1"][1]["pressure_kPa"] == pytest.approx(given, abs=1e-6)
+    assert reported["air1"][1]["pressure_kPa"] == pytest.approx(given, abs=1e-6)
     assert plan.lines == 2 and plan.gcode.count("\nG1 X") == 2 and plan.schedule == ""
     with pytest.raises(softkin.InvalidInput, match="the commands:2: chamber 'air1': the loading branch"):
         shut = {"air2": [0, 0], "air3": [0, 0]}

@@ -1,4 +1,4 @@
-"""What pushes a robot, told from readings that the robot itself made up."""
+"""Estimates of external forces from readings that the robot itself computed."""
 
 from __future__ import annotations
 
@@ -37,40 +37,40 @@ def readings_of(shape: softkin.Shape) -> dict[str, float]:
     return {f"{name}_{axis}_mm": float(at[i]) for name, at in shape.markers.items() for i, axis in enumerate("xyz")}
 
 
-def test_a_push_is_told_with_its_shape(beam: Robot) -> None:
+def test_a_push_is_estimated_with_the_shape(beam: Robot) -> None:
     shape = beam.solve(push_fy=0.01, push_fz=-0.02)
     estimator = beam.estimator("push", DEVIATIONS)
     assert isinstance(estimator, Estimator)
     assert estimator.told_commands == ["push_fy", "push_fz"]
-    told = estimator.update(readings_of(shape))
-    assert isinstance(told, Estimate)
-    assert told.converged, told.remark
-    assert isinstance(told.numbers["push_fz"], ToldNumber)
-    assert told.numbers["push_fy"].value == pytest.approx(0.01, abs=2e-4)
-    assert told.numbers["push_fz"].value == pytest.approx(-0.02, abs=2e-4)
-    assert told.numbers["push_fz"].unit == "N"
-    assert 0 < told.numbers["push_fz"].deviation < told.numbers["push_fz"].known_deviation
-    assert told.covariance.shape == (2, 2)
-    assert not told.left_out
-    assert told.shape is not None
-    np.testing.assert_allclose(told.shape.positions, shape.positions, atol=0.05)
-    assert told.vertex_deviations.shape == (len(beam.rest), 3)
-    assert told.computed.shape == (9,)
-    assert told.misfit < 3
-    assert told.chi_square < 20
-    assert told.freedoms == pytest.approx(7, abs=0.5)
+    reported = estimator.update(readings_of(shape))
+    assert isinstance(reported, Estimate)
+    assert reported.converged, reported.remark
+    assert isinstance(reported.numbers["push_fz"], ToldNumber)
+    assert reported.numbers["push_fy"].value == pytest.approx(0.01, abs=2e-4)
+    assert reported.numbers["push_fz"].value == pytest.approx(-0.02, abs=2e-4)
+    assert reported.numbers["push_fz"].unit == "N"
+    assert 0 < reported.numbers["push_fz"].deviation < reported.numbers["push_fz"].known_deviation
+    assert reported.covariance.shape == (2, 2)
+    assert not reported.left_out
+    assert reported.shape is not None
+    np.testing.assert_allclose(reported.shape.positions, shape.positions, atol=0.05)
+    assert reported.vertex_deviations.shape == (len(beam.rest), 3)
+    assert reported.computed.shape == (9,)
+    assert reported.misfit < 3
+    assert reported.chi_square < 20
+    assert reported.freedoms == pytest.approx(7, abs=0.5)
 
 
-def test_where_it_is_told_too(beam: Robot) -> None:
+def test_the_place_of_a_push_is_estimated(beam: Robot) -> None:
     shape = beam.solve(push_fy=0.01, push_fz=-0.02)
-    told = beam.estimator(["push:place"], DEVIATIONS).update(readings_of(shape))
-    place = told.places["push"]
+    reported = beam.estimator(["push:place"], DEVIATIONS).update(readings_of(shape))
+    place = reported.places["push"]
     assert isinstance(place, ToldPlace)
     assert place.at_rest.shape == (3,)
     assert np.trace(place.covariance) > 0
 
 
-def test_readings_that_are_missing_widen_what_is_told(beam: Robot) -> None:
+def test_missing_readings_increase_the_deviation(beam: Robot) -> None:
     readings = readings_of(beam.solve(push_fz=-0.02))
     estimator = beam.estimator("push", DEVIATIONS, fade_s=1)
     first = estimator.update(readings, time_s=0).numbers["push_fz"]
@@ -87,12 +87,12 @@ def test_readings_that_are_missing_widen_what_is_told(beam: Robot) -> None:
 def test_a_wrong_marker_is_named(beam: Robot) -> None:
     readings = readings_of(beam.solve(push_fz=-0.02))
     readings["side_z_mm"] += 4
-    told = beam.estimator("push", DEVIATIONS).update(readings)
-    assert told.left_out == ["marker side"]
-    assert told.words[-1] == "left out, as it contradicts the other readings: marker side"
+    reported = beam.estimator("push", DEVIATIONS).update(readings)
+    assert reported.left_out == ["marker side"]
+    assert reported.words[-1] == "left out, as it contradicts the other readings: marker side"
 
 
-def test_a_wrench_a_pressure_and_a_stiffness_are_told_from_directions_too() -> None:
+def test_a_wrench_a_pressure_and_a_stiffness_are_estimated_from_directions_too() -> None:
     vertices, tetrahedra = block((8, 2, 2), (64, 12, 12))
     end = np.flatnonzero(vertices[:, 0] >= 56)
 
@@ -118,22 +118,22 @@ def test_a_wrench_a_pressure_and_a_stiffness_are_told_from_directions_too() -> N
 
     shape = arm(0.9).solve(tool_mx=6, tool_my=-4, tool_mz=8, hand=0.3)
     read = readings_of(shape)
-    # of a rigid part any two of its points tell the direction
+    # any two points of a rigid part determine its direction
     front, back = (np.flatnonzero((vertices == at).all(axis=1))[0] for at in ([64, 0, 0], [56, 0, 0]))
     along = (shape.positions[front] - shape.positions[back]) / 8
     read |= {f"imu_direction_{axis}": float(along[i]) for i, axis in enumerate("xyz")}
     deviations = {name: 0.005 if name.endswith("_mm") else 2e-4 for name in read}
     estimator = arm(1).estimator(["tool", "hand", "materials.all.stiffness=1+-0.2"], deviations)
     assert estimator.told_commands == ["tool_mx", "tool_my", "tool_mz", "hand"]
-    told = estimator.update(read)
-    assert told.converged, told.remark
+    reported = estimator.update(read)
+    assert reported.converged, reported.remark
     truth = {"tool_mx": 6, "tool_my": -4, "tool_mz": 8, "hand": 0.3, "materials.all.stiffness": 0.9}
     for name, value in truth.items():
-        assert abs(told.numbers[name].value - value) < told.numbers[name].deviation, name
-    assert told.numbers["tool_mx"].unit == "N mm"
-    assert told.numbers["hand"].unit == "kPa"
-    assert told.numbers["materials.all.stiffness"].unit == ""
-    assert told.numbers["materials.all.stiffness"].deviation < 0.2
+        assert abs(reported.numbers[name].value - value) < reported.numbers[name].deviation, name
+    assert reported.numbers["tool_mx"].unit == "N mm"
+    assert reported.numbers["hand"].unit == "kPa"
+    assert reported.numbers["materials.all.stiffness"].unit == ""
+    assert reported.numbers["materials.all.stiffness"].deviation < 0.2
 
 
 def test_refusals(beam: Robot) -> None:
@@ -153,23 +153,23 @@ def test_a_plan_says_what_to_read_further(beam: Robot) -> None:
     few = {name: value for name, value in DEVIATIONS.items() if name.startswith("middle")}
     estimator = beam.estimator("push:place", few)
     shape = beam.solve(push_fz=-0.02)
-    told = estimator.update({name: value for name, value in readings_of(shape).items() if name in few})
-    assert told.converged, told.remark
-    plan = estimator.plan(told, {"marker_mm": 0.02, "length_mm": 0.02}, 2)
+    reported = estimator.update({name: value for name, value in readings_of(shape).items() if name in few})
+    assert reported.converged, reported.remark
+    plan = estimator.plan(reported, {"marker_mm": 0.02, "length_mm": 0.02}, 2)
     assert len(plan) == 2
     best = plan[0]
     assert isinstance(best, PlannedReading)
     assert best.bits > plan[1].bits > 0
     assert best.vertex is None or best.at_rest is not None
-    assert best.numbers["push_fz"] < told.numbers["push_fz"].deviation
+    assert best.numbers["push_fz"] < reported.numbers["push_fz"].deviation
     assert plan[1].places["push"] < best.places["push"]
-    strain = estimator.plan([told], {"length_mm": 0.02})
+    strain = estimator.plan([reported], {"length_mm": 0.02})
     assert [reading.name for reading in strain] == ["strain (length)"]
     assert strain[0].vertex is None
     assert strain[0].at_rest is None
     with pytest.raises(ValueError, match="a plan is of"):
-        estimator.plan(told, {"tension_N": 1})
+        estimator.plan(reported, {"tension_N": 1})
     with pytest.raises(ValueError, match="above 0"):
-        estimator.plan(told, {"marker_mm": 0})
+        estimator.plan(reported, {"marker_mm": 0})
     with pytest.raises(InvalidInput, match="needs the deviation"):
-        estimator.plan(told, {})
+        estimator.plan(reported, {})

@@ -44,8 +44,8 @@ def robot() -> softkin.Robot:
 
 def test_a_plate_on_a_floor(robot: softkin.Robot) -> None:
     """Coulomb's limit holds it."""
-    told: list[softkin.Progress] = []
-    grasp = robot.grasp(directions=["x", (0, -3, 0)], progress=told.append)
+    reported: list[softkin.Progress] = []
+    grasp = robot.grasp(directions=["x", (0, -3, 0)], progress=reported.append)
     assert isinstance(grasp, softkin.Grasp) and grasp.require() is grasp
     assert grasp.held and grasp.reason == "" and grasp.body == "plate" and grasp.robot is robot
     (floor,) = grasp.shape.contacts
@@ -62,11 +62,11 @@ def test_a_plate_on_a_floor(robot: softkin.Robot) -> None:
         moved = pull.shape["plate"] - grasp.shape["plate"]
         assert pull.moved_mm == pytest.approx(np.linalg.norm(moved), rel=1e-9) and moved @ pull.direction > 0
     assert grasp.table["force_N"].tolist() == [pull.force_N for pull in grasp.pulls]
-    assert all(isinstance(each, softkin.Progress) for each in told)
+    assert all(isinstance(each, softkin.Progress) for each in reported)
 
 
 def test_a_plate_between_a_block_and_a_floor(robot: softkin.Robot) -> None:
-    """Both press it as hard as the block is held, less the weight; both rub."""
+    """Both exert the support force of the block, less the weight, and both have friction."""
     grasp = robot.grasp([[1, 0, 0, 0, each] for each in (0.5, 1)], directions="x")
     (pull,) = grasp.require().pulls
     pressed = pull.shape.reactions["top"].force_N
@@ -95,7 +95,7 @@ def test_a_body_that_falls() -> None:
 
 def test_it_can_be_stopped(robot: softkin.Robot) -> None:
     grasp = robot.grasp(floor_z=1, progress=lambda _: False)
-    if grasp.held:  # where a solve took less than a twentieth of a second nobody was asked
+    if grasp.held:  # progress is not called where a solve takes less than a twentieth of a second
         with pytest.raises(softkin.NotConverged, match="pulling along .*interrupted"):
             grasp.require()
     else:
@@ -109,7 +109,7 @@ def test_a_grasp_pickles(robot: softkin.Robot) -> None:
     assert again.shape.fingerprint == grasp.shape.fingerprint
     assert again.pulls[0].shape.fingerprint == grasp.pulls[0].shape.fingerprint
     assert repr(again) == repr(grasp) and "x 0.03" in repr(grasp) and "slips" in grasp._repr_html_()
-    # what rubs knows where it sticks
+    # contacts with friction keep their sticking points in the pickle
     pulled = {"plate_hold": 0, "plate_fx": 0.5 * FRICTION * WEIGHT}
     shapes = [each.robot.solve(pulled, start=each.pulls[0].shape).require() for each in (grasp, again)]
     assert shapes[0].fingerprint == shapes[1].fingerprint
@@ -171,10 +171,10 @@ def test_the_command_gives_the_same_numbers(command: str, tmp_path: Path) -> Non
     scene, path = scene_in(tmp_path), tmp_path / "closing.csv"
     path.write_text("floor_z_mm\n0.5\n1\n")
     arguments = [command, "grasp", str(scene), "--path", str(path), "--pull", "x", "--pull", "-1,0,1", "--json"]
-    told = subprocess.run(arguments, check=True, capture_output=True, text=True).stdout
+    reported = subprocess.run(arguments, check=True, capture_output=True, text=True).stdout
     grasp = softkin.load(scene).grasp(path, directions=["x", (-1, 0, 1)])
     keys = grasp.table.columns
-    assert [dict(zip(keys, row)) for row in grasp.table.rows] == json.loads(told)
+    assert [dict(zip(keys, row)) for row in grasp.table.rows] == json.loads(reported)
 
 
 def test_the_document(robot: softkin.Robot, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -151,8 +151,8 @@ def surface_of(size: float) -> tuple[Any, Any]:
 
 
 def right_calls(w: World) -> dict[str, Call]:
-    """A right call of every public function that has arguments. Of those that take long or need a device what comes
-    after the arguments' check fails by itself, as of a file that is not there."""
+    """A valid call of every public function that has arguments. Calls that would take long or need a device fail after
+    the check of the arguments, for example because of a missing file."""
     robot, shape, missing = w.robot, w.shape, w.file("none.csv")
     calls: dict[str, Call] = {
         "load": call(softkin.load, w.examples / "two_material_bar/two_material_bar.yaml"),
@@ -314,11 +314,11 @@ def test_bad_input(name: str, calls: dict[str, Call], tmp_path: Path, monkeypatc
             else:
                 keywords[parameter.name] = value
             try:
-                told = outcome(right.function, *given, **keywords)
+                reported = outcome(right.function, *given, **keywords)
             except Exception as error:
                 pytest.fail(f"{name}({parameter.name}: {what}): {type(error).__name__}: {error}")
             if what in must_refuse(parameter):
-                assert told != "accepted", f"{name}({parameter.name}: {what}) was accepted"
+                assert reported != "accepted", f"{name}({parameter.name}: {what}) was accepted"
 
 
 def must_refuse(parameter: inspect.Parameter) -> list[str]:

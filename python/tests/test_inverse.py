@@ -192,7 +192,7 @@ def test_jacobian(robot: softkin.Robot, goal: softkin.Shape) -> None:
         ({"tip": (0, 0)}, "target of 'tip' must be three coordinates"),
         ({"tip": (0, 0, float("nan"))}, "the target of 'tip'.* is nan"),
         ({"tip": (None, None, None)}, "axis|coordinate"),
-        ({"tip": (0, 0, 0), "weights": {"end": 1}}, "weights: nothing is asked of 'end'"),
+        ({"tip": (0, 0, 0), "weights": {"end": 1}}, "weights: there is no goal for 'end'"),
         ({"tip": (0, 0, 0), "fix": ["ari1"]}, "no actuator 'ari1'"),
         ({"tip": (0, 0, 0), "method": "luck"}, "method must be 'newton' or 'gradient', not 'luck'"),
         ({"tip": (0, 0, 0), "fix": ["air1"], "prefer": {"air1": 1.2}}, "fix: 'air1' does not change"),
@@ -204,17 +204,17 @@ def test_wrong_goals(robot: softkin.Robot, keywords: dict[str, object], message:
         robot.inverse(**keywords)  # type: ignore[arg-type]
 
 
-def test_a_start_that_stays_best_is_told_of(robot: softkin.Robot, goal: softkin.Shape) -> None:
-    """As the solve that found it told of it."""
+def test_a_start_that_stays_best_is_reported(robot: softkin.Robot, goal: softkin.Shape) -> None:
+    """The report agrees with that of the solve that found the start."""
     answer = robot.inverse(tip=goal["tip"], start=goal)
     assert answer.reached and answer.equilibria == 0 and answer.shape.iterations == goal.iterations
-    (told,), (known,) = answer.report["steps"], goal.report["steps"]
+    (reported,), (known,) = answer.report["steps"], goal.report["steps"]
     for key in ("step_mm", "residual_N", "pull_N", "energy"):
-        assert (key in told) == (key in known) and told.get(key) == known.get(key), key
-    assert told["pull_N"] > 0
+        assert (key in reported) == (key in known) and reported.get(key) == known.get(key), key
+    assert reported["pull_N"] > 0
     again = robot.session()
     again.solve(air1=1.4, air2=1.3, air3=1.2)
-    assert again.inverse(tip=goal["tip"]).report["steps"][0]["pull_N"] == pytest.approx(told["pull_N"], rel=1e-6)
+    assert again.inverse(tip=goal["tip"]).report["steps"][0]["pull_N"] == pytest.approx(reported["pull_N"], rel=1e-6)
 
 
 def test_session(robot: softkin.Robot, goal: softkin.Shape) -> None:

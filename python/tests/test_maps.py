@@ -169,7 +169,7 @@ def test_jacobian(made: softkin.KinematicMap) -> None:
         step = h * np.eye(3)[i]
         moved = (made.solve(commands + step).outputs - made.solve(commands - step).outputs) / (2 * h)
         np.testing.assert_allclose(slopes[:, :, i], moved, rtol=1e-6, atol=1e-5)
-    with pytest.raises(ValueError, match="the Jacobian was not asked for: solve.*jacobian=True"):
+    with pytest.raises(ValueError, match="the Jacobian was not requested: solve.*jacobian=True"):
         made.solve(commands).jacobian("tip")
 
 
@@ -246,16 +246,16 @@ def test_the_map_of_the_command(made: softkin.KinematicMap, command: str, tmp_pa
 
 
 def test_progress_and_going_on(robot: softkin.Robot, made: softkin.KinematicMap, tmp_path: Path) -> None:
-    told: list[softkin.MapProgress] = []
+    reported: list[softkin.MapProgress] = []
 
     def enough(at: softkin.MapProgress) -> None:
-        told.append(at)
+        reported.append(at)
         if at.equilibria >= 5:
             raise KeyError("enough")
 
     with pytest.raises(KeyError, match="enough"):
         robot.map(**ACCURACY, store=tmp_path / "beam.skmap", progress=enough, solver=softkin.Solver(threads=1))
-    assert told[-1].equilibria >= 5 and told[-1].error >= 0 and told[-1].doing and told[-1].checks >= 0
+    assert reported[-1].equilibria >= 5 and reported[-1].error >= 0 and reported[-1].doing and reported[-1].checks >= 0
     journal = tmp_path / "beam.skmap.run"
     assert journal.exists() and not (tmp_path / "beam.skmap").exists()
     with pytest.raises(softkin.InvalidInput, match="cannot be gone on with"):
@@ -269,8 +269,8 @@ def test_progress_and_going_on(robot: softkin.Robot, made: softkin.KinematicMap,
     np.testing.assert_array_equal(again.solve().outputs, made.solve().outputs)
 
 
-def test_less_accurate_than_asked_for(robot: softkin.Robot) -> None:
-    with pytest.warns(softkin.SoftkinWarning, match="not as accurate as was asked for: .*it ended after"):
+def test_a_map_less_accurate_than_requested_warns(robot: softkin.Robot) -> None:
+    with pytest.warns(softkin.SoftkinWarning, match="not as accurate as requested: .*it ended after"):
         poor = robot.map(accuracy_mm=1e-5, shape_accuracy_mm=None, most=5, checks=3, load_accuracy=0.5)
     assert not poor.accurate and poor.check.points == 0 and poor.check.outside == 3 and poor.outputs[3].accuracy == 0.5
     with pytest.raises(softkin.InvalidInput, match="outside the map"):
@@ -412,8 +412,8 @@ def test_exported_for_c(made: softkin.KinematicMap, tmp_path: Path) -> None:
         )
         (tmp_path / "main.c").write_text(program)
         subprocess.run(["cc", "main.c", "-o", "main"], cwd=tmp_path, check=True)
-        told = subprocess.run([tmp_path / "main"], capture_output=True, text=True, check=True).stdout.split()
-        np.testing.assert_allclose(np.array(told, float), made.solve([1.3, 1.2, 1.1])["tip"], rtol=1e-5)
+        reported = subprocess.run([tmp_path / "main"], capture_output=True, text=True, check=True).stdout.split()
+        np.testing.assert_allclose(np.array(reported, float), made.solve([1.3, 1.2, 1.1])["tip"], rtol=1e-5)
 
 
 def test_exported_for_javascript(made: softkin.KinematicMap, tmp_path: Path) -> None:
@@ -431,7 +431,7 @@ def test_exports_have_their_endings(made: softkin.KinematicMap, tmp_path: Path) 
             export(tmp_path / "beam.txt")
 
 
-def test_threads_share_a_map(robot: softkin.Robot, made: softkin.KinematicMap) -> None:
+def test_threads_with_one_map_give_the_serial_results(robot: softkin.Robot, made: softkin.KinematicMap) -> None:
     commands = inside(made, 20000)
     serial = made.solve(commands).outputs
     shape = robot.solve(commands[0], map=made).fingerprint
@@ -475,14 +475,14 @@ def test_estimate_tells_commands_from_outputs(made: softkin.KinematicMap) -> Non
         answer = made.solve(commands)
         read = {name: answer.outputs[q] for q, name in enumerate(columns)}
         read = {name: value + 0.05 * rng.standard_normal() for name, value in read.items()}
-        told = made.estimate(read, 0.05, {"air2": (commands[1], 0.1), "air3": (1.25, 10)}, commands)
-        assert told.converged and list(told.values) == ["air2", "air3"]
-        assert told.answer.commands[0] == commands[0]
+        reported = made.estimate(read, 0.05, {"air2": (commands[1], 0.1), "air3": (1.25, 10)}, commands)
+        assert reported.converged and list(reported.values) == ["air2", "air3"]
+        assert reported.answer.commands[0] == commands[0]
         low, high = made.ranges[2]
-        assert low <= told.values["air3"] <= high
-        held += abs(told.values["air3"] - commands[2]) <= 1.645 * told.deviations["air3"]
+        assert low <= reported.values["air3"] <= high
+        held += abs(reported.values["air3"] - commands[2]) <= 1.645 * reported.deviations["air3"]
     assert 170 <= held <= 195
-    assert told.covariance.shape == (2, 2) and told.deviations["air2"] < 0.1
+    assert reported.covariance.shape == (2, 2) and reported.deviations["air2"] < 0.1
     wrong = made.estimate({**read, "tip_y_mm": read["tip_y_mm"] + 100}, 0.05, {"air3": (1.25, 1)}, commands)
     assert wrong.misfit > 5
 

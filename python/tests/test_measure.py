@@ -25,7 +25,7 @@ GRID = "5x4,tag=12mm,gap=3mm"
 CHECKER = "checker,9x6,square=10mm"
 
 
-def told(command: str, *arguments: object) -> Any:
+def reported(command: str, *arguments: object) -> Any:
     done = subprocess.run([command, "measure", *map(str, arguments), "--json"], check=True, capture_output=True)
     return json.loads(done.stdout)
 
@@ -59,13 +59,13 @@ def test_without_opencv_the_command_says_so_too(tmp_path: Path) -> None:
 @needs_opencv
 def test_a_specimen(command: str, tmp_path: Path) -> None:
     files = [PICTURES / "rest.png", PICTURES / "stretched.png"]
-    shares: list[float] = []
+    fractions: list[float] = []
     found = measure.pictures(
-        files, interface=("red", "blue"), dots=["green", "yellow"], scale=SCALE, progress=shares.append
+        files, interface=("red", "blue"), dots=["green", "yellow"], scale=SCALE, progress=fractions.append
     )
     options = ["--interface", "red,blue", "--dots", "green,yellow", "--scale", "green,yellow=60mm"]
-    assert found.report == told(command, *files, *options, "-o", tmp_path / "theirs.csv")
-    assert shares == [0, 0.5, 1]
+    assert found.report == reported(command, *files, *options, "-o", tmp_path / "theirs.csv")
+    assert fractions == [0, 0.5, 1]
     found.save(tmp_path / "ours.csv")
     assert (tmp_path / "ours.csv").read_text() == found.csv() == (tmp_path / "theirs.csv").read_text()
     rest, stretched = found
@@ -89,7 +89,7 @@ def test_outlines(command: str, tmp_path: Path) -> None:
     files = [PICTURES.parent / "outline" / f"finger_{number}.png" for number in (1, 2, 3)]
     found = measure.pictures(files, outline="dark", dots=["red", "green"], scale=("red", "green", 100.0))
     options = ["--outline", "dark", "--dots", "red,green", "--scale", "red,green=100mm"]
-    assert found.report == told(command, *files, *options, "-o", tmp_path / "theirs.csv")
+    assert found.report == reported(command, *files, *options, "-o", tmp_path / "theirs.csv")
     found.save(tmp_path / "ours.csv")
     assert (tmp_path / "ours.csv").read_text() == (tmp_path / "theirs.csv").read_text()
     assert found.table.columns == ["picture", "x_mm", "y_mm"]
@@ -102,18 +102,18 @@ def test_outlines(command: str, tmp_path: Path) -> None:
 @needs_opencv
 def test_a_film(command: str, tmp_path: Path) -> None:
     options = {"dots": {"tip": "red", "green": "green", "yellow": "yellow"}, "angles": [("green", "tip")]}
-    shares: list[float] = []
-    found = measure.film(PICTURES / "track", fps=20, scale="green,yellow=30mm", progress=shares.append, **options)  # type: ignore[arg-type]
+    fractions: list[float] = []
+    found = measure.film(PICTURES / "track", fps=20, scale="green,yellow=30mm", progress=fractions.append, **options)  # type: ignore[arg-type]
     theirs = tmp_path / "theirs.csv"
     dots = ["--dots", "tip=red,green,yellow", "--angle", "green,tip", "--scale", "green,yellow=30mm"]
-    expected = told(command, PICTURES / "track", "--fps", 20, *dots, "-o", theirs)
+    expected = reported(command, PICTURES / "track", "--fps", 20, *dots, "-o", theirs)
     assert {**found.report, "output": str(theirs)} == expected
     found.save(tmp_path / "ours.csv")
     assert (tmp_path / "ours.csv").read_text() == theirs.read_text()
     assert found.markers == ["tip", "green", "yellow"] and len(found) == found.frames == 6 and not found.left_out
     assert found.frames_per_second == 20 and found.times == pytest.approx(np.arange(6) / 20)
     assert found.places.shape == (6, 3, 2) and found["tip"].tolist() == found.places[:, 0].tolist()
-    assert np.ptp(found["tip"], axis=0).max() > 1 and len(shares) == 6
+    assert np.ptp(found["tip"], axis=0).max() > 1 and len(fractions) == 6
     assert found.table.columns[:3] == ["t_s", "tip_x_mm", "tip_y_mm"] and "6 of 6 frames" in repr(found)
 
 
@@ -152,7 +152,7 @@ def seen(board: NDArray[np.uint8], dpi: float, tilt: tuple[float, float], far: f
     turn_y = np.array([[np.cos(along), 0, np.sin(along)], [0, 1, 0], [-np.sin(along), 0, np.cos(along)]])
     turn = turn_x @ turn_y
     height, width = board.shape[:2]
-    fine = 3  # rays a pixel, each way
+    fine = 3  # rays a pixel, along each axis
     u, v = (np.mgrid[0 : 640 * fine, 0 : 480 * fine] + 0.5) / fine - 0.5
     rays = np.stack([(u - 320) / 900, (v - 240) / 900, np.ones_like(u)], axis=-1) @ turn
     eye = np.array([0, 0, -far]) @ turn
@@ -188,7 +188,7 @@ def test_a_camera(command: str, tmp_path: Path) -> None:
     for file, view in zip(files, views):
         file.write_bytes(b"P6 640 480 255\n" + view.tobytes())
     theirs, ours = tmp_path / "theirs.yaml", tmp_path / "ours.yaml"
-    told(command, "camera", *files, "--board", CHECKER, "-o", theirs)
+    reported(command, "camera", *files, "--board", CHECKER, "-o", theirs)
     measure.camera(files, measure.Board(CHECKER)).save(ours)
     assert_same_camera(ours, theirs)
     read = measure.read_camera(ours)

@@ -25,8 +25,8 @@ def generate(*arguments):
     return main(["generate", "--body", "finger.stl", "--edge-length", "5", "-o", "finger.msh", *arguments])
 
 
-def tip_height(folder, share):
-    done = run_softkin("fk", "finger.yaml", "--set", f"air={share}", "--json", cwd=folder)
+def tip_height(folder, fraction):
+    done = run_softkin("fk", "finger.yaml", "--set", f"air={fraction}", "--json", cwd=folder)
     assert done.returncode == 0, done.stderr
     (step,) = json.loads(done.stdout)["steps"]
     assert step["status"] == "converged"
@@ -58,7 +58,7 @@ def test_from_stl_files_to_a_scene_that_moves(files, capsys, chambers_as):
     )
     scene = (files / "finger.yaml").read_text()
     assert "edit" in scene and "region: base" in scene
-    at_rest, inflated = (tip_height(files, share) for share in (1, 1.1))
+    at_rest, inflated = (tip_height(files, fraction) for fraction in (1, 1.1))
     assert inflated - at_rest == pytest.approx(-0.075, abs=0.02)  # mm: the wall above the cavity is the thinner one
 
 
@@ -83,7 +83,7 @@ def test_metres_warn_on_one_line(files, capsys):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "told"),
+    ("arguments", "reported"),
     [
         (["--chamber", "air"], "error: --chamber air: give NAME=FILE"),
         (["--chamber", "air=a.stl", "--chamber", "air=b.stl"], "error: --chamber air: given twice"),
@@ -93,9 +93,9 @@ def test_metres_warn_on_one_line(files, capsys):
         (["-o", "a.vtk"], "error: -o a.vtk: meshes are written as .msh"),
     ],
 )
-def test_bad_usage_is_one_line_and_2(files, capsys, arguments, told):
+def test_bad_usage_is_one_line_and_2(files, capsys, arguments, reported):
     assert generate(*arguments) == 2
-    assert told in capsys.readouterr().err
+    assert reported in capsys.readouterr().err
 
 
 def test_files_of_others_stay(files, capsys):

@@ -45,11 +45,11 @@ def test_numbers_in_words() -> None:
 @needs_tetwild
 def test_the_number_that_is_expected_is_about_right() -> None:
     body = box((0, 0, 0), (40, 10, 10))
-    told: list[tuple[str, float]] = []
-    mesh = from_surfaces(body, edge_length=1.5, progress=lambda what, seconds: told.append((what, seconds)))
+    reported: list[tuple[str, float]] = []
+    mesh = from_surfaces(body, edge_length=1.5, progress=lambda what, seconds: reported.append((what, seconds)))
     expected = expected_tetrahedra([body], 1.5, "tetwild")  # of the box with its margin, of which the body is the larger part
     assert 0.2 < len(mesh.tetrahedra) / expected < 2
-    assert told and told[0][0].startswith("meshing, about ") and [s for _, s in told] == sorted(s for _, s in told)
+    assert reported and reported[0][0].startswith("meshing, about ") and [s for _, s in reported] == sorted(s for _, s in reported)
 
 
 def test_what_progress_raises_ends_the_program(tmp_path: Path) -> None:

@@ -1,4 +1,4 @@
-"""From surfaces to meshes by fTetWild: volumes, regions, what is told, what is refused."""
+"""From surfaces to meshes by fTetWild: volumes, regions, notes, refusals."""
 
 import warnings
 
@@ -56,7 +56,7 @@ def test_every_tetrahedron_is_in_one_region_and_positive(finger):
     assert finger.quality.least_angle_deg > 5
 
 
-def test_the_boundary_stays_within_what_is_told(finger):
+def test_the_boundary_stays_within_the_tolerance(finger):
     assert set(finger.deviation_mm) == {"body", "air", "core", "pin"}
     assert max(finger.deviation_mm.values()) <= 1.5 * finger.tolerance_mm
     assert finger.tolerance_mm == pytest.approx(BODY.diagonal / 1000)
@@ -70,7 +70,7 @@ def test_the_wall_of_the_chamber_is_its_closed_boundary(finger):
     np.testing.assert_array_equal(np.unique(ordered, axis=0), np.unique(np.sort(wall.triangles, axis=1), axis=0))
 
 
-def test_faces_are_where_they_were_asked_for(finger):
+def test_faces_are_where_they_were_requested(finger):
     def area(name):
         return Surface(finger.vertices, finger.face_regions[name]).area
 
@@ -160,7 +160,7 @@ def test_a_soup_without_inside_is_one_clear_error():
 
 
 @pytest.mark.parametrize(
-    ("chamber", "told"),
+    ("chamber", "reported"),
     [
         (
             box((30, 3, 3), (35, 7, 7), "cavity.stl"),
@@ -176,8 +176,8 @@ def test_a_soup_without_inside_is_one_clear_error():
         ),
     ],
 )
-def test_chambers_outside_are_refused(chamber, told):
-    with pytest.raises(InvalidInput, match=told):
+def test_chambers_outside_are_refused(chamber, reported):
+    with pytest.raises(InvalidInput, match=reported):
         from_surfaces(BODY, {"air": chamber}, edge_length=5)
 
 
@@ -203,13 +203,13 @@ def test_chambers_that_touch_are_refused():
 def test_a_mesher_that_fails_is_one_clear_error(monkeypatch):
     from softkin.mesh import tetwild
 
-    for script, told in (
+    for script, reported in (
         ("raise RuntimeError('bad day')", "bad day"),
         ("import os; os.abort()", "ended by signal 6"),
         ("", "code 0"),
     ):
         monkeypatch.setattr(tetwild, "SCRIPT", script)
-        with pytest.raises(InvalidInput, match=rf"fTetWild made no mesh of box: .*{told}; try another tolerance"):
+        with pytest.raises(InvalidInput, match=rf"fTetWild made no mesh of box: .*{reported}; try another tolerance"):
             from_surfaces(BODY, edge_length=5)
 
 
@@ -247,7 +247,7 @@ def test_parts_that_stick_out_add_to_the_body():
 
 
 @pytest.mark.parametrize(
-    ("given", "told"),
+    ("given", "reported"),
     [
         ({"edge_length": 0}, "edge_length=0: give a length in mm, > 0"),
         ({"edge_length": 3, "tolerance": float("nan")}, "tolerance must be a finite number, not nan"),
@@ -262,13 +262,13 @@ def test_parts_that_stick_out_add_to_the_body():
         ({"edge_length": 3, "chambers": {"air": 3}}, "air: a surface is a file"),
     ],
 )
-def test_bad_arguments(given, told):
-    with pytest.raises(InvalidInput, match=told):
+def test_bad_arguments(given, reported):
+    with pytest.raises(InvalidInput, match=reported):
         from_surfaces(BODY, **given)
 
 
 @pytest.mark.parametrize(
-    ("chosen_by", "told"),
+    ("chosen_by", "reported"),
     [
         (
             "plane x=-3",
@@ -284,10 +284,10 @@ def test_bad_arguments(given, told):
         ({"plane": "z=0", "box": 3}, "chooses no faces"),
     ],
 )
-def test_regions_that_choose_nothing(chosen_by, told):
+def test_regions_that_choose_nothing(chosen_by, reported):
     from softkin.mesh.face_regions import choose_faces
 
-    with pytest.raises(InvalidInput, match=told):
+    with pytest.raises(InvalidInput, match=reported):
         choose_faces("base", chosen_by, BODY.vertices, BODY.triangles, BODY.diagonal / 1000)
 
 

@@ -86,7 +86,7 @@ def test_triangles_without_area_and_doubled_ones_go(tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("name", "content", "told"),
+    ("name", "content", "reported"),
     [
         ("a.stl", b"", "the file is empty"),
         ("a.stl", b"solid a\nfacet\nouter loop\nvertex 0 0\n", "a.stl:4: 2 numbers where 3 are needed"),
@@ -94,14 +94,14 @@ def test_triangles_without_area_and_doubled_ones_go(tmp_path):
         ("a.stl", ASCII_STL.replace("1 0 0", "nan 0 0").encode(), "a.stl:5: 'nan 0 0' are not finite"),
         ("a.stl", ASCII_STL.replace("  vertex 0 1 0\n", "").encode(), "a.stl:6: a facet of 2 vertices"),
         ("a.stl", ASCII_STL.replace("endfacet", "endfacte").encode(), "a.stl:8: 'endfacte' is no word of STL"),
-        ("a.stl", CUT_STL, "byte 80: the header tells of 3 facets, which take 234 bytes, but the file has 184"),
+        ("a.stl", CUT_STL, "byte 80: the header announces 3 facets, which take 234 bytes, but the file has 184"),
         ("a.stl", b"hello", "5 bytes are neither"),
         ("a.obj", b"v 0 0 0\nv 1 0 0\nf 1 2 3\n", "a.obj:3: '3' names no vertex; there are 2"),
         ("a.obj", b"v 0 0 0\nf a b c\n", "a.obj:2: 'a' is no index"),
         ("a.obj", b"v 0 0 0\n", "no faces"),
         ("a.ply", b"plx", "a.ply:1: no PLY header"),
         ("a.ply", b"ply\nformat ascii 1.0\nelement vertex x\nend_header\n", "a.ply:3: 'element vertex x' is no line"),
-        ("a.ply", ply(CUBE, "ascii").replace(b"\n3 0 1 3", b"\n3 0 1"), "a.ply:20: 3 indices are told and 2 are there"),
+        ("a.ply", ply(CUBE, "ascii").replace(b"\n3 0 1 3", b"\n3 0 1"), "a.ply:20: 3 indices are announced and 2 are"),
         ("a.ply", ply(CUBE, "binary_little_endian")[:-5], "the file ends at element 11 of 12 'face'"),
         ("a.off", b"OFF", "a.off: no numbers of vertices and faces"),
         ("a.off", b"OFF\n3 1 0\n0 0 0\n1 0 0\n", "a.off:2: 3 vertices and 1 faces are announced, 2 lines follow"),
@@ -112,15 +112,15 @@ def test_triangles_without_area_and_doubled_ones_go(tmp_path):
         ("a.stl", b"version https://git-lfs.github.com/spec/v1\noid sha256:0\nsize 9\n", "Git LFS pointer"),
     ],
 )  # fmt: skip
-def test_bad_files_are_one_clear_error(tmp_path, name, content, told):
+def test_bad_files_are_one_clear_error(tmp_path, name, content, reported):
     path = tmp_path / name
     path.write_bytes(content)
     with pytest.raises(InvalidInput) as raised:
         read_surface(path)
-    assert told in str(raised.value) and "\n" not in str(raised.value)
+    assert reported in str(raised.value) and "\n" not in str(raised.value)
 
 
-def test_the_content_tells_the_form(tmp_path):
+def test_the_content_determines_the_form(tmp_path):
     shape = box((0, 0, 0), (3, 2, 1))
     corners = "".join("{!r} {!r} {!r} 9 9 9 1\n".format(*p) for p in shape.vertices.tolist())
     faces = "".join("3 {} {} {} 0.5 0.5 0.5\n".format(*t) for t in shape.triangles.tolist())
@@ -159,7 +159,7 @@ def test_shells_keep_or_get_their_sides():
     assert repaired(joined(outer, turned(beside))).volume == pytest.approx(1001)
 
 
-def test_holes_are_closed_and_told():
+def test_holes_are_closed_and_noted():
     shape = fine_box((0, 0, 0), (4, 4, 4), 8)
     keep = np.ones(len(shape.triangles), dtype=bool)
     keep[[3, 300, 301, 500]] = False

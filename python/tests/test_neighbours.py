@@ -97,7 +97,7 @@ def test_a_grid_has_what_the_vtu_has(robot: softkin.Robot, tmp_path: Path) -> No
 
 
 def test_a_script_ends_without_a_word(tmp_path: Path, robot: softkin.Robot) -> None:
-    """What other libraries hold until Python ends, such as a grid of the module, is no leak to tell of."""
+    """Objects that live until Python ends, such as a grid of the module, cause no message about leaks."""
     pytest.importorskip("pyvista", reason="PyVista is not installed")
     script = tmp_path / "script.py"
     script.write_text(

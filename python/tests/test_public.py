@@ -39,7 +39,7 @@ def test_is_tested_and_documented(name: str) -> None:
     word = name.rpartition(".")[2]
     if not inspect.isclass(getattr(softkin, name, None)):  # of a class its members
         assert word in TESTS, f"no test uses {name}"
-    assert word in DOCUMENT, f"docs/python.md does not tell of {name}"
+    assert word in DOCUMENT, f"docs/python.md does not describe {name}"
 
 
 def test_all_is_sorted_and_there() -> None:
@@ -52,23 +52,23 @@ def test_build_info() -> None:
     info = softkin.build_info
     assert info.version == softkin.__version__
     assert info.instruction_set in info.instruction_sets_here
-    for asked in info.instruction_sets_here:
+    for requested in info.instruction_sets_here:
         code = "import softkin; print(softkin.build_info.instruction_set)"
-        told = subprocess.run(
-            [sys.executable, "-c", code], env={**os.environ, "SOFTKIN_TARGET": asked}, capture_output=True, text=True
+        reported = subprocess.run(
+            [sys.executable, "-c", code], env={**os.environ, "SOFTKIN_TARGET": requested}, capture_output=True, text=True
         )
-        assert told.stdout == asked + "\n"
+        assert reported.stdout == requested + "\n"
 
 
 def test_instruction_set_that_is_none() -> None:
-    told = subprocess.run(
+    reported = subprocess.run(
         [sys.executable, "-c", "import softkin"],
         env={**os.environ, "SOFTKIN_TARGET": "mmx"},
         capture_output=True,
         text=True,
     )
-    assert told.returncode != 0
-    assert "SOFTKIN_TARGET=mmx: not an instruction set" in told.stderr
+    assert reported.returncode != 0
+    assert "SOFTKIN_TARGET=mmx: not an instruction set" in reported.stderr
 
 
 def test_version() -> None:
@@ -85,7 +85,7 @@ def test_typed() -> None:
 
 
 def test_the_library_names_no_options_of_the_command() -> None:
-    """What it refuses, users of Python read, too."""
+    """Users of Python read the messages of the library, too."""
     source = Path(__file__).parents[2] / "src/softkin"
     named = [
         (str(file.relative_to(source)), text)
@@ -93,9 +93,9 @@ def test_the_library_names_no_options_of_the_command() -> None:
         for text in re.findall(r'"(?:[^"\\\n]|\\.)*"', file.read_text())
         if re.search(r"(?<![\w-])--[a-z]", text)
     ]
-    passed_on = r'"--(width|grip|cells|law|poisson-ratio|stiffer)"'  # to be told of by who gave them
+    passed_on = r'"--(width|grip|cells|law|poisson-ratio|stiffer)"'  # the caller names these options
     only_the_command = r"--fps|add --resume|softkin calibrate material --tensile|softkin fk --report"
-    only_the_command += r"|\(in Python stable=True\)"  # says both
+    only_the_command += r"|\(in Python stable=True\)"  # names both
     only_the_command += r"|--force-overwrite|^\"--(material|change)\"$|^\"--turn: |softkin mesh generate --body"
     assert [each for each in named if not re.fullmatch(passed_on, each[1]) and not re.search(only_the_command, each[1])] == []
 

@@ -90,14 +90,14 @@ def test_curved_edges_make_a_rod_round() -> None:
         straight = softkin.Robot(vertices, tetrahedra, order=2, **CLAMPED)
     on_surface = radii(straight) > 9.7  # edges through the inside at the corners of the block are shorter
 
-    def least_radius(robot: softkin.Robot) -> float:
+    def min_radius(robot: softkin.Robot) -> float:
         return float(radii(robot)[on_surface].min())
 
-    assert least_radius(straight) < 9.82  # sixteen corners: 10 cos(180 / 16 degrees)
+    assert min_radius(straight) < 9.82  # sixteen corners: 10 cos(180 / 16 degrees)
     for curve in (True, {"cylinder": {"start": (0, 10, 10), "end": (60, 10, 10), "radius": 10}}):
         robot = softkin.Robot(vertices, tetrahedra, order=2, curve=curve, **CLAMPED)
         assert any("'curve' moved" in note for note in robot.notes)
-        assert least_radius(robot) > 9.86  # a few are held back where elements are flat
+        assert min_radius(robot) > 9.86  # a few are held back where elements are flat
     with pytest.raises(softkin.InvalidInput, match="order: 2"):
         softkin.Robot(vertices, tetrahedra, curve=True, **CLAMPED)
 

@@ -28,10 +28,10 @@ def test_path(robot: softkin.Robot) -> None:
 
 def test_a_motor_with_play_along_a_path() -> None:
     pull = {"name": "pull", "kind": "cable", "control": "tension", "range": [0, 2], "points": [(0, 10, 18), (32, 10, 18), (64, 10, 18)]}
-    told, acts = [0.4, 1, 0.8, 0.3, 0.5, 0.9], [0.4, 1, 1, 0.8, 0.8, 0.9]
+    reported, acts = [0.4, 1, 0.8, 0.3, 0.5, 0.9], [0.4, 1, 1, 0.8, 0.8, 0.9]
     exact = list(beam(actuators=[pull]).path([[tension] for tension in acts]))
-    playing = list(beam(actuators=[{**pull, "backlash": 0.5}]).path([[tension] for tension in told]))
-    for shape, other, tension in zip(playing, exact, told):
+    playing = list(beam(actuators=[{**pull, "backlash": 0.5}]).path([[tension] for tension in reported]))
+    for shape, other, tension in zip(playing, exact, reported):
         np.testing.assert_array_equal(shape.positions, other.positions)
         assert shape.actuators["pull"].tension_N == other.actuators["pull"].tension_N
         assert shape.actuation.tolist() == [tension]
@@ -70,7 +70,7 @@ def test_turns_are_continued_along_a_path(tmp_path: Path) -> None:
 def test_turns_of_a_shape_alone_and_of_what_has_none() -> None:
     turning = turning_beam()
     alone = turning.solve(base_turn=200)
-    assert alone.turn("tip") == pytest.approx(160, abs=1e-4)  # nothing says which way it went
+    assert alone.turn("tip") == pytest.approx(160, abs=1e-4)  # the direction of the turn is unknown
     assert alone.turn("root", "tip") == pytest.approx(160, abs=1e-4)
     run = turning.path([[10]])
     for turns in (alone.turn, run.turns):

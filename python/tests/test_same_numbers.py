@@ -51,11 +51,11 @@ def test_forward_kinematics(scene: str, examples: Path, command: str, tmp_path: 
         rows.writerow(columns)
         rows.writerows(zip(*columns.values()))
     subprocess.run([*arguments, "--path", str(path), "-o", str(tmp_path / "path.pvd")], check=True, capture_output=True)
-    told = json.loads(report.read_text())
+    reported = json.loads(report.read_text())
     run = robot.path(path)
     shapes = list(run)
-    assert without_times(run.report) == without_times(told)
-    assert [shape.fingerprint for shape in shapes] == [step["shape_fingerprint"] for step in told["steps"]]
+    assert without_times(run.report) == without_times(reported)
+    assert [shape.fingerprint for shape in shapes] == [step["shape_fingerprint"] for step in reported["steps"]]
 
 
 def test_a_solve_is_the_first_step_of_a_path(examples: Path) -> None:
@@ -73,12 +73,12 @@ def test_turn_of_a_line(examples: Path, command: str, tmp_path: Path) -> None:
     arguments = [command, "fk", str(scene), "--path", str(path), "--turn", "tip", "end"]
     table = subprocess.run(arguments, check=True, capture_output=True, text=True).stdout
     rows = [line.split() for line in table.splitlines() if line.strip().endswith("converged")]
-    told = [float(row[-4]) for row in rows]  # before iterations, time and status
+    reported = [float(row[-4]) for row in rows]  # before iterations, time and status
     run = softkin.load(scene).path(path)
     shapes = list(run)
-    assert len(told) == 2 and told[1] > told[0] > 1
-    np.testing.assert_allclose(run.turns("tip", "end"), told, atol=0.06)
-    np.testing.assert_allclose([shape.turn("tip", "end") for shape in shapes], told, atol=0.06)
+    assert len(reported) == 2 and reported[1] > reported[0] > 1
+    np.testing.assert_allclose(run.turns("tip", "end"), reported, atol=0.06)
+    np.testing.assert_allclose([shape.turn("tip", "end") for shape in shapes], reported, atol=0.06)
 
 
 def test_inverse_kinematics(examples: Path, command: str, tmp_path: Path) -> None:
@@ -103,9 +103,9 @@ def test_follow(examples: Path, command: str, tmp_path: Path) -> None:
     run = robot.follow(path)
     waypoints = list(run)
     assert len(waypoints) == 2 and all(waypoint.reached for waypoint in waypoints)
-    told = json.loads((out / "report.json").read_text())
-    assert without_times(run.report) == without_times(told)
-    assert [w.shape.fingerprint for w in waypoints] == [step["shape_fingerprint"] for step in told["steps"]]
+    reported = json.loads((out / "report.json").read_text())
+    assert without_times(run.report) == without_times(reported)
+    assert [w.shape.fingerprint for w in waypoints] == [step["shape_fingerprint"] for step in reported["steps"]]
     assert run.commands.csv() == (out / "commands.csv").read_text()
     assert run.errors.csv() == (out / "errors.csv").read_text()
 
@@ -117,9 +117,9 @@ def test_walk(examples: Path, command: str, tmp_path: Path) -> None:
     subprocess.run([command, "walk", *arguments], check=True, capture_output=True)
     run = softkin.load(scene).walk(gait, cycles=1, store=tmp_path / "ours")
     steps = list(run)
-    told = json.loads((out / "report.json").read_text())
-    assert without_times(run.report) == without_times(told) and run.strides_mm.tolist() == told["stride_mm"]
-    assert [step.shape.fingerprint for step in steps] == [step["shape_fingerprint"] for step in told["steps"]]
+    reported = json.loads((out / "report.json").read_text())
+    assert without_times(run.report) == without_times(reported) and run.strides_mm.tolist() == reported["stride_mm"]
+    assert [step.shape.fingerprint for step in steps] == [step["shape_fingerprint"] for step in reported["steps"]]
     assert run.steps.csv() == (out / "walk.csv").read_text()
     for name in ("walk.csv", "walk.svg", "walk.pvd"):
         assert (tmp_path / "ours" / name).read_text() == (out / name).read_text()
@@ -135,23 +135,23 @@ def test_plots(examples: Path, command: str, tmp_path: Path) -> None:
     path.write_text("x_mm,y_mm,z_mm\n" + "".join(",".join(map(repr, tip)) + "\n" for tip in tips))
     theirs, ours = tmp_path / "theirs.svg", tmp_path / "ours.svg"
 
-    def told(*arguments: object) -> str:
+    def reported(*arguments: object) -> str:
         subprocess.run([command, *map(str, arguments), "--plot", str(theirs)], check=True, capture_output=True)
         return theirs.read_text()
 
     run.save_plot(ours)
-    assert ours.read_text() == told("fk", scene, "--path", steps)
+    assert ours.read_text() == reported("fk", scene, "--path", steps)
     followed = robot.follow(path)
     list(followed)
     followed.save_plot(ours)
-    assert ours.read_text() == told("follow", scene, path, "-o", tmp_path / "out")
+    assert ours.read_text() == reported("follow", scene, path, "-o", tmp_path / "out")
     answer = robot.inverse(tip=tips[0])
     answer.save_plot(ours)
-    assert ours.read_text() == told("ik", scene, "--target", "tip=" + ",".join(map(repr, tips[0])))
+    assert ours.read_text() == reported("ik", scene, "--target", "tip=" + ",".join(map(repr, tips[0])))
     cloud = robot.workspace(8, store=tmp_path / "w.csv")
     cloud.save_plot(ours)
     files = ["--cloud", tmp_path / "cloud.vtu", "--hull", tmp_path / "hull.stl"]
-    assert ours.read_text() == told("workspace", scene, "--samples", 8, "-o", tmp_path / "v.csv", *files)
+    assert ours.read_text() == reported("workspace", scene, "--samples", 8, "-o", tmp_path / "v.csv", *files)
     cloud.save(tmp_path / "ours.vtu")
     cloud.save_hull(tmp_path / "ours.stl", marker="tip")
     assert (tmp_path / "ours.vtu").read_bytes() == (tmp_path / "cloud.vtu").read_bytes()
@@ -159,7 +159,7 @@ def test_plots(examples: Path, command: str, tmp_path: Path) -> None:
     from_sample = robot.inverse(tip=tips[0], workspace=tmp_path / "w.csv")
     report = tmp_path / "ik.json"
     target = ["--target", "tip=" + ",".join(map(repr, tips[0]))]
-    told("ik", scene, *target, "--workspace", tmp_path / "w.csv", "--report", report)
+    reported("ik", scene, *target, "--workspace", tmp_path / "w.csv", "--report", report)
     assert without_times(from_sample.report) == without_times(json.loads(report.read_text()))
     with pytest.raises(ValueError, match="workspace chooses the start"):
         robot.inverse(tip=tips[0], workspace=tmp_path / "w.csv", start={"air1": 1})
@@ -171,16 +171,16 @@ def test_meshes(examples: Path, command: str, tmp_path: Path) -> None:
     scene = examples / "three_chamber_actuator/three_chamber_actuator.yaml"
     (mesh,) = [file for file in scene.parent.iterdir() if file.suffix == ".msh"]
 
-    def told(*arguments: object) -> Any:
+    def reported(*arguments: object) -> Any:
         arguments = ("mesh", *arguments, "--json")
         return json.loads(subprocess.run([command, *map(str, arguments)], check=True, capture_output=True).stdout)
 
-    assert softkin.mesh.info(mesh) == told("info", mesh)
-    assert softkin.mesh.info(mesh, "cm") == told("info", mesh, "--unit", "cm")
-    assert softkin.mesh.check(scene) == (True, told("check", scene))
+    assert softkin.mesh.info(mesh) == reported("info", mesh)
+    assert softkin.mesh.info(mesh, "cm") == reported("info", mesh, "--unit", "cm")
+    assert softkin.mesh.check(scene) == (True, reported("check", scene))
     ours, theirs = tmp_path / "ours.msh", tmp_path / "theirs.msh"
     found = softkin.mesh.convert(mesh, ours, ascii=True)
-    assert {**found, "output": str(theirs)} == told("convert", mesh, theirs, "--ascii")
+    assert {**found, "output": str(theirs)} == reported("convert", mesh, theirs, "--ascii")
     assert ours.read_text() == theirs.read_text()
     with pytest.raises(ValueError, match="unit must be one of mm, cm, m, um, in, not 'ft'"):
         softkin.mesh.info(mesh, "ft")

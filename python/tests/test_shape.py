@@ -232,8 +232,8 @@ def test_pickle(shape: softkin.Shape) -> None:
     assert other[0].robot is other[1]
 
 
-def test_a_pickle_keeps_what_a_limit_tells() -> None:
-    """The points of the way along the chamber's volume, with the maximum of its pressure."""
+def test_a_pickle_keeps_the_branch_of_a_limit() -> None:
+    """The branch contains the points along the chamber's volume, with the limit point of its pressure."""
     air = {"name": "air", "kind": "pneumatic", "region": "chamber1", "control": "pressure", "range": (0, 5000)}
     shape = beam(4, 5, actuators=[air]).solve(air=5000)
     assert shape.status == "limit" and len(shape.report["steps"][0]["branch"]["ratio"]) > 2
@@ -318,11 +318,11 @@ def test_target_shapes() -> None:
 
 
 def test_progress(robot: softkin.Robot) -> None:
-    told: list[softkin.Progress] = []
+    reported: list[softkin.Progress] = []
     big = beam(46, 13)
-    stopped = big.solve(air1=1.5, air2=1.2, progress=lambda p: told.append(p) or False)
-    assert stopped.status == "interrupted" and len(told) == 1
-    assert told[0].tolerance_mm > 0 and told[0].iteration >= 0 and -1 <= told[0].share <= 1 and told[0].step_mm >= 0
+    stopped = big.solve(air1=1.5, air2=1.2, progress=lambda p: reported.append(p) or False)
+    assert stopped.status == "interrupted" and len(reported) == 1
+    assert reported[0].tolerance_mm > 0 and reported[0].iteration >= 0 and -1 <= reported[0].share <= 1 and reported[0].step_mm >= 0
 
     def fails(_: softkin.Progress) -> None:
         raise RuntimeError("from within")
@@ -351,16 +351,16 @@ def test_budget_and_start_from_a_file(robot: softkin.Robot, shape: softkin.Shape
         robot.solve(start=str(tmp_path / "none.vtu"))
 
 
-def test_a_tendon_that_rubs_remembers(robot: softkin.Robot) -> None:
+def test_a_tendon_with_friction_keeps_its_history(robot: softkin.Robot) -> None:
     points = [[0, 4, 4], [8, 4, 7], [16, 4, 4], [24, 4, 7], [32, 4, 4]]
     tendon = {"name": "pull", "kind": "cable", "control": "tension", "range": [0, 2], "points": points, "friction": 0.3}
-    rubs = beam(8, 2, actuators=[tendon])
-    pulled = rubs.solve(pull=0.4).require()
+    robot_with_friction = beam(8, 2, actuators=[tendon])
+    pulled = robot_with_friction.solve(pull=0.4).require()
     state = pulled.actuators["pull"]
     assert state.end_tension_N is not None and 0.4 * 0.3 < state.end_tension_N < 0.4 * 0.8 and state.sticking == 0
-    let_go = rubs.solve(pull=0.36, start=pulled).require()
+    let_go = robot_with_friction.solve(pull=0.36, start=pulled).require()
     assert let_go.actuators["pull"].sticking == 1
-    other, state_there = pickle.loads(pickle.dumps((rubs, pulled)))
+    other, state_there = pickle.loads(pickle.dumps((robot_with_friction, pulled)))
     again = other.solve(pull=0.36, start=state_there).require()
     np.testing.assert_allclose(again.positions, let_go.positions, atol=1e-9)
     first = next(iter(robot.solve().actuators.values()))

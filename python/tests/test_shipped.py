@@ -32,6 +32,6 @@ def test_command_of_the_package(command: str, tmp_path: Path) -> None:
     for program in ([command], [sys.executable, "-m", "softkin"]):
         if program[0] == sys.executable and Path(command).parent != Path(sys.executable).parent:
             continue  # of a build folder, beside which there is no command
-        told = subprocess.run([*program, "examples", "copy", "bar"], cwd=tmp_path, capture_output=True, text=True)
-        assert told.returncode == 0 and "softkin fk two_material_bar/two_material_bar.yaml" in told.stdout, told.stderr
+        reported = subprocess.run([*program, "examples", "copy", "bar"], cwd=tmp_path, capture_output=True, text=True)
+        assert reported.returncode == 0 and "softkin fk two_material_bar/two_material_bar.yaml" in reported.stdout, reported.stderr
     assert softkin.load(tmp_path / "two_material_bar/two_material_bar.yaml").name

@@ -85,11 +85,11 @@ def test_keywords_of_the_past(call: str, small: softkin.Robot) -> None:
 
 
 def test_a_method_beside_keywords_of_the_past(small: softkin.Robot) -> None:
-    told = warning_of("solve", "threads", "Solver(method='local-global', threads=1)")
-    with pytest.warns(DeprecationWarning, match=told), pytest.raises(softkin.InvalidInput, match="local-global"):
+    reported = warning_of("solve", "threads", "Solver(method='local-global', threads=1)")
+    with pytest.warns(DeprecationWarning, match=reported), pytest.raises(softkin.InvalidInput, match="local-global"):
         small.solve(solver="local-global", threads=1)  # of target shapes alone
-    told = warning_of("solve", "tolerance_mm", "Solver(tolerance_mm=1, threads=1)")
-    with pytest.warns(DeprecationWarning, match=told) as caught:
+    reported = warning_of("solve", "tolerance_mm", "Solver(tolerance_mm=1, threads=1)")
+    with pytest.warns(DeprecationWarning, match=reported) as caught:
         shape = small.solve(air1=1.3, solver=Solver(threads=1), tolerance_mm=1)
     assert len(caught) == 1 and shape.fingerprint == small.solve(air1=1.3, solver=Solver(tolerance_mm=1)).fingerprint
 

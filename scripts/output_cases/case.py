@@ -1,4 +1,4 @@
-"""A case, and what its steps may do to the files between two commands."""
+"""A case, and the changes of files that its steps make between two commands."""
 
 import dataclasses
 import json
@@ -11,11 +11,11 @@ THREADS = {"fk", "ik", "follow", "walk", "workspace", "material", "predict"}  # 
 
 @dataclasses.dataclass
 class Case:
-    """Steps run in a fresh folder with these files and copies of the examples that the commands name.
+    """Steps that run in a new folder with these files and copies of the examples that the commands name.
 
-    steps: the words of a command, one thread where nothing else is said, or a function of the folder.
-    ends: exit code of the last command; None: any.
-    clock: False where every time in the outputs is of an input, so that all of them have to be the same.
+    steps: the words of a command, by default with one thread, or a function of the folder.
+    ends: exit code of the last command; None for any.
+    clock: False if every time in the outputs comes from an input, so that all of them must be the same.
     """
     name: str
     steps: list
@@ -27,13 +27,14 @@ class Case:
         self.steps = [step if callable(step) else words_of(step) for step in self.steps]
 
     def words(self):
-        """All words of its commands, and the texts of its files: where they name examples, these are copied."""
+        """Yields all words of the commands, and the texts of the files, which may name examples to be copied."""
         for step in self.steps:
             yield from () if callable(step) else step
         yield from (text for text in self.files.values() if isinstance(text, str))
 
 
 def words_of(command):
+    """Returns the words of a command, with one thread by default."""
     words = shlex.split(command) if isinstance(command, str) else list(command)
     first = set(words[:2]) | ({"predict"} if "--predict" in words else set())
     if first & THREADS and "--tensile" not in words and not {"--threads", "--help"} & set(words):
@@ -42,7 +43,7 @@ def words_of(command):
 
 
 def keep_steps(file, count):
-    """Cuts a report back to its first steps, as an interrupted run leaves it."""
+    """Truncates a report to its first steps, as an interrupted run writes it."""
     def edit(folder):
         report = json.loads((folder / file).read_text())
         report["steps"] = report["steps"][:count]
@@ -51,7 +52,7 @@ def keep_steps(file, count):
 
 
 def keep_lines(file, count, torn=""):
-    """Cuts a table back to its first lines; torn: the beginning of one more."""
+    """Truncates a table to its first lines. torn: the beginning of an incomplete next line."""
     def edit(folder):
         lines = (folder / file).read_text().splitlines(keepends=True)
         (folder / file).write_text("".join(lines[:count]) + torn)
@@ -65,11 +66,11 @@ def keep_bytes(file, count):
 
 
 def change(file, pattern, by):
-    """Replaces what a regular expression finds in a text; it has to find something."""
+    """Replaces the matches of a regular expression in a text, of which there must be at least one."""
     def edit(folder):
         text, count = re.subn(pattern, by, (folder / file).read_text())
         if count == 0:
-            raise ValueError(f"{file}: nothing matches {pattern}")
+            raise ValueError(f"{file}: no match of {pattern}")
         (folder / file).write_text(text)
     return edit
 
@@ -83,7 +84,7 @@ def remove(file):
 
 
 def fixed_seconds(*files):
-    """Makes the times of reports the same, so that what is made of them can be compared exactly."""
+    """Sets the times of reports to one value, so that outputs from the reports can be compared exactly."""
     def edit(folder):
         for file in files:
             change(file, r'("seconds":\s*)[-+0-9.eE]+', r"\g<1>1.5")(folder)
@@ -91,7 +92,7 @@ def fixed_seconds(*files):
 
 
 def marker_path(report, file, marker, axes):
-    """A path for `follow` from the places of a marker in a report, to a micrometre, half a second apart."""
+    """Writes a path for `follow` from the positions of a marker in a report, rounded to 1 um, every half second."""
     def edit(folder):
         rows = ["t_s," + ",".join(f"{marker}_{axis}_mm" for axis in axes)]
         for i, step in enumerate(json.loads((folder / report).read_text())["steps"]):

@@ -1,8 +1,8 @@
-"""The scenes, tables and pictures that are shipped."""
+"""Cases of the shipped scenes, tables and pictures."""
 
 from .case import Case, keep_steps
 
-# scene, two commands for it
+# commands by scene
 SCENES = {
     "examples/cable_gripper/cable_gripper.yaml": "cable=0.95",
     "examples/cable_gripper_two_materials/a.yaml": "cable=0.95",
@@ -15,7 +15,7 @@ SCENES = {
     "examples/three_tendon_finger/three_tendon_finger.yaml": "tendon2=0.9",
     "examples/two_material_bar/two_material_bar.yaml": "",
 }
-PHYSICAL = {  # those of the physical formulation alone
+PHYSICAL = {  # scenes of the physical formulation only
     "examples/bilayer/bilayer.yaml": "warm=60degC",
     "examples/paper_finger/paper_finger.yaml": "air=2kPa",
     "examples/dea_crawler/voltage/crawler.yaml": "skin=14kV",

@@ -1,4 +1,4 @@
-"""Outputs without what a clock gives, and with fewer digits where that is asked for."""
+"""Normalises outputs: without times, and with fewer digits on request."""
 
 import base64
 import re
@@ -6,17 +6,17 @@ import struct
 import zlib
 
 DURATION = r"\d+ s\b|\d+ min \d+ s\b|\d+ h \d+ min\b"
-CLOCK = [  # what is found, and what takes its place
+CLOCK = [  # pattern and replacement
     (re.compile(r'("(?:seconds|elapsed_s)":\s*)(?:[-+0-9.eE]+|\[[^\]]*\])'), r"\1CLOCK"),
     (re.compile(r"((?:equilibrium|equilibria|equilibria per waypoint), )\d+\.\d\d s$", re.M), r"\1CLOCK"),
     (re.compile(rf"( converged; )(?:{DURATION})$", re.M), r"\1CLOCK"),
 ]
 NUMBER = re.compile(r"(?<![\w.])[-+]?\d+(?:\.\d*)?(?:[eE][-+]?\d+)?(?![\w.])")
-FINGERPRINT = re.compile(r'("shape_fingerprint":\s*)"[^"]*"')  # of all digits of a shape
+FINGERPRINT = re.compile(r'("shape_fingerprint":\s*)"[^"]*"')  # depends on all digits of a shape
 
 
 def without_time_column(text):
-    """Tables of steps without what stands below `time [s]`, which is 8 characters wide or more, right-aligned."""
+    """Replaces the cells below `time [s]` in tables of steps, a right-aligned column of at least 8 characters."""
     lines, end = text.split("\n"), None
     for i, line in enumerate(lines):
         if "time [s]  status" in line:
@@ -27,13 +27,14 @@ def without_time_column(text):
 
 
 def rounded(text, digits):
+    """Rounds the numbers of a text to significant digits."""
     def number(match):
         return f"{float(match.group()):.{digits}g}" if re.search(r"[.eE]", match.group()) else match.group()
     return FINGERPRINT.sub(r"\1ROUNDED", NUMBER.sub(number, text))
 
 
 def normal_text(text, clock=True, digits=None):
-    """clock: whether times are taken out; digits: how many significant ones stay."""
+    """Returns a normalised text. clock: whether to remove times; digits: number of significant digits."""
     if clock:
         text = without_time_column(text)
         for pattern, by in CLOCK:
@@ -44,40 +45,41 @@ def normal_text(text, clock=True, digits=None):
 
 
 def inflated(data, words):
-    """The blocks of an array of a .vtu as bytes. data: compressed; words: its header, of which sizes begin at the fourth."""
-    at, parts = 0, []
+    """Returns the bytes of an array of a .vtu. data: compressed blocks; words: header, with sizes from the fourth."""
+    offset, parts = 0, []
     for size in words[3:]:
-        parts.append(zlib.decompress(data[at:at + size]))
-        at += size
+        parts.append(zlib.decompress(data[offset:offset + size]))
+        offset += size
     return b"".join(parts)
 
 
 def inline_array(text):
-    """An array in base64: its header, which is a text of its own, and its blocks."""
+    """Returns the bytes of an array in base64, whose header is encoded separately from its blocks."""
     blocks = struct.unpack_from("<Q", base64.b64decode(text[:12]))[0]
-    end = -(-8 * (3 + blocks) // 3) * 4  # of the header's characters
+    end = -(-8 * (3 + blocks) // 3) * 4  # number of characters of the header
     return inflated(base64.b64decode(text[end:]), struct.unpack(f"<{3 + blocks}Q", base64.b64decode(text[:end])))
 
 
 def appended_array(data, offset):
-    """An array of raw appended data, as softkin wrote them before."""
+    """Returns the bytes of an array of raw appended data, as older versions of softkin write it."""
     blocks = struct.unpack_from("<Q", data, offset)[0]
     return inflated(data[offset + 8 * (3 + blocks):], struct.unpack_from(f"<{3 + blocks}Q", data, offset))
 
 
 def values_text(kind, array, digits):
+    """Returns the values of an array as texts, real numbers with digits relative to the largest one."""
     if not digits or kind not in (b"Float64", b"Float32"):
         return [array.hex()]
     form, size = ("d", 8) if kind == b"Float64" else ("f", 4)
     values = struct.unpack(f"<{len(array) // size}{form}", array)
-    scale = max((abs(v) for v in values if v == v), default=0)  # zeros of an array are not exact
+    scale = max((abs(v) for v in values if v == v), default=0)  # zeros of an array may have rounding errors
     return [f"{round(v / scale, digits) + 0.0 if scale and v == v else v:.{digits}g}" for v in values]
 
 
 def vtu_text(content, digits=None):
-    """A .vtu of softkin as text, the same however its arrays are encoded; other files as they are.
+    """Returns a .vtu of softkin as text that does not depend on the encoding of its arrays; other files unchanged.
 
-    digits: how many significant ones stay of real numbers; None: all
+    digits: number of significant digits of real numbers; None for all
     """
     head, _, data = content.partition(b'<AppendedData encoding="raw">\n_')
     binary = rb'<DataArray ([^>]*?) format="(?:binary">\s*([^<]*?)\s*</DataArray>|appended" offset="(\d+)"/>|ascii">\s*</DataArray>)'
@@ -85,12 +87,12 @@ def vtu_text(content, digits=None):
         return content
     arrays = []
 
-    def taken_out(match):
+    def extract(match):
         attributes, text, offset = match.groups()
         kind, name = re.search(rb'type="(\w+)" Name="([^"]*)"', attributes).groups()
         array = inline_array(text) if text else appended_array(data, int(offset)) if offset else b""
         arrays.extend([name.decode(), *values_text(kind, array, digits)])
         return b"<DataArray " + attributes + b"/>"
 
-    head = re.sub(binary, taken_out, head).decode()
+    head = re.sub(binary, extract, head).decode()
     return "\n".join([re.sub(r"</UnstructuredGrid>.*", "", head, flags=re.S), *arrays])

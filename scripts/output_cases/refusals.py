@@ -1,4 +1,4 @@
-"""What the program refuses, with its message and exit code 2; nothing may be written."""
+"""Cases of inputs that the program refuses with a message and exit code 2, without writing any file."""
 
 from . import samples as s
 from .case import Case, change, keep_lines, keep_steps, write
@@ -11,7 +11,7 @@ def cases():
 
 
 def several(name, commands, files):
-    """One case of many commands that are all refused and so leave the files as they are."""
+    """Returns a case of several commands that the program refuses, so that the files do not change."""
     return Case(f"refuses {name}", commands, files, ends=2)
 
 
@@ -26,7 +26,7 @@ def usage():
 
 
 def scenes():
-    """Texts that take the place of a part of a good scene."""
+    """Yields cases in which a text replaces a part of a valid scene."""
     good = s.physical_scene()
     material, mesh_line = "{youngs_modulus: 1, poisson_ratio: 0.3, linear_range: 0.05}", "mesh: {file: block.msh}"
     wrong = {
@@ -78,7 +78,7 @@ def scenes():
     }
     for name, (part, by) in wrong.items():
         if part not in good:
-            raise ValueError(f"no {part!r} in the scene of the refusals")
+            raise ValueError(f"the scene of the refusals does not contain {part!r}")
         yield several(f"scene, {name}", ["mesh check block.yaml", "fk block.yaml --set air=1.1 -o new/a.vtu"],
                       {"block.msh": s.block(), "block.yaml": good.replace(part, by, 1)})
     yield several("scene that is missing", ["fk none.yaml"], {})
@@ -273,7 +273,7 @@ def walk():
 
 
 def files():
-    """Outputs that cannot be written."""
+    """Yields cases of outputs that cannot be written."""
     scene = s.physical() | {"file": "a file", "path.csv": "x_mm\n20.02\n"}
     for command in ("fk block.yaml -o file/a.vtu", "fk block.yaml --report file/a.json",
                     "fk block.yaml --image file/a.png",

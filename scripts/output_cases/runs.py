@@ -1,4 +1,4 @@
-"""Commands that do their work, on small meshes: every command, its outputs, options and resumed runs."""
+"""Cases of commands that succeed on small meshes: every command, its outputs, options and resumed runs."""
 
 from . import samples as s
 from .case import Case, keep_bytes, keep_lines, keep_steps, marker_path, remove, write

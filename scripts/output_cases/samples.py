@@ -1,11 +1,11 @@
-"""Small meshes, scenes, tables and reports that the cases run on, written without the program."""
+"""Makes the small meshes, scenes, tables and reports of the cases without the program."""
 
 import json
 import math
 
 
 def gmsh(names, vertices, elements):
-    """Gmsh 2.2 text. elements: (type, group, vertices from 0)."""
+    """Returns Gmsh 2.2 text. elements: (type, group, vertices from 0)."""
     lines = ["$MeshFormat", "2.2 0 8", "$EndMeshFormat"]
     if names:
         lines += ["$PhysicalNames", str(len(names)), *names, "$EndPhysicalNames"]
@@ -22,7 +22,7 @@ def tetrahedra(vertices, elements):
 
 
 def block_parts(nx, edge=4):
-    """nx x 3 x 3 cells in six tetrahedra each: chamber are those along the middle but the first and last."""
+    """Returns nx x 3 x 3 cells of six tetrahedra each; the chamber is the middle row without its end cells."""
     names = ['3 1 "body"', '3 2 "chamber"', '2 3 "base"', '2 4 "tip"']
     vertices = [(edge * i, edge * j, edge * k) for k in range(4) for j in range(4) for i in range(nx + 1)]
 
@@ -34,9 +34,9 @@ def block_parts(nx, edge=4):
         for j in range(3):
             for i in range(nx):
                 inside = j == 1 and k == 1 and 0 < i < nx - 1
-                at = [vertex(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)) for c in range(8)]
+                corners = [vertex(i + (c & 1), j + (c >> 1 & 1), k + (c >> 2)) for c in range(8)]
                 for a, b in ((1, 3), (3, 2), (2, 6), (6, 4), (4, 5), (5, 1)):
-                    elements.append((4, 2 if inside else 1, (at[0], at[a], at[b], at[7])))
+                    elements.append((4, 2 if inside else 1, (corners[0], corners[a], corners[b], corners[7])))
             for i in (0, nx):
                 for (j1, k1), (j2, k2) in (((j + 1, k), (j + 1, k + 1)), ((j + 1, k + 1), (j, k + 1))):
                     elements.append((2, 3 if i == 0 else 4, (vertex(i, j, k), vertex(i, j1, k1), vertex(i, j2, k2))))
@@ -48,7 +48,7 @@ def block(nx=5, edge=4):
 
 
 def cube_parts():
-    """The cube [0, 2]^3: body, chamber, base (z = 0) and corner (the origin)."""
+    """Returns the cube [0, 2]^3 with the groups body, chamber, base (z = 0) and corner (the origin)."""
     names = ['3 1 "body"', '3 2 "chamber"', '2 3 "base"', '0 4 "corner"']
     vertices = [(2.0 * (i & 1), 2.0 * (i >> 1 & 1), 2.0 * (i >> 2)) for i in range(8)]
     paths = ((0, 1, 3, 7), (0, 3, 2, 7), (0, 2, 6, 7), (0, 6, 4, 7), (0, 4, 5, 7), (0, 5, 1, 7))
@@ -61,7 +61,7 @@ def cube():
 
 
 def quadratic(names, vertices, elements, moved=None):
-    """The mesh with nodes in the middle of its edges; moved: vertex and its place."""
+    """Returns the mesh with nodes in the middle of its edges. moved: positions of vertices that are moved."""
     vertices, between, result = list(vertices), {}, []
 
     def node(a, b):
@@ -162,7 +162,7 @@ def driven(hardware=HARDWARE, commands=COMMANDS, **more):
 
 
 def turning(angles, seconds, pressure=None, broken=None):
-    """Report of a bar of 10 mm that turns by so many degrees; broken: a step that ended at a limit."""
+    """Returns the report of a bar of 10 mm rotated by angles [degrees]. broken: a step that ends at a limit point."""
     steps = []
     for x, angle in enumerate(angles):
         a = math.radians(angle)
@@ -177,7 +177,7 @@ def turning(angles, seconds, pressure=None, broken=None):
 
 
 def linear(commands):
-    """Report of a robot whose marker tip moves linearly with two actuators; times 0, 1, 2 ..."""
+    """Returns the report of a robot whose marker tip moves linearly with two actuators, at the times 0, 1, 2 ..."""
     steps = [{"actuation": {"air1": a, "air2": b}, "status": "converged", "seconds": 1, "time_s": i,
               "markers": {"tip": [round(10 * (a - 1), 9), round(20 * (b - 1), 9), 100]},
               "actuators": {"air1": {}, "air2": {}}} for i, (a, b) in enumerate(commands)]
@@ -185,18 +185,18 @@ def linear(commands):
 
 
 def camera():
-    """What a camera sees of linear([(1, 1), (1.2, 1), (1.2, 1.3), (1.5, 1.5)]), 0.5 mm beside."""
-    ways, rows = [(0, 0), (2, 0), (2, 6), (5, 10)], ["t_s,x_mm,y_mm"]
+    """Returns the camera track of linear([(1, 1), (1.2, 1), (1.2, 1.3), (1.5, 1.5)]) with an offset of 0.5 mm in x."""
+    corners, rows = [(0, 0), (2, 0), (2, 6), (5, 10)], ["t_s,x_mm,y_mm"]
     for i in range(31):
         k = min(2, i // 10)
-        share = i / 10 - k
-        x, y = (p + share * (q - p) for p, q in zip(ways[k], ways[k + 1]))
+        fraction = i / 10 - k
+        x, y = (p + fraction * (q - p) for p, q in zip(corners[k], corners[k + 1]))
         rows.append(f"{i / 10:.1f},{x + 0.5:.6f},{y:.6f}")
     return "\n".join(rows) + "\n"
 
 
 def syringe_test(header="p_abs_kPa,dv_sy_mL", offset=100, factor=0.001):
-    """A chamber of 192 mm^3 up to 80 kPa and down again, a syringe of 600 and a tube of 20 mm^3."""
+    """Returns a test of a chamber of 192 mm^3 up to 80 kPa and back, with a syringe of 600 and a tube of 20 mm^3."""
     rows = [header]
     for i in range(33):
         gauge = 5 * (i if i <= 16 else 32 - i)

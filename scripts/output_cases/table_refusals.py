@@ -1,4 +1,4 @@
-"""What compare, calibrate, curves, drive and mesh refuse."""
+"""Cases of inputs that compare, calibrate, curves, drive and mesh refuse."""
 
 from . import samples as s
 from .case import Case, keep_bytes

@@ -1,4 +1,4 @@
-"""Commands on tables, reports and meshes that do their work: compare, calibrate, drive, mesh."""
+"""Cases of commands that succeed on tables, reports and meshes: compare, calibrate, drive, mesh."""
 
 from . import samples as s
 from .case import Case, fixed_seconds, write

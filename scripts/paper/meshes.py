@@ -1,4 +1,4 @@
-"""Finer meshes of the examples' robots."""
+"""Makes finer meshes of the examples' robots."""
 
 from __future__ import annotations
 
@@ -11,19 +11,19 @@ from rows import ROOT
 sys.path.insert(0, str(ROOT / "bench"))
 import weights_study  # noqa: E402
 
-Mesh: Any = weights_study.Mesh  # a study without types
+Mesh: Any = weights_study.Mesh  # weights_study.py has no type annotations
 
 
 def read(text: str) -> Any:
-    """Of a .msh in ASCII."""
+    """Reads the text of a .msh in ASCII."""
     return Mesh(text)
 
 
-def refined(text: str, share: float) -> str:
-    """The mesh with no edge longer than that share of its median edge."""
+def refined(text: str, edge_ratio: float) -> str:
+    """Refines a mesh until no edge is longer than edge_ratio times its median edge."""
     mesh = Mesh(text)
     lengths = sorted(math.dist(mesh.vertices[a], mesh.vertices[b])
                      for kind, _, nodes in mesh.elements if kind == 4 for a in nodes for b in nodes if a < b)
-    longest = share * lengths[len(lengths) // 2]
-    mesh.refine(lambda _: longest)
+    max_length = edge_ratio * lengths[len(lengths) // 2]
+    mesh.refine(lambda _: max_length)
     return str(mesh.text())

@@ -1,4 +1,4 @@
-"""What the paper prints, by part: each stands in exactly one row."""
+"""Lists the numbers and claims of the paper by part, each of which must be in exactly one row."""
 
 from __future__ import annotations
 
@@ -31,12 +31,13 @@ PRINTED: dict[str, tuple[str, ...]] = {
 
 
 def missing(results: dict[str, Result]) -> list[str]:
-    """What the parts that were run leave out, or say twice."""
+    """Returns one message for each number or claim of the completed parts that is not in exactly one row."""
     rows = [(f"{part}: {row.item}", row.printed) for part, result in results.items() for row in result.rows]
     faults = []
     for part in results:
         for words in PRINTED[part]:
             places = [item for item, printed in rows if words in printed]
             if len(places) != 1:
-                faults.append(f"{part}: '{words}' is printed in the paper and stands in {len(places)} rows: {', '.join(places)}")
+                faults.append(f"{part}: the paper prints '{words}', which is in {len(places)} rows "
+                              f"instead of one: {', '.join(places)}")
     return faults

@@ -125,7 +125,7 @@ TEST(Bend, IsFoundWhereThePressureOfItPutsTheTip) {
   ASSERT_EQ(shapes.size(), 2U);
   EXPECT_NEAR(shapes[0].degrees, 30, 0.05);
   EXPECT_NEAR(shapes[1].degrees, 75, 0.05);
-  // asked for by its pressure instead of its volume
+  // the same shape, commanded by its pressure instead of its volume
   spec.actuators[0].control = Control::load;
   spec.actuators[0].low = 0;
   spec.actuators[0].high = 1000;

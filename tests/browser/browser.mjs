@@ -1,4 +1,4 @@
-// Pages in a browser without network, and what tests do with them.
+// Opens pages in a browser without network, and provides actions and checks for the tests.
 import axe from 'axe-core';
 import {chromium} from 'playwright-core';
 
@@ -6,20 +6,20 @@ const chromiumFile = process.env.SOFTKIN_CHROMIUM ?? '/usr/bin/chromium';
 const flags = ['--no-sandbox', '--disable-gpu', '--use-angle=swiftshader', '--enable-unsafe-swiftshader',
                '--disable-background-networking', '--disable-component-update', '--disable-sync', '--no-first-run'];
 
-const slower = (() => {
+const slowness = (() => {
   const begin = performance.now();
   let root = 1;
   for (let i = 0; i < 4e6; ++i) root = 0.5 * (root + 2 / root) + 1e-9 * i;
   return Math.max(1, (performance.now() - begin) / 40);
 })();
 
-/** A limit on time [ms] as it holds on an idle machine of 2023, made longer for slow and busy ones. */
-export const patient = (milliseconds) => milliseconds * slower;
+/** Scales a time limit of an idle machine of 2023 [ms] for slower or busy machines. */
+export const patient = (milliseconds) => milliseconds * slowness;
 
-/** Browsers' own words on a connection that is gone: live mode tries again. */
+/** Messages of browsers about a lost connection, after which live mode connects again. */
 const expected = /WebSocket connection to|ERR_CONNECTION_REFUSED/;
 
-/** What a page said that it should not have said, and what it asked for beside itself. */
+/** Records errors and warnings of a page, and its requests for anything but its own address. */
 export class Watch {
   errors = [];
   requests = [];
@@ -39,7 +39,7 @@ export class Watch {
 
 export const launch = () => chromium.launch({executablePath: chromiumFile, args: flags});
 
-/** offline: nothing but the file itself can be had. */
+/** Opens a page. offline: the page can load nothing but its own file. */
 export async function open(browser, url, {width = 1280, height = 720, scheme = 'light', offline = true} = {}) {
   const context = await browser.newContext({viewport: {width, height}, colorScheme: scheme, hasTouch: width < 600,
                                             acceptDownloads: true, offline});
@@ -52,7 +52,7 @@ export async function open(browser, url, {width = 1280, height = 720, scheme = '
 
 const number = (text) => Number(text.replace('−', '-'));
 
-/** Of the first marker [mm], as the page writes it. */
+/** Returns the coordinates of the first marker [mm], as the page shows them. */
 export async function tipText(page) {
   return (await page.locator('#table tbody tr').first().locator('td').allTextContents()).slice(1, 4);
 }
@@ -63,13 +63,13 @@ export async function moveSlider(page, actuator, value) {
   await page.locator(`#actuator-${actuator}`).fill(String(value));
 }
 
-/** So many frames have been drawn. */
-export const frames = (page, count = 2) => page.evaluate((left) => new Promise((done) => {
-  const next = () => left-- > 0 ? requestAnimationFrame(next) : done();
+/** Waits until this number of frames has been drawn. */
+export const frames = (page, count = 2) => page.evaluate((remaining) => new Promise((done) => {
+  const next = () => remaining-- > 0 ? requestAnimationFrame(next) : done();
   next();
 }), count);
 
-/** Where the first marker is on the screen; labels are placed as a frame is drawn. */
+/** Returns the position of the first marker on the screen; labels are placed when a frame is drawn. */
 export async function tipOnScreen(page) {
   await frames(page);
   const box = await page.locator('#canvas').boundingBox();
@@ -95,7 +95,7 @@ export async function dropFile(page, name, text) {
   await frames(page, 4);
 }
 
-/** What breaks the rules of accessibility (WCAG 2 AA and good practice), with where. */
+/** Lists the elements that violate rules of accessibility (WCAG 2 AA and good practice). */
 export async function violations(page) {
   const session = await page.context().newCDPSession(page);
   const {result} = await session.send('Runtime.evaluate', {

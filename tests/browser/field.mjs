@@ -1,4 +1,4 @@
-// The arrow of the magnetic field: it shows what the sliders command, and dragging it commands as they do.
+// The arrow of the magnetic field: it shows the field that the sliders command, and dragging it sets their commands.
 import assert from 'node:assert/strict';
 import {resolve} from 'node:path';
 import {pathToFileURL} from 'node:url';
@@ -6,17 +6,17 @@ import {drag, frames, moveSlider, open, tip, tipText, violations} from './browse
 import {example, forward, mapOf, out, serve, softkin} from './softkin.mjs';
 
 const crawler = 'magnetic_crawler', cantilever = 'magnetic_cantilever';
-const far = (a, b) => Math.hypot(...a.map((x, k) => x - b[k]));
-/** What the arrow's label says: it is written as a frame is drawn, not as a command comes. */
+const distance = (a, b) => Math.hypot(...a.map((x, k) => x - b[k]));
+/** Returns the text of the arrow's label, which is written when a frame is drawn. */
 async function size(page) {
   await frames(page);
   return page.locator('#labels .field').textContent();
 }
 
-/** As it is typed: sliders round. */
+/** Returns a command from its field: sliders round. */
 const command = async (page, a) => Number(await page.locator('.typed input').nth(a).inputValue());
 
-/** Where the field's arrow ends on the screen. */
+/** Returns the tip of the field's arrow on the screen. */
 async function endOnScreen(page) {
   await frames(page);
   const box = await page.locator('#canvas').boundingBox();
@@ -51,13 +51,13 @@ async function checkDrag(page) {
   assert.ok(await dragBy(page, 20, -25) < 1, 'the arrow does not follow the pointer');
   const [x, z] = [await command(page, 0), await command(page, 1)], shown = await tipText(page);
   assert.ok(x > 0.1 && z > 0.1, `dragged to the right and up, the field is ${x}, ${z} mT`);
-  assert.ok(far(await tip(page), before) > 0.1, 'the robot does not follow');
+  assert.ok(distance(await tip(page), before) > 0.1, 'the robot does not follow');
   assert.ok(Math.abs(Number((await size(page)).split(' ')[1]) - Math.hypot(x, z)) < 0.006, await size(page));
   await page.locator('#undo').click();
   assert.deepEqual([await command(page, 0), await command(page, 1)], [0, 0]);
   for (const [a, value] of [x, z].entries()) await page.locator('.typed input').nth(a).fill(String(value));
   await page.keyboard.press('Enter');
-  assert.deepEqual(await tipText(page), shown, 'sliders lead elsewhere');
+  assert.deepEqual(await tipText(page), shown, 'sliders give another position');
   await dragBy(page, 0, -700);
   assert.equal(await command(page, 1), 1.2);
 }
@@ -115,8 +115,8 @@ async function checkLive(page) {
   await answered(page);
   const field = await command(page, 0), [step] = await forward(example(cantilever), ['field_mT'], [[field]]);
   assert.ok(field > 5, `the field is ${field} mT`);
-  assert.ok(far(await tip(page), before) > 3, 'the robot does not follow');
-  assert.ok(far(await tip(page), step.markers.tip) < 0.02, `softkin fk leads to ${step.markers.tip}`);
+  assert.ok(distance(await tip(page), before) > 3, 'the robot does not follow');
+  assert.ok(distance(await tip(page), step.markers.tip) < 0.02, `softkin fk computes ${step.markers.tip}`);
   await page.screenshot({path: out('field_live.png')});
   assert.deepEqual(await violations(page), []);
 }

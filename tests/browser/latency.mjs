@@ -1,14 +1,15 @@
-// How long a page of softkin view takes from a moved slider to the drawn shape:
+// Measures the time from a moved slider to the drawn shape in a page of softkin view:
 //   node latency.mjs SOFTKIN OUT_FOLDER SCENE [MAP [MOVES]]
-// Each move waits for the exact shape of the one before. Also pictures a second while a map or the eye moves.
+// Each move waits for the exact shape of the previous one. Also measures pictures per second while the camera moves.
 import {launch, open} from './browser.mjs';
 import {serve} from './softkin.mjs';
 
-const [scene, map, asked] = process.argv.slice(4);
-const moves = Number(asked ?? 40);
+const [scene, map, moveCount] = process.argv.slice(4);
+const moves = Number(moveCount ?? 40);
 const sorted = (list) => [...list].sort((a, b) => a - b);
-const at = (list, share) => sorted(list)[Math.min(list.length - 1, Math.floor(share * list.length))];
-const told = (list) => `median ${at(list, 0.5).toFixed(0)} ms, 95th of a hundred ${at(list, 0.95).toFixed(0)} ms`;
+const quantile = (list, fraction) => sorted(list)[Math.min(list.length - 1, Math.floor(fraction * list.length))];
+const summary = (list) =>
+  `median ${quantile(list, 0.5).toFixed(0)} ms, 95th percentile ${quantile(list, 0.95).toFixed(0)} ms`;
 
 const server = await serve(scene, 0, ...(map ? ['--map', map] : []));
 const browser = await launch();
@@ -27,7 +28,7 @@ try {
       slider.value = String(to);
       slider.dispatchEvent(new Event('input', {bubbles: true}));
       const frame = () => new Promise(requestAnimationFrame);
-      await frame();  // after the page's own, which has drawn
+      await frame();  // after the page's own callback, which has drawn
       gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4));  // waits for the picture
       const once = performance.now() - start;
       while (window.softkinPage.latencies.length === count) await frame();
@@ -37,8 +38,8 @@ try {
     drawn.push(first);
     waits.push(exact);
   }
-  console.log(`slider to exact shape drawn: ${told(waits)} (${moves} moves of 1 % of the range)`);
-  if (map) console.log(`slider to the map's shape drawn: ${told(drawn)}`);
+  console.log(`slider to exact shape drawn: ${summary(waits)} (${moves} moves of 1 % of the range)`);
+  if (map) console.log(`slider to the map's shape drawn: ${summary(drawn)}`);
   const turned = await page.evaluate(async () => {
     const canvas = document.querySelector('#canvas'), frame = () => new Promise(requestAnimationFrame);
     const start = performance.now();
@@ -48,7 +49,7 @@ try {
     }
     return 30 / (performance.now() - start) * 1000;
   });
-  console.log(`pictures a second while the eye moves: ${turned.toFixed(1)}`);
+  console.log(`pictures per second while the camera moves: ${turned.toFixed(1)}`);
 } finally {
   await browser.close();
   await server.stop();

@@ -1,16 +1,16 @@
-// Live mode (softkin view): windows, control, and shapes that are those of softkin fk.
+// Live mode (softkin view): windows, control, and shapes equal to those of softkin fk.
 import assert from 'node:assert/strict';
 import {readFileSync} from 'node:fs';
 import {drag, dropFile, frames, moveSlider, open, patient, tip, tipOnScreen, tipText, violations} from './browser.mjs';
 import {example, forward, mapOf, out, serve} from './softkin.mjs';
 
 const name = 'three_tendon_finger', actuators = ['tendon1', 'tendon2', 'tendon3'];
-const far = (a, b) => Math.hypot(...a.map((x, k) => x - b[k]));
+const distance = (a, b) => Math.hypot(...a.map((x, k) => x - b[k]));
 const until = (page, id, pattern, timeout = patient(60000)) => page.waitForFunction(([of, text]) =>
   new RegExp(text).test(document.getElementById(of).textContent), [id, pattern.source], {timeout});
 const off = (page) => page.locator('#actuator-0').isDisabled();
 
-/** Waits until softkin has answered what was asked last. */
+/** Waits until softkin has answered the last request. */
 const answered = (page) => until(page, 'state', /^Computed: converged/);
 
 async function checkSliders(page) {
@@ -19,13 +19,14 @@ async function checkSliders(page) {
     for (const [a, value] of row.entries()) await moveSlider(page, a, value);
     await answered(page);
     const digits = solved[r].markers.tip.map((x) => (Math.abs(x) < 0.005 ? 0 : x).toFixed(2).replace('-', '−'));
-    assert.ok(far(await tip(page), solved[r].markers.tip) < 0.009, `${await tipText(page)} at ${row}, not ${digits}`);
+    assert.ok(distance(await tip(page), solved[r].markers.tip) < 0.009,
+              `${await tipText(page)} at ${row}, not ${digits}`);
   }
   const {latencies, frames: count} = await page.evaluate(() =>
     ({latencies: window.softkinPage.latencies, frames: window.softkinPage.frames}));
   assert.ok(latencies.length >= rows.length && count >= rows.length);
   const sorted = latencies.slice().sort((a, b) => a - b).map(Math.round);
-  console.log(`live: ${sorted.length} latencies: median ${sorted[sorted.length >> 1]} ms, most ${sorted.at(-1)} ms`);
+  console.log(`live: ${sorted.length} latencies: median ${sorted[sorted.length >> 1]} ms, maximum ${sorted.at(-1)} ms`);
 }
 
 async function checkTarget(page) {
@@ -33,7 +34,7 @@ async function checkTarget(page) {
   await drag(page, at, {x: at.x - 15, y: at.y + 8});
   await until(page, 'error', /^(Reached|Out of reach|tip not reached)/);
   await answered(page);
-  assert.ok(far(await tip(page), before) > 1, 'the marker did not follow');
+  assert.ok(distance(await tip(page), before) > 1, 'the marker did not follow');
   await page.locator('#target input').nth(1).fill('60');
   await page.keyboard.press('Enter');
   await until(page, 'error', /not reached|Out of reach/);
@@ -50,7 +51,7 @@ async function checkFiles(page, withMap) {
   await until(page, 'step-text', /^3 of 3/);
   await answered(page);
   const last = (await forward(example(name), actuators, rows)).at(-1).markers.tip;
-  assert.ok(far(await tip(page), last) < 0.009, 'the last row leads elsewhere');
+  assert.ok(distance(await tip(page), last) < 0.009, 'the last row gives another position');
   await dropFile(page, 'circle.csv', readFileSync(example(name, 'circle.csv'), 'utf8'));
   if (!withMap) {
     assert.match(await page.locator('#path .bad').textContent(), /Without a map .* need x_mm, y_mm and z_mm/);
@@ -109,7 +110,7 @@ async function allOf(browser, test, more, kind) {
   let server = await serve(example(name), 0, ...more);
   const {page, watch} = await open(browser, server.url, {offline: false});
   await test(`${kind}: the window with the secret has control`, () => until(page, 'live-words', /^You control/));
-  await test(`${kind}: sliders lead where softkin fk leads`, () => checkSliders(page));
+  await test(`${kind}: sliders give the positions of softkin fk`, () => checkSliders(page));
   await test(`${kind}: targets`, () => checkTarget(page));
   await test(`${kind}: files are played`, () => checkFiles(page, more.length > 0));
   await test(`${kind}: two windows and hand-over`, () => checkHandOver(browser, page, server.url));

@@ -1,4 +1,4 @@
-// A page with a map shows every output of the map as the map has it: markers, pressures, tensions, lengths and volumes.
+// A page with a map shows the map's value of every output: markers, pressures, tensions, lengths and volumes.
 import assert from 'node:assert/strict';
 import {resolve} from 'node:path';
 import {pathToFileURL} from 'node:url';
@@ -8,7 +8,7 @@ import {example, mapOf, out, softkin} from './softkin.mjs';
 /** Examples: a chamber by pressure, tendons by length, chambers by volume, one cable. */
 const robots = ['paper_finger', 'three_tendon_finger', 'three_chamber_actuator', 'cable_gripper'];
 
-/** The same each time, at thousandths of the ranges, as the sliders have them. */
+/** Returns reproducible commands at thousandths of the ranges, the steps of the sliders. */
 function someCommands(inputs, count) {
   let state = 4321;
   const next = () => (state = (state * 1103515245 + 12345) % 2 ** 31) / 2 ** 31;
@@ -19,7 +19,7 @@ function someCommands(inputs, count) {
 const number = (text) => Number(text.replace('−', '-'));
 const quantities = {pressure: ['pressure'], tension: ['tension'], ratio: ['length', 'area', 'volume']};
 
-/** Numbers of the page by the names of the map's outputs. */
+/** Returns the values on the page by the names of the map's outputs. */
 async function shown(page) {
   const texts = (table) => page.locator(`#${table} tbody tr`).evaluateAll((rows) =>
     rows.map((row) => [...row.querySelectorAll('td')].map((cell) => cell.textContent)));

@@ -1,4 +1,4 @@
-// A report (softkin fk --html) with a map: all of it works from the file alone, and says what softkin says.
+// A report (softkin fk --html) with a map: all of it works from the file alone, with the results of softkin.
 import assert from 'node:assert/strict';
 import {execFile} from 'node:child_process';
 import {readFileSync, statSync, writeFileSync} from 'node:fs';
@@ -10,10 +10,10 @@ import {example, forward, mapOf, out, softkin} from './softkin.mjs';
 
 const name = 'three_tendon_finger', actuators = ['tendon1', 'tendon2', 'tendon3'];
 const sizes = [[1280, 720], [1920, 1080], [390, 844]];
-const far = (a, b) => Math.hypot(...a.map((x, k) => x - b[k]));
+const distance = (a, b) => Math.hypot(...a.map((x, k) => x - b[k]));
 const text = (page, id) => page.locator(`#${id}`).textContent();
 
-/** Places of a slider's thousandths, the same each time. */
+/** Returns reproducible commands at the steps of the sliders. */
 function someCommands(count) {
   let state = 12345;
   const next = () => (state = (state * 1103515245 + 12345) % 2 ** 31) / 2 ** 31;
@@ -27,7 +27,7 @@ async function checkNumbers(page, map) {
   for (const [r, row] of rows.entries()) {
     for (const [a, value] of row.entries()) await moveSlider(page, a, value);
     const shown = await tip(page), exact = solved[r].markers.tip;
-    assert.ok(far(shown, exact) < 0.05, `at ${row} the page says ${shown}, softkin fk ${exact}`);
+    assert.ok(distance(shown, exact) < 0.05, `at ${row} the page shows ${shown}, softkin fk ${exact}`);
     const digits = mapped[r].markers.tip.map((x) => (Math.abs(x) < 0.005 ? 0 : x).toFixed(2).replace('-', '−'));
     assert.deepEqual(await tipText(page), digits, `at ${row}`);
   }
@@ -41,9 +41,9 @@ async function checkTarget(page) {
   const before = await tip(page), at = await tipOnScreen(page);
   await drag(page, at, {x: at.x - 12, y: at.y + 10});
   const after = await tip(page);
-  assert.ok(far(before, after) > 1, 'the marker did not follow the pointer');
+  assert.ok(distance(before, after) > 1, 'the marker did not follow the pointer');
   await page.locator('#undo').click();
-  assert.ok(far(await tip(page), before) < 0.011, 'undo leads elsewhere');
+  assert.ok(distance(await tip(page), before) < 0.011, 'undo does not restore the position');
   await frames(page);
   const letter = await page.locator('#labels b').nth(0).boundingBox(), mark = await tipOnScreen(page);
   const arrow = {x: mark.x + 0.6 * (letter.x + 4 - mark.x), y: mark.y + 0.6 * (letter.y + 9 - mark.y)};
@@ -72,7 +72,7 @@ async function checkFiles(page) {
   assert.match(await page.locator('#path').textContent(), /9 rows of commands/);
   await page.locator('#step').fill('8');
   const last = (await forward(example(name), actuators, [[1, 0.8, 0.6]]))[0].markers.tip;
-  assert.ok(far(await tip(page), last) < 0.05, 'the last row leads elsewhere');
+  assert.ok(distance(await tip(page), last) < 0.05, 'the last row gives another position');
   await dropFile(page, 'circle.csv', readFileSync(example(name, 'circle.csv'), 'utf8'));
   await page.waitForFunction(() => /(\d+) of \1 waypoints solved/.test(document.querySelector('#path').textContent));
   await page.waitForFunction(() => Number(document.querySelector('#step').value) > 2);
@@ -107,7 +107,7 @@ async function checkSaving(page) {
   const shell = line.replace(/^softkin/, '"$SOFTKIN" ') + ' --json';
   const {stdout} = await promisify(execFile)('sh', ['-c', shell],
     {env: {...process.env, SOFTKIN: resolve(process.argv[2])}, maxBuffer: 1 << 28});
-  assert.ok(far(JSON.parse(stdout).steps[0].markers.tip, shown) < 0.05, 'the line computes another state');
+  assert.ok(distance(JSON.parse(stdout).steps[0].markers.tip, shown) < 0.05, 'the line computes another state');
   const vtu = readFileSync(await saved(page, 'Shape (VTU)'), 'utf8');
   const count = Number(/NumberOfPoints="(\d+)"/.exec(vtu)[1]);
   const points = /Name="Points"[^>]*>\n([^<]*)</.exec(vtu)[1].trim().split(' ').map(Number);
@@ -148,7 +148,7 @@ export async function reportTests(browser, test) {
   await softkin('fk', example(name), '--path', out('path.csv'), '--map', map, '--html', file);
   const url = pathToFileURL(resolve(file)).href, {page, watch, context} = await open(browser, url);
   await test('report is smaller than 3 MB', () => assert.ok(statSync(file).size < 3e6, `${statSync(file).size} B`));
-  await test('report: sliders lead where softkin fk leads', () => checkNumbers(page, map));
+  await test('report: sliders give the positions of softkin fk', () => checkNumbers(page, map));
   await test('report: targets are dragged and typed, undone and reset', () => checkTarget(page));
   await test('report: files are dropped, played and scrubbed', () => checkFiles(page));
   await test('report: states and shapes are saved, and computed again', () => checkSaving(page));

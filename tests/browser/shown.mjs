@@ -1,5 +1,5 @@
-// What a page shows when it opens: the robot at rest, its base on either ground, names that do not cover each other;
-// and what it says of a number that is not taken.
+// A page when it opens: the robot at the rest commands, its base visible in both themes, names that do not cover each
+// other; and the message for a number that is refused.
 import assert from 'node:assert/strict';
 import {resolve} from 'node:path';
 import {pathToFileURL} from 'node:url';
@@ -9,7 +9,7 @@ import {example, mapOf, out, serve, softkin} from './softkin.mjs';
 const name = 'three_tendon_finger';
 const text = (page, id) => page.locator(`#${id}`).textContent();
 
-/** Mean colours of squares of 5 pixels about places of the page. */
+/** Returns the mean colours of squares of 5 pixels around points of the page. */
 async function coloursAt(page, places) {
   const png = (await page.screenshot()).toString('base64');
   return page.evaluate(async ([data, all]) => {
@@ -27,7 +27,7 @@ async function coloursAt(page, places) {
   }, [png, places]);
 }
 
-/** Contrast of two colours as WCAG defines it, 1 to 21. */
+/** Returns the contrast of two colours as WCAG defines it, 1 to 21. */
 function contrast(a, b) {
   const light = (rgb) => rgb.map((c) => c / 255).map((s) => s <= 0.04045 ? s / 12.92 : ((s + 0.055) / 1.055) ** 2.4)
     .reduce((sum, c, k) => sum + [0.2126, 0.7152, 0.0722][k] * c, 0);
@@ -52,8 +52,8 @@ async function checkTyped(page) {
   const field = page.locator('.typed input').first(), before = await tipText(page);
   await field.fill('0.4');
   await page.keyboard.press('Enter');
-  const said = page.locator('.slider .bad').first();
-  assert.equal(await said.textContent(),
+  const message = page.locator('.slider .bad').first();
+  assert.equal(await message.textContent(),
     'tendon1: 0.4 is outside its range, 0.5 to 1 × rest length. The command is unchanged.');
   assert.equal(await field.getAttribute('aria-invalid'), 'true');
   assert.deepEqual(await tipText(page), before);
@@ -61,12 +61,12 @@ async function checkTyped(page) {
   assert.deepEqual(await violations(page), []);
   await field.fill('0.8');
   await page.keyboard.press('Enter');
-  assert.equal(await said.textContent(), '');
+  assert.equal(await message.textContent(), '');
   assert.equal(await field.getAttribute('aria-invalid'), 'false');
   assert.notDeepEqual(await tipText(page), before);
 }
 
-/** Of a robot of three markers whose names would lie on each other and on its legend. */
+/** Checks a robot with three markers whose names would otherwise cover each other and the legend. */
 async function checkLabels(browser, url) {
   for (const [width, height] of [[390, 844], [360, 640], [1280, 720]]) {
     const {page, context} = await open(browser, url, {width, height});
@@ -98,7 +98,7 @@ export async function shownTests(browser, test) {
     for (const a of [0, 1, 2]) assert.equal(await page.locator(`#actuator-${a}`).inputValue(), '1');
     assert.equal(await text(page, 'state'), 'Equilibrium at the rest commands, from the map');
   });
-  await test('shown: a number outside its range is not taken, and told', () => checkTyped(page));
+  await test('shown: a number outside its range is refused with a message', () => checkTyped(page));
   await test('shown: no errors, no requests', () => assert.deepEqual([...watch.errors, ...watch.requests], []));
   await context.close();
   await test('shown: the base is seen in both themes', () => checkBase(browser, url));
@@ -107,7 +107,7 @@ export async function shownTests(browser, test) {
   await test('shown: names do not cover each other', () => checkLabels(browser, pathToFileURL(resolve(crowded)).href));
 }
 
-/** A ball that is gripped goes where the fingers push it. */
+/** Checks that a gripped ball, which moves by contact only, cannot be dragged. */
 export async function liveShownTests(browser, test) {
   const server = await serve(example('two_finger_gripper', 'ball.yaml'), 0);
   const {page, watch} = await open(browser, server.url, {offline: false});

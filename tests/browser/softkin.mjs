@@ -1,4 +1,4 @@
-// Runs softkin.
+// Runs the program softkin.
 import {execFile, spawn} from 'node:child_process';
 import {existsSync} from 'node:fs';
 import {dirname, join} from 'node:path';
@@ -23,14 +23,14 @@ export async function softkin(...words) {
   return stdout;
 }
 
-/** The map of an example; kept in the folder for the next time. */
+/** Returns the file of the map of an example, which is computed once and kept in the output folder. */
 export async function mapOf(name) {
   const file = out(`${name}.skmap`);
   if (!existsSync(file)) await softkin('map', example(name), '-o', file, '--check', 10);
   return file;
 }
 
-/** Steps of fk for rows of commands, as its report tells them. */
+/** Returns the steps in the report of fk for rows of commands. */
 export async function forward(scene, names, rows, ...more) {
   const {writeFileSync} = await import('node:fs');
   writeFileSync(out('rows.csv'), [names, ...rows].map((row) => row.join()).join('\n') + '\n');
@@ -38,10 +38,10 @@ export async function forward(scene, names, rows, ...more) {
 }
 
 const serving = new Set();
-/** Ends what a test that failed has left, which would keep this program from ending. */
+/** Stops the servers that failed tests left running, which would keep this program from ending. */
 export const stopAll = () => serving.forEach((child) => child.kill('SIGKILL'));
 
-/** softkin view until stop(). port: 0: any; output: what it has printed */
+/** Starts softkin view, which runs until stop(). port: 0: any free one; output: returns its printed text */
 export async function serve(scene, port, ...more) {
   const child = spawn(program, ['view', scene, '--no-open', '--port', String(port), ...more],
                       {stdio: ['ignore', 'pipe', 'inherit']});

@@ -1,4 +1,4 @@
-// Steps that have times are played in them.
+// Steps with times are played at their times.
 import assert from 'node:assert/strict';
 import {readFileSync, writeFileSync} from 'node:fs';
 import {resolve} from 'node:path';
@@ -10,16 +10,16 @@ const name = 'three_tendon_finger';
 const shown = (page) => page.locator('#step-text').textContent();
 const speeds = (page) => page.locator('#speed option').allTextContents();
 
-/** The page of a file with these rows, which softkin fk or follow takes. */
-async function pageOf(browser, what, rows, options) {
-  const path = out(`${what}_times.csv`), html = out(`${what}_times.html`);
+/** Opens the page that softkin fk or follow writes for these rows. */
+async function pageOf(browser, command, rows, options) {
+  const path = out(`${command}_times.csv`), html = out(`${command}_times.html`);
   writeFileSync(path, rows.join('\n') + '\n');
-  if (what === 'follow') await softkin('follow', example(name), path, '-o', out('followed'), '--html', html);
+  if (command === 'follow') await softkin('follow', example(name), path, '-o', out('followed'), '--html', html);
   else await softkin('fk', example(name), '--path', path, '--html', html);
   return open(browser, pathToFileURL(resolve(html)).href, options);
 }
 
-/** How long it plays from the first step to the last [s]. */
+/** Measures how long the page plays from the first step to the last [s]. */
 async function played(page) {
   await page.locator('#step').fill('0');
   return page.evaluate(() => new Promise((done) => {
@@ -44,7 +44,7 @@ async function checkSeconds(browser) {
   assert.equal(await shown(page), '3 of 4, t = 1.25 s');
   assert.deepEqual(await speeds(page), ['0.25 ×', '1 ×', '4 ×']);
   assert.equal(await page.locator('#speed').inputValue(), '1');
-  // from the first step, which is shown already, it goes on with the second
+  // the first step is shown already, so playing continues with the second
   const usual = await played(page);
   assert.ok(usual > 1 && usual < patient(2000) / 1000, `${usual} s`);
   await page.getByLabel('Speed').selectOption('4 ×');
@@ -79,7 +79,7 @@ async function checkNone(browser) {
   await context.close();
 }
 
-/** The file that is saved is a video, of the picture's size and as long as the steps are played. */
+/** Checks that the saved file is a video of the picture's size and of the duration of the steps. */
 async function checkVideo(browser) {
   const {page, watch, context} = await pageOf(browser, 'fk', ['t_s,tendon1', '0,1', '0.5,0.9', '1.5,0.7'], {});
   await page.locator('#step').fill('2');
@@ -112,14 +112,14 @@ async function checkVideo(browser) {
   for (const side of ['width', 'height'])
     assert.ok(seen[side] === size[side] - size[side] % 2, `${side} ${seen[side]} of ${size[side]}`);
   assert.ok(seen.end > 1.5 && seen.end < patient(4000) / 1000, `${seen.end} s`);
-  assert.ok(seen.shapes >= 2, 'the video stands still');
+  assert.ok(seen.shapes >= 2, 'the video shows one shape only');
   assert.deepEqual([...watch.errors, ...watch.requests], []);
   await context.close();
 }
 
 export async function timeTests(browser, test) {
-  await test('times: steps show theirs and are played in them', () => checkSeconds(browser));
+  await test('times: steps show their times and are played at them', () => checkSeconds(browser));
   await test('times: a path of hours is played faster', () => checkHours(browser));
-  await test('times: what is played is saved as a video', () => checkVideo(browser));
+  await test('times: the played steps are saved as a video', () => checkVideo(browser));
   await test('times: steps without times have no speed', () => checkNone(browser));
 }

@@ -42,9 +42,9 @@ class Arm {
     std::vector<FittedNumber> all;
     for (const std::string& text : numbers) all.push_back(parse_fitted_number("--fit", text));
     std::vector<std::filesystem::path> inputs;
-    AskedScene asked;
-    asked.scene = folder_ / "arm.yaml";
-    return {asked, all, inputs, given};
+    RequestedScene requested;
+    requested.scene = folder_ / "arm.yaml";
+    return {requested, all, inputs, given};
   }
 
   /// Its poses where it has these numbers, with noise and some readings far off.
@@ -56,13 +56,13 @@ class Arm {
     poses.values = found.computed.values;
     std::mt19937 engine(seed);
     std::normal_distribution<double> normal(0, 1);
-    std::uniform_real_distribution<double> share(0, 1);
+    std::uniform_real_distribution<double> fraction(0, 1);
     for (Index pose = 0; pose < poses.values.rows(); ++pose)
       for (Index c = 0; c < poses.values.cols(); c += 3) {
-        const Vec3 way(normal(engine), normal(engine), normal(engine));
-        const bool off = share(engine) < wrong;
+        const Vec3 route(normal(engine), normal(engine), normal(engine));
+        const bool off = fraction(engine) < wrong;
         for (Index axis = 0; axis < 3; ++axis)
-          poses.values(pose, c + axis) += noise * normal(engine) + (off ? 30 * way.normalized()[axis] : 0);
+          poses.values(pose, c + axis) += noise * normal(engine) + (off ? 30 * route.normalized()[axis] : 0);
       }
     return poses;
   }

@@ -31,7 +31,7 @@ class BranchEquations {
   void stretch(double dt, double begin, double end, int steps) {
     const double h = dt / steps;
     for (int i = 0; i < steps; ++i) {
-      const auto at = [&](double share) { return begin + (end - begin) * (i + share) / steps; };
+      const auto at = [&](double fraction) { return begin + (end - begin) * (i + fraction) / steps; };
       for (std::size_t b = 0; b < branches_.size(); ++b) {
         Eigen::Matrix3d& c = viscous_[b];
         const Eigen::Matrix3d k1 = rate(b, c, at(0)), k2 = rate(b, c + h / 2 * k1, at(0.5)),
@@ -41,7 +41,7 @@ class BranchEquations {
     }
   }
 
-  /// The stretch that bears a stress now [MPa], by bisection.
+  /// Returns the current stretch under a stress [MPa], by bisection.
   [[nodiscard]] double bearing(double stress_MPa, double high) const {
     double low = 0.2;
     for (int i = 0; i < 60; ++i) {

@@ -7,21 +7,21 @@
 
 namespace softkin::calibration {
 
-/// Lines joined to one way: from each place on to the nearest that was not visited.
+/// Joins lines to one path: each point is followed by the nearest one that was not visited.
 inline std::vector<Eigen::Vector2d> one_after_another(const OutlineLines& lines, double spacing) {
-  std::vector<Eigen::Vector2d> left, way;
+  std::vector<Eigen::Vector2d> left, path;
   for (const auto& [begin, end] : lines)
     for (double at = 0; at < (end - begin).norm(); at += spacing)
       left.emplace_back(begin + at / (end - begin).norm() * (end - begin));
   while (!left.empty()) {
     auto next = left.begin();
-    for (auto each = left.begin(); !way.empty() && each != left.end(); ++each)
-      if ((*each - way.back()).squaredNorm() < (*next - way.back()).squaredNorm()) next = each;
-    // what lies behind the edge in front is not seen twice
-    if (way.empty() || (*next - way.back()).norm() > spacing / 4) way.push_back(*next);
+    for (auto each = left.begin(); !path.empty() && each != left.end(); ++each)
+      if ((*each - path.back()).squaredNorm() < (*next - path.back()).squaredNorm()) next = each;
+    // points just behind the visible edge are left out
+    if (path.empty() || (*next - path.back()).norm() > spacing / 4) path.push_back(*next);
     left.erase(next);
   }
-  return way;
+  return path;
 }
 
 /// Gives poses the outlines that a robot has in them, with noise along x and y.
@@ -35,10 +35,10 @@ inline void show_outlines(MeasuredPoses& poses, const NumberedRobot& truth, doub
   for (std::size_t pose = 0; pose < poses.commands.size(); ++pose) {
     const Points seen = (found.computed.equilibria[pose].state.positions * frame.rotation.transpose()).rowwise() +
                         frame.place.transpose();
-    std::vector<Eigen::Vector2d> way = one_after_another(SeenOutline(surface, seen).lines(), 0.5);
-    for (Eigen::Vector2d& point : way) point += noise * Eigen::Vector2d(normal(engine), normal(engine));
+    std::vector<Eigen::Vector2d> path = one_after_another(SeenOutline(surface, seen).lines(), 0.5);
+    for (Eigen::Vector2d& point : path) point += noise * Eigen::Vector2d(normal(engine), normal(engine));
     poses.pictures.push_back(pose + 1);
-    poses.outlines.points.push_back(std::move(way));
+    poses.outlines.points.push_back(std::move(path));
   }
 }
 

@@ -28,7 +28,7 @@ struct Imposed {
   bool load_imposed = false;
 };
 
-/// Up and back at an even rate of stretch [1/s], so many times.
+/// Loads and unloads at a constant rate of stretch [1/s], in a number of cycles.
 inline Imposed cycled(double most, double rate, int cycles, int rows) {
   Imposed imposed;
   for (int i = 0; i <= cycles * rows; ++i) {
@@ -49,7 +49,7 @@ inline Imposed held_at(double value, double first, double last, int rows, bool l
   return imposed;
 }
 
-/// The test as the branch equations have it, with noise of a share of the largest answer.
+/// Returns the test as predicted by the branch equations, with noise relative to the largest response.
 inline RelaxationRun made_run(const Imposed& imposed, const std::function<double(double)>& law,
                               const std::vector<ViscousBranch>& branches, double noise, unsigned seed) {
   std::mt19937 engine(seed);

@@ -207,8 +207,8 @@ TEST(Dielectric, CurveEndsAtPullInOrAtBreakdown) {
   const calibration::DielectricCurve curve = calibration::dielectric_curve(d, 65);
   EXPECT_NEAR(curve.area_ratios.back(), std::pow(2, 2.0 / 3), 1e-6);
   const MonotoneCurve ratio(curve.voltages, curve.area_ratios);
-  for (double share = 0.05; share < 0.995; share += 0.01) {  // between its points against the equation itself
-    const double voltage = share * curve.voltages.back(), stretch = std::sqrt(ratio.value(voltage));
+  for (double fraction = 0.05; fraction < 0.995; fraction += 0.01) {  // between its points against the equation itself
+    const double voltage = fraction * curve.voltages.back(), stretch = std::sqrt(ratio.value(voltage));
     EXPECT_NEAR(calibration::voltage_of(d, stretch), voltage, 2e-4 * curve.voltages.back());
   }
   const double half = 0.5 * curve.end_field_kV_mm;

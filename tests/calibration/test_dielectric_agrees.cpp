@@ -7,7 +7,7 @@
 
 #include "model/physical_robots.hpp"
 
-/// The equations of state of `calibrate dea` and elements under voltage are two ways to the same curve.
+/// The equations of state of `calibrate dea` and elements under voltage give the same curve.
 
 namespace softkin::calibration {
 
@@ -50,13 +50,13 @@ TEST(DielectricAgrees, WithElementsUnderVoltage) {
     const Model model = sheet_of(law);
     const Statics statics(model);
     State at = statics.rest();
-    for (const double share : {0.3, 0.6, 0.9, 0.99}) {
+    for (const double fraction : {0.3, 0.6, 0.9, 0.99}) {
       double low = 1, high = end.stretch;
       for (int i = 0; i < 80; ++i) {
         const double middle = (low + high) / 2;
-        (voltage_of(elastomer, middle) < share * end.voltage_kV ? low : high) = middle;
+        (voltage_of(elastomer, middle) < fraction * end.voltage_kV ? low : high) = middle;
       }
-      const Equilibrium found = statics.solve(Actuation::Constant(1, share * end.voltage_kV), at);
+      const Equilibrium found = statics.solve(Actuation::Constant(1, fraction * end.voltage_kV), at);
       ASSERT_EQ(found.report.status, Status::converged) << found.report.remark;
       EXPECT_NEAR(achieved_ratio(model, model.actuators[0], found.state.positions), low * low, 1e-3 * (low * low - 1));
       at = found.state;

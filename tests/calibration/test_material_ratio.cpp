@@ -96,9 +96,9 @@ TEST(ElasticityRatio, IsThatOfSpringsInSeries) {
       const double soft_a = interface_mm / ratio, soft_b = bar_length - interface_mm;
       const StretchedSpecimen s = stretched(interface_mm, 3, 3 * soft_a / (soft_a + soft_b));
       EXPECT_NEAR(calibration::elasticity_ratio(s), ratio, 1e-12 * ratio);
-      EXPECT_NEAR(calibration::rod_share(ratio, bar_length, interface_mm), s.interface_moved_mm / 3, 1e-14);
+      EXPECT_NEAR(calibration::rod_fraction(ratio, bar_length, interface_mm), s.interface_moved_mm / 3, 1e-14);
       StretchedSpecimen other = s;
-      other.interface_moved_mm = 3 * calibration::rod_share(ratio * std::exp(1e-6), bar_length, interface_mm);
+      other.interface_moved_mm = 3 * calibration::rod_fraction(ratio * std::exp(1e-6), bar_length, interface_mm);
       EXPECT_NEAR(calibration::rod_sensitivity_mm(s), (s.interface_moved_mm - other.interface_moved_mm) / 1e-6, 1e-5);
     }
   EXPECT_THROW((void)calibration::elasticity_ratio(stretched(50, 1, 1)), InvalidInput);
@@ -109,15 +109,16 @@ TEST(ElasticityRatio, SeveralSpecimensMinimiseTheErrorOfTheInterface) {
   std::vector<StretchedSpecimen> specimens;
   std::vector<double> logs, weights;
   for (const auto& [interface_mm, error] : {std::pair(20.0, 0.002), std::pair(45.0, -0.001), std::pair(80.0, 0.003)}) {
-    specimens.push_back(stretched(interface_mm, 2, 2 * calibration::rod_share(3.75, bar_length, interface_mm) + error));
+    specimens.push_back(
+        stretched(interface_mm, 2, 2 * calibration::rod_fraction(3.75, bar_length, interface_mm) + error));
     logs.push_back(std::log(calibration::elasticity_ratio(specimens.back())));
     weights.push_back(calibration::rod_sensitivity_mm(specimens.back()));
   }
   const auto squares = [&](double ratio) {
     double sum = 0;
     for (const StretchedSpecimen& s : specimens)
-      sum +=
-          std::pow(s.stretch_mm * calibration::rod_share(ratio, s.length_mm, s.interface_mm) - s.interface_moved_mm, 2);
+      sum += std::pow(
+          s.stretch_mm * calibration::rod_fraction(ratio, s.length_mm, s.interface_mm) - s.interface_moved_mm, 2);
     return sum;
   };
   const calibration::RatioEstimate found = calibration::combined_ratio(logs, weights);
@@ -238,7 +239,7 @@ TEST(RatioFit, SaysThatNoRatioFits) {
   EXPECT_THROW((void)calibration::fit_ratio({}, options, Formulation::physical), InvalidInput);
 }
 
-/// A solver that may not finish is told as such, and nothing is made of its shape.
+/// A solver that may not finish yields its status, and no estimate is made from its shape.
 TEST(RatioFit, AUnfinishedSimulationIsAStatus) {
   calibration::SpecimenOptions options;
   options.cells = 1;

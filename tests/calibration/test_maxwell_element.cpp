@@ -24,7 +24,7 @@ testing::BranchEquations vhb_equations() {
           vhb_branches};
 }
 
-/// Up to a stretch and back at so many 1/s, twice, a row every share of the cycle.
+/// Loads to a stretch and back at a constant rate [1/s], in two cycles of `rows` equal time steps each.
 History cycles(double most, double rate, int rows) {
   History history{Eigen::VectorXd(2 * rows + 1), Eigen::VectorXd(2 * rows + 1)};
   for (int i = 0; i <= 2 * rows; ++i) {
@@ -113,9 +113,9 @@ TEST(MaxwellElement, CreepUndoesRelaxation) {
   History fine{Eigen::VectorXd(29 * 200 + 1), Eigen::VectorXd(29 * 200 + 1)};
   for (Index i = 0; i < fine.time_s.size(); ++i) {
     const Index at = std::min<Index>(i / 200, 28);
-    const double share = static_cast<double>(i - 200 * at) / 200;
-    fine.time_s[i] = stretches.time_s[at] + share * (stretches.time_s[at + 1] - stretches.time_s[at]);
-    fine.value[i] = stretches.value[at] + share * (stretches.value[at + 1] - stretches.value[at]);
+    const double fraction = static_cast<double>(i - 200 * at) / 200;
+    fine.time_s[i] = stretches.time_s[at] + fraction * (stretches.time_s[at + 1] - stretches.time_s[at]);
+    fine.value[i] = stretches.value[at] + fraction * (stretches.value[at + 1] - stretches.value[at]);
   }
   const MaxwellElement element{{Law::yeoh, 0.02, 0, -0.0005, 0.0001}, vhb_branches};
   const auto back = calibration::stretch_under(element, {fine.time_s, calibration::stress_under(element, fine)});

@@ -58,8 +58,8 @@ TEST(MonotoneCurve, NeverOvershootsAndTheInverseInverts) {
       EXPECT_GE(value, before - 1e-12);
       before = value;
     }
-    for (const double share : {0.0, 0.1, 0.37, 0.5, 0.93, 1.0}) {
-      const double value = y.front() + share * (y.back() - y.front());
+    for (const double fraction : {0.0, 0.1, 0.37, 0.5, 0.93, 1.0}) {
+      const double value = y.front() + fraction * (y.back() - y.front());
       EXPECT_NEAR(curve.value(curve.inverse(value)), value, 1e-12);
     }
   }

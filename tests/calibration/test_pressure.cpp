@@ -62,7 +62,7 @@ std::vector<calibration::CurveSample> samples_of(const std::vector<SyringeRun>& 
   return samples;
 }
 
-/// What a refusal says; empty: none.
+/// Returns the message of a refusal; empty: none.
 std::string refusal(const std::function<void()>& action) {
   try {
     action();

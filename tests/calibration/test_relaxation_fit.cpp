@@ -15,18 +15,18 @@ using calibration::BranchCount;
 using calibration::fit_relaxation;
 using calibration::RelaxationFit;
 
-/// Every number is within so many of its deviations of the one that the data were made with, and is known at all.
-void expect_found(const std::string& name, const calibration::Estimate& found, double made, double most_share) {
+/// Checks that a number has a deviation, and is within 3.5 deviations of the one that the data were made with.
+void expect_found(const std::string& name, const calibration::Estimate& found, double made, double max_fraction) {
   ASSERT_TRUE(found.deviation) << name;
   EXPECT_NEAR(found.value, made, 3.5 * *found.deviation) << name;
-  EXPECT_LT(*found.deviation, most_share * made) << name;
+  EXPECT_LT(*found.deviation, max_fraction * made) << name;
 }
 
-void expect_branches(const RelaxationFit& fit, const std::vector<ViscousBranch>& made, double most_share) {
+void expect_branches(const RelaxationFit& fit, const std::vector<ViscousBranch>& made, double max_fraction) {
   ASSERT_EQ(fit.best().branches.size(), made.size());
   for (std::size_t b = 0; b < made.size(); ++b) {
-    expect_found("modulus " + std::to_string(b), fit.best().branches[b].modulus_MPa, made[b].modulus_MPa, most_share);
-    expect_found("time " + std::to_string(b), fit.best().branches[b].time_s, made[b].time_s, most_share);
+    expect_found("modulus " + std::to_string(b), fit.best().branches[b].modulus_MPa, made[b].modulus_MPa, max_fraction);
+    expect_found("time " + std::to_string(b), fit.best().branches[b].time_s, made[b].time_s, max_fraction);
   }
 }
 
@@ -110,7 +110,7 @@ TEST(RelaxationFit, HeldConstantsStay) {
 }
 
 TEST(RelaxationFit, RepeatedRunsSayWhatIsNoise) {
-  // specimens differ by 3 %: what is finer than that is not asked of the branches
+  // specimens differ by 3 %: the branches need not fit more closely than that
   const std::vector<ViscousBranch> made{{0.05, 0.8}, {0.002, 40}};
   std::vector<RelaxationRun> runs;
   for (const unsigned seed : {1u, 2u, 3u}) {
@@ -130,7 +130,7 @@ TEST(RelaxationFit, TheNumberOfBranchesCanBeAskedFor) {
   options.branches = 2;
   const RelaxationFit two = fit_relaxation(runs, options);
   EXPECT_EQ(two.best().branches.size(), 2u);
-  EXPECT_EQ(two.by, BranchCount::asked);
+  EXPECT_EQ(two.by, BranchCount::requested);
   options.branches = 200;
   EXPECT_THROW((void)fit_relaxation(runs, options), InvalidInput);
 }

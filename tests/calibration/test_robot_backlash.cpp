@@ -49,7 +49,7 @@ TEST(RobotBacklash, IsFoundFromPosesInTheirOrder) {
   EXPECT_NEAR(fit.values[0], 0.03, 1e-6);
   EXPECT_NEAR(fit.values[1], 0.9, 1e-5);
   EXPECT_LT(fit.markers_mm.rms, 1e-4);
-  // commands that only fall by less than the play do nothing, and those that rise act as they are told
+  // commands that only fall, by less than the play, have no effect; commands that rise act fully
   EXPECT_NEAR((fit.computed.values.row(3) - fit.computed.values.row(2)).norm(), 0, 1e-6);
   options.ordered = false;  // each from rest: the play is never felt
   const RobotFit each = fit_robot(robot, poses, options);
@@ -57,7 +57,7 @@ TEST(RobotBacklash, IsFoundFromPosesInTheirOrder) {
   EXPECT_GT(each.markers_mm.rms, 0.05);
 }
 
-/// By the equilibria of other numbers. In four of the poses what acts lags behind; in one of them the command rises.
+/// Compares with differences of equilibria. In four of the poses the effective command lags; in one the command rises.
 TEST(RobotBacklash, SlopesAreThoseOfDifferences) {
   const Arm arm(arm_with_play());
   const std::vector<std::string> numbers{"actuators.t1.backlash=0.025", "actuators.t1.factor=0.9",
@@ -67,8 +67,8 @@ TEST(RobotBacklash, SlopesAreThoseOfDifferences) {
   RobotFitOptions options;
   options.ordered = true;
   options.solver.step_tolerance_mm = 1e-10;
-  const FitCallback untold;
-  RobotProblem problem(robot, poses, options, untold);
+  const FitCallback unreported;
+  RobotProblem problem(robot, poses, options, unreported);
   const Eigen::VectorXd at = robot.start();
   const auto point = problem.solve(at, nullptr, true);
   ASSERT_TRUE(point);

@@ -18,15 +18,15 @@ namespace {
 
 using namespace softkin::testing;
 
-/// The least sum over all ways to give rows columns or none.
-double least_by_trying(const Eigen::MatrixXd& costs, double alone, Eigen::Index row, std::vector<bool>& taken) {
+/// Returns the minimum sum over all assignments of columns, or of none, to rows.
+double min_by_trying(const Eigen::MatrixXd& costs, double alone, Eigen::Index row, std::vector<bool>& taken) {
   if (row == costs.rows()) return 0;
-  double least = alone + least_by_trying(costs, alone, row + 1, taken);
+  double least = alone + min_by_trying(costs, alone, row + 1, taken);
   for (Eigen::Index c = 0; c < costs.cols(); ++c) {
     const std::size_t column = c;
     if (taken[column] || !std::isfinite(costs(row, c))) continue;
     taken[column] = true;
-    least = std::min(least, costs(row, c) + least_by_trying(costs, alone, row + 1, taken));
+    least = std::min(least, costs(row, c) + min_by_trying(costs, alone, row + 1, taken));
     taken[column] = false;
   }
   return least;
@@ -89,7 +89,7 @@ TEST(Assignment, IsTheLeastOfAll) {
       costs.data()[i] = trial % 3 == 0 ? std::floor(whole(engine)) : cost(engine);
     if (trial % 4 == 0) costs(0, 0) = std::numeric_limits<double>::infinity();
     const double alone = trial % 2 == 0 ? 0.4 : 10;
-    const std::vector<Index> columns = least_assignment(costs, alone);
+    const std::vector<Index> columns = min_assignment(costs, alone);
     ASSERT_EQ(columns.size(), static_cast<std::size_t>(costs.rows()));
     double sum = 0;
     std::vector<bool> taken(costs.cols());
@@ -104,14 +104,14 @@ TEST(Assignment, IsTheLeastOfAll) {
       ++full;
     }
     std::vector<bool> none(costs.cols());
-    EXPECT_NEAR(sum, least_by_trying(costs, alone, 0, none), 1e-12) << costs << "\nalone " << alone;
+    EXPECT_NEAR(sum, min_by_trying(costs, alone, 0, none), 1e-12) << costs << "\nalone " << alone;
   }
   EXPECT_GT(with_none, 100);
   EXPECT_GT(full, 500);
 }
 
-/// Whatever the order in which dots are told, the fit is that of the markers by name: step by step where the frame is
-/// known, else to what a fit is converged to, as the frame is put right before the first step.
+/// The order of the dots does not matter: the fit is that of the named markers. It is the same step by step where the
+/// frame is known; otherwise it agrees to the convergence tolerance, as the frame is corrected before the first step.
 TEST(RobotDots, ShuffledAreFittedAsNamed) {
   const Arm arm;
   const MeasuredPoses poses = arm.poses(made, 0.3, 4);
@@ -171,8 +171,8 @@ TEST(RobotDots, AreMatchedFromARoughStartOfTheFrame) {
   seen.dots.places.row(5).segment(3 * dot_at(seen, 5, tip(5)), 3) += Eigen::RowVector3d(10, -20, 20);
   for (const Index pose : {3, 5}) poses.values.row(pose).head(3).setConstant(std::nan(""));
   const NumberedRobot robot = arm.robot(here);
-  const RobotFit foretold = predict_poses(robot, seen, robot.start(), within(3));
-  EXPECT_EQ(foretold.markers_mm.readings, 0u) << "nothing is where it was thought to be";
+  const RobotFit predicted = predict_poses(robot, seen, robot.start(), within(3));
+  EXPECT_EQ(predicted.markers_mm.readings, 0u) << "nothing is where it was thought to be";
   const RobotFit named = fit_robot(robot, poses, {}), fit = fit_robot(robot, seen, within(3));
   EXPECT_EQ(fit.status, Status::converged) << fit.remark;
   EXPECT_EQ(fit.markers_mm.readings, 10u);
@@ -227,7 +227,7 @@ TEST(RobotDots, AreFewerOrFalse) {
   }
 }
 
-/// Two markers that are closer together than the noise: that a dot may be either is said, and of the others nothing.
+/// Two markers are closer together than the noise: the fit reports that a dot may be either of them, and nothing else.
 TEST(RobotDots, SayWhichMayBeAnother) {
   const Arm arm(std::string(arm_scene) + "  - {name: twin, point: [30, 0, 5.4]}\n");
   const NumberedRobot robot = arm.robot(fitted);
@@ -261,8 +261,8 @@ TEST(RobotDots, AreKeptAside) {
   const RobotFit by_name = fit_robot(robot, poses, named), fit = fit_robot(robot, with_dots(poses, 9), unnamed);
   EXPECT_EQ(fit.kept_mm.readings, 2u);
   EXPECT_NEAR(fit.kept_mm.rms, by_name.kept_mm.rms, 1e-4);
-  const RobotFit foretold = predict_poses(robot, with_dots(poses, 9), by_name.values, unnamed);
-  EXPECT_NEAR(foretold.kept_mm.rms, by_name.kept_mm.rms, 1e-7);
+  const RobotFit predicted = predict_poses(robot, with_dots(poses, 9), by_name.values, unnamed);
+  EXPECT_NEAR(predicted.kept_mm.rms, by_name.kept_mm.rms, 1e-7);
 }
 
 /// Each step lowers the sum in which a dot that is no marker counts as the distance: nearby that sum is larger.

@@ -24,12 +24,12 @@ const std::vector<std::string> truth{"materials.body.youngs_modulus=0.2",
                                      "base.ry=4",
                                      "base.z=2",
                                      "markers.tip.offset.3=9"};
-const std::vector<std::string> asked{"materials.body.youngs_modulus=0.3,0.05,2",
-                                     "materials.body.density",
-                                     "actuators.t1.factor=1",
-                                     "base.ry",
-                                     "base.z",
-                                     "markers.tip.offset.3"};
+const std::vector<std::string> requested{"materials.body.youngs_modulus=0.3,0.05,2",
+                                         "materials.body.density",
+                                         "actuators.t1.factor=1",
+                                         "base.ry",
+                                         "base.z",
+                                         "markers.tip.offset.3"};
 
 double value_of(const std::string& text) {
   return std::stod(text.substr(text.find('=') + 1));
@@ -41,7 +41,7 @@ double value_of(const std::string& text) {
 TEST(RobotFit, FindsTheNumbersThatMadeThePoses) {
   const Arm arm;
   const MeasuredPoses poses = arm.poses(truth);
-  const NumberedRobot robot = arm.robot(asked);
+  const NumberedRobot robot = arm.robot(requested);
   const RobotFit fit = fit_robot(robot, poses, {});
   EXPECT_EQ(fit.status, Status::converged) << fit.remark;
   for (std::size_t i = 0; i < truth.size(); ++i) {
@@ -56,7 +56,7 @@ TEST(RobotFit, FindsTheNumbersThatMadeThePoses) {
 TEST(RobotFit, IsTheSameBitForBitWhateverTheThreads) {
   const Arm arm;
   const MeasuredPoses poses = arm.poses(truth, 0.1);
-  const NumberedRobot robot = arm.robot(asked);
+  const NumberedRobot robot = arm.robot(requested);
   RobotFitOptions options;
   options.threads = 1;
   const RobotFit alone = fit_robot(robot, poses, options);
@@ -68,7 +68,7 @@ TEST(RobotFit, IsTheSameBitForBitWhateverTheThreads) {
   }
 }
 
-/// Readings that are missing do not count, and neither do poses that are kept aside, which are foretold.
+/// Missing readings do not count, and neither do poses that are kept aside; the latter are predicted.
 TEST(RobotFit, LeavesOutWhatIsMissingOrKept) {
   const Arm arm;
   MeasuredPoses poses = arm.poses(truth);
@@ -76,7 +76,7 @@ TEST(RobotFit, LeavesOutWhatIsMissingOrKept) {
   poses.values.row(5).array() += 7;  // wrong, and kept
   RobotFitOptions options;
   options.kept = {false, false, false, false, false, true};
-  const RobotFit fit = fit_robot(arm.robot(asked), poses, options);
+  const RobotFit fit = fit_robot(arm.robot(requested), poses, options);
   EXPECT_EQ(fit.status, Status::converged);
   EXPECT_NEAR(fit.values[0], 0.2, 1e-4);
   EXPECT_EQ(fit.markers_mm.readings, 10u);
@@ -84,7 +84,7 @@ TEST(RobotFit, LeavesOutWhatIsMissingOrKept) {
   EXPECT_NEAR(fit.kept_mm.rms, 7 * std::sqrt(3.0), 1e-2);
 }
 
-/// Without weight tensions over moduli alone count: the two cannot be told apart, and that is said.
+/// Without weight, tensions over moduli alone count: the fit cannot separate the two and reports this.
 TEST(RobotFit, SaysWhatCannotBeToldApart) {
   std::string light = arm_scene;
   light.replace(light.find("gravity"), std::string("gravity: [0, 0, -9.81]").size(), "weights: printed");
@@ -101,15 +101,15 @@ TEST(RobotFit, SaysWhatCannotBeToldApart) {
   EXPECT_TRUE(apart) << fit.deviations.transpose() << "\n" << fit.correlations;
   const Model model = robot.model(robot.start());
   const std::string text = robot_fit_text({robot, poses, options, fit, model});
-  EXPECT_NE(text.find("the poses do not tell it"), std::string::npos) << text;
-  // a prior of one of them settles both
+  EXPECT_NE(text.find("the poses do not determine it"), std::string::npos) << text;
+  // a prior of one of them determines both
   std::vector<std::string> known = numbers;
   known.pop_back();
   known[0] = "materials.body.youngs_modulus=0.2+-0.01";
-  const RobotFit settled = fit_robot(arm.robot(known), poses, options);
-  EXPECT_EQ(settled.status, Status::converged) << settled.remark;
-  EXPECT_NEAR(settled.values[1], 1, 0.1);
-  EXPECT_NEAR(settled.deviations[0], 0.01, 0.002);
+  const RobotFit with_prior = fit_robot(arm.robot(known), poses, options);
+  EXPECT_EQ(with_prior.status, Status::converged) << with_prior.remark;
+  EXPECT_NEAR(with_prior.values[1], 1, 0.1);
+  EXPECT_NEAR(with_prior.deviations[0], 0.01, 0.002);
 }
 
 /// A load cell at the base reads the weight; the rest of the shape is not needed for the density.
@@ -127,7 +127,8 @@ TEST(RobotFit, ForcesOfSupportsTellTheDensity) {
   EXPECT_NEAR(fit.values[0], 1000, 1e-3);
 }
 
-/// A tracker at the tip tells how it bends, and how the base stands; its slopes end where the truth is.
+/// The direction of a tracker at the tip determines the bend and the base's orientation; the fit converges to the
+/// truth.
 TEST(RobotFit, DirectionsTellTheModulusAndTheBase) {
   const Arm arm(std::string(arm_scene) +
                 "sensors: [{name: tracker, kind: direction, region: x_high, axis: [1, 0, 0.5]}]\n");
@@ -149,7 +150,7 @@ TEST(RobotFit, DirectionsTellTheModulusAndTheBase) {
 /// Nine of ten intervals of 1.645 deviations hold the truth.
 TEST(RobotFit, DeviationsAreThoseOfTheNoise) {
   const Arm arm;
-  const std::vector<std::string> made{truth[0], truth[2]}, fitted{asked[0], asked[2]};
+  const std::vector<std::string> made{truth[0], truth[2]}, fitted{requested[0], requested[2]};
   const NumberedRobot robot = arm.robot(fitted);
   const MeasuredPoses exact = arm.poses(made);
   int inside = 0;
@@ -170,7 +171,7 @@ TEST(RobotFit, DeviationsAreThoseOfTheNoise) {
 /// Readings that are 30 mm off move nothing by more than a deviation.
 TEST(RobotFit, WrongReadingsHardlyCount) {
   const Arm arm;
-  const std::vector<std::string> made{truth[0], truth[2], truth[3]}, fitted{asked[0], asked[2], asked[3]};
+  const std::vector<std::string> made{truth[0], truth[2], truth[3]}, fitted{requested[0], requested[2], requested[3]};
   const NumberedRobot robot = arm.robot(fitted);
   for (const Loss loss : {Loss::huber, Loss::cauchy}) {
     RobotFitOptions options;
@@ -204,7 +205,7 @@ TEST(RobotFit, StopsWhereTheUserSays) {
   const Arm arm;
   const MeasuredPoses poses = arm.poses(truth);
   int calls = 0;
-  const RobotFit fit = fit_robot(arm.robot(asked), poses, {}, [&](const FitProgress& p) {
+  const RobotFit fit = fit_robot(arm.robot(requested), poses, {}, [&](const FitProgress& p) {
     ++calls;
     return p.iteration < 2;
   });
@@ -231,7 +232,7 @@ TEST(RobotFit, RefusesWithAReason) {
   expect_refused([&] { (void)arm.robot({"base.q"}); }, "base");
   MeasuredPoses none = arm.poses(truth);
   none.values.setConstant(std::nan(""));
-  expect_refused([&] { (void)fit_robot(arm.robot(asked), none, {}); }, "no reading");
+  expect_refused([&] { (void)fit_robot(arm.robot(requested), none, {}); }, "no reading");
 }
 
 TEST(MeasuredPoses, AreReadWithGaps) {

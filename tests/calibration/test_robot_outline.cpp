@@ -29,7 +29,7 @@ NumberedRobot seen_from_the_side(const Arm& arm, const std::vector<std::string>&
   return arm.robot(numbers, from_the_side);
 }
 
-/// The arm's poses, bent more by so much, with outlines and no other reading.
+/// Returns the arm's poses, with commands scaled by `more`, with outlines and no other reading.
 MeasuredPoses outlines_of(const Arm& arm, const std::vector<std::string>& numbers, double noise, unsigned seed = 1,
                           double more = 1) {
   MeasuredPoses poses = arm.poses(numbers);
@@ -156,11 +156,11 @@ TEST(RobotOutline, OfABlockIsTheHullOfItsCorners) {
     const SeenOutline outline(surface, seen);
     // in a direction the farthest place of the outline is the farthest corner
     for (int k = 0; k < 12; ++k) {
-      const Vector2d way(std::cos(0.5 * k), std::sin(0.5 * k));
+      const Vector2d path(std::cos(0.5 * k), std::sin(0.5 * k));
       double farthest = -1e9, found = -1e9;
-      for (const Vector2d& corner : corners) farthest = std::max(farthest, way.dot(corner));
+      for (const Vector2d& corner : corners) farthest = std::max(farthest, path.dot(corner));
       for (const auto& line : outline.lines())
-        for (const Vector2d& end : line) found = std::max(found, way.dot(end));
+        for (const Vector2d& end : line) found = std::max(found, path.dot(end));
       EXPECT_NEAR(found, farthest, 1e-9) << trial;
     }
     // and beyond every place of it there is no corner
@@ -224,7 +224,7 @@ TEST(RobotOutline, DistancesHaveTheirDerivatives) {
   const auto place = [](const RobotPoint& of, std::size_t pose, const OutlinePlace& held) -> Vector2d {
     const Points& all = of.equilibria[pose].state.positions;
     const Vec3 body =
-        ((1 - held.share) * all.row(held.vertices[0]) + held.share * all.row(held.vertices[1])).transpose();
+        ((1 - held.fraction) * all.row(held.vertices[0]) + held.fraction * all.row(held.vertices[1])).transpose();
     return (of.frame.rotation * body + of.frame.place).head<2>();
   };
   for (Index i = 0; i < std::ssize(names); ++i) {
@@ -240,7 +240,7 @@ TEST(RobotOutline, DistancesHaveTheirDerivatives) {
         const OutlineMiss& miss = point->outline_misses[pose][k];
         const Vector2d moved = (place(*more, pose, miss.nearest) - place(*less, pose, miss.nearest)) / (2 * step);
         const double slope = point->outline_slopes[pose](static_cast<Index>(k), i);
-        EXPECT_NEAR(slope, -miss.way.dot(moved), 1e-4 * std::max(1.0, moved.norm())) << names[std::size_t(i)];
+        EXPECT_NEAR(slope, -miss.path.dot(moved), 1e-4 * std::max(1.0, moved.norm())) << names[std::size_t(i)];
         largest = std::max(largest, std::abs(slope));
       }
     }
@@ -248,7 +248,7 @@ TEST(RobotOutline, DistancesHaveTheirDerivatives) {
   }
 }
 
-/// With places that are found anew the distances change as the derivatives say, where the nearest place stays near.
+/// Where the nearest places are found again, distances change by their derivatives, as long as the places stay near.
 TEST(RobotOutline, DerivativesHoldForDistancesFoundAnew) {
   const Arm arm;
   const NumberedRobot robot = seen_from_the_side(arm, {"materials.body.youngs_modulus=0.25", "base.ry=3"});
@@ -303,7 +303,7 @@ TEST(RobotOutline, TellsTheModulusAndTheFrame) {
   }
 }
 
-/// Beside markers that tell it too, and what hangs at the robot in some pictures counts not.
+/// Outlines are fitted in addition to markers; a weight that hangs from the robot in some pictures is left out.
 TEST(RobotOutline, LeavesOutWhatIsNotTheRobot) {
   const Arm arm;
   MeasuredPoses poses = arm.poses(made_outlines);
@@ -337,7 +337,7 @@ TEST(RobotOutline, LeavesOutWhatIsNotTheRobot) {
   EXPECT_NE(text.find("outlines of poses kept aside: "), std::string::npos) << text;
 }
 
-/// The shape is so far off that most points are beside the other side of the robot.
+/// The shape is so wrong that most points are next to the opposite side of the robot.
 TEST(RobotOutline, IsMatchedFromFarOff) {
   const Arm arm;
   const MeasuredPoses poses =

@@ -18,8 +18,8 @@ inline nlohmann::json shown_by(const std::string& file) {
   return nlohmann::json::parse(html.substr(begin, html.find("</script>", begin) - begin));
 }
 
-/// How a command says that it wrote the page.
-inline std::string told_of_page(const std::string& file) {
+/// Returns the start of the line in which a command reports its page.
+inline std::string reported_of_page(const std::string& file) {
   return "page: " + file + " (";
 }
 

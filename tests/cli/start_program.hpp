@@ -18,11 +18,14 @@
 
 namespace softkin::testing {
 
-/// softkin on its way, to be sent signals; ended when it goes out of scope. Output goes to files of the folder.
+/// A running softkin process that can receive signals; it is ended in the destructor. Output goes to files of the
+/// folder.
 class StartedProgram {
  public:
-  /// terminal: standard error is a (pseudo) terminal. columns > 0: standard output too, and it is so wide; what it
-  /// shows is then among the errors.
+  /// Starts the program.
+  ///
+  /// terminal  standard error is a (pseudo) terminal
+  /// columns   > 0: standard output is a terminal of this width, too; its text is then among the errors
   StartedProgram(const TemporaryFolder& folder, const std::vector<std::string>& arguments, bool terminal = false,
                  int columns = 0)
       : output_(folder / "stdout.txt"), errors_(folder / "stderr.txt") {

@@ -24,7 +24,7 @@ json played_steps(const std::string& scene, const std::string& path, const std::
 const char* const motor_path = "tendon_N\n0\n5\n4\n1\n2\n3.5\n0\n";
 const std::vector<double> acting_tensions{0, 5, 5, 3, 3, 3.5, 2};
 
-/// A path of what the motor is told is one of what acts, step by step.
+/// A path of motor commands is, step by step, the path of the effective commands without backlash.
 TEST(Backlash, APathOfTheMotorIsOneOfWhatActs) {
   const BlockFolder folder(playing_scene());
   const std::string exact = folder.write("exact.yaml", playing_scene("0"));
@@ -38,11 +38,11 @@ TEST(Backlash, APathOfTheMotorIsOneOfWhatActs) {
     EXPECT_NEAR(with[i]["actuators"]["tendon"]["tension_N"].get<double>(), 0.9 * acting_tensions[i], 1e-9);
     EXPECT_EQ(with[i]["shape_actuation"]["tendon"].get<double>(), acting_tensions[i]);
   }
-  EXPECT_EQ(with[3]["actuation"]["tendon"], 1.0) << "what was asked for";
+  EXPECT_EQ(with[3]["actuation"]["tendon"], 1.0) << "what was requested";
   EXPECT_EQ(with[3]["actuators"]["tendon"]["requested"], 1.0);
 }
 
-/// What a run that goes on remembers is in the path alone.
+/// The memory of a resumed run is in the path alone.
 TEST(Backlash, IsRememberedByRunsThatGoOn) {
   const BlockFolder folder(playing_scene());
   const std::string report = folder / "part.json", shapes = folder / "part.pvd";

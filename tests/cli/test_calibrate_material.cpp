@@ -74,12 +74,12 @@ TEST(CalibrateMaterial, StoppedAndResumedEndsWithTheSameBytes) {
   }
   EXPECT_FALSE(std::filesystem::exists(parts));
   const std::string kept_in =
-      " of 12 simulated tests; they are in " + journal + ", the same command with --resume goes on\n";
+      " of 12 simulated tests; they are in " + journal + ", the same command with --resume continues\n";
   EXPECT_NE(errors.find(kept_in), std::string::npos) << errors;
   const auto kept = lines() - 1;
-  const ProgramResult told = run_program(arguments(parts, {"--resume", "--grip", "sliding"}));
-  EXPECT_EQ(told.exit_code, 2);
-  EXPECT_NE(told.errors.find("it is of other specimens, options or softkin"), std::string::npos) << told.errors;
+  const ProgramResult reported = run_program(arguments(parts, {"--resume", "--grip", "sliding"}));
+  EXPECT_EQ(reported.exit_code, 2);
+  EXPECT_NE(reported.errors.find("it is of other specimens, options or softkin"), std::string::npos) << reported.errors;
   EXPECT_EQ(lines() - 1, kept);
   const ProgramResult resumed = run_program(arguments(parts, {"--json", "--resume"}));
   ASSERT_EQ(resumed.exit_code, 0) << resumed.errors;

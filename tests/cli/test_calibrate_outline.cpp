@@ -41,9 +41,9 @@ Paint seen_along_y(const Model& model, const Points& positions) {
 struct Outlined : BlockFolder {
   Outlined() : BlockFolder(outlined_scene("1")) {
     std::vector<std::filesystem::path> inputs;
-    AskedScene asked;
-    asked.scene = write("soft.yaml", outlined_scene("0.8"));
-    const calibration::NumberedRobot robot(asked, {}, inputs);
+    RequestedScene requested;
+    requested.scene = write("soft.yaml", outlined_scene("0.8"));
+    const calibration::NumberedRobot robot(requested, {}, inputs);
     const Model model = robot.model(Eigen::VectorXd(0));
     const Statics statics(model);
     for (const double tension : {0.0, 4.0, 8.0}) {
@@ -85,11 +85,11 @@ TEST(CalibrateOutline, FindsTheModulusBehindPictures) {
   const std::string outlines = folder / "outlines.csv", report = folder / "fit.json";
   const ProgramResult measured = folder.measure(outlines);
   ASSERT_EQ(measured.exit_code, 0) << measured.errors;
-  const std::vector<std::string> asked{"--outlines", outlines,           "--given",  "camera.rx=-90",
-                                       "--given",    "camera.x=-1",      "--fit",    "materials.all.youngs_modulus",
-                                       "--fit",      "base.z",           "--report", report,
-                                       "--table",    folder / "fit.csv", "--plot",   folder / "fit.svg"};
-  const ProgramResult fitted = folder.calibrate(asked);
+  const std::vector<std::string> requested{"--outlines", outlines,           "--given",  "camera.rx=-90",
+                                           "--given",    "camera.x=-1",      "--fit",    "materials.all.youngs_modulus",
+                                           "--fit",      "base.z",           "--report", report,
+                                           "--table",    folder / "fit.csv", "--plot",   folder / "fit.svg"};
+  const ProgramResult fitted = folder.calibrate(requested);
   ASSERT_EQ(fitted.exit_code, 0) << fitted.errors << fitted.output;
   const json found = json::parse(read_text(report));
   EXPECT_NEAR(found["numbers"][0]["value"].get<double>(), 0.8, 0.03 * 0.8);
@@ -102,12 +102,12 @@ TEST(CalibrateOutline, FindsTheModulusBehindPictures) {
                                "deviation of a point of an outline as read: "});
   expect_words(read_text(folder / "fit.csv"), {"kept,outline_off_mm,counts\n", "1,2,outline1_x_mm,"});
   expect_words(read_text(folder / "fit.svg"), {"measured outline", "computed outline"});
-  EXPECT_EQ(folder.calibrate(asked).exit_code, 0) << "what it wrote it replaces";
-  // foretold as the scene is, by fewer points
-  const ProgramResult foretold = folder.calibrate({"--outlines", outlines, "--given", "camera.rx=-90", "--given",
-                                                   "camera.x=-1", "--outline-points", "25", "--outline-within", "1"});
-  ASSERT_EQ(foretold.exit_code, 0) << foretold.errors;
-  expect_words(foretold.output, {" of 75 points of outlines count, within 1 mm"});
+  EXPECT_EQ(folder.calibrate(requested).exit_code, 0) << "what it wrote it replaces";
+  // a prediction with the numbers of the scene, by fewer points
+  const ProgramResult predicted = folder.calibrate({"--outlines", outlines, "--given", "camera.rx=-90", "--given",
+                                                    "camera.x=-1", "--outline-points", "25", "--outline-within", "1"});
+  ASSERT_EQ(predicted.exit_code, 0) << predicted.errors;
+  expect_words(predicted.output, {" of 75 points of outlines count, within 1 mm"});
 }
 
 TEST(CalibrateOutline, RefusesWithAReason) {

@@ -67,7 +67,7 @@ TEST(CalibrateRelaxation, ShippedCyclesAndCreepGiveTheBranchesThatTheyWereMadeWi
   EXPECT_EQ(json::parse(creep.output)["runs"][0]["imposed"], "stress");
 }
 
-/// Every way to write the same test down gives the same numbers.
+/// All column and unit conventions for the same test give the same numbers.
 TEST(CalibrateRelaxation, ColumnsAndUnitsAreAllThatDiffers) {
   const TemporaryFolder folder;
   std::string tables[4] = {"t_s,stretch,stress_MPa\n", "run,t_s,strain,stress_kpa\n", "t_s,strain_percent,force_N\n",
@@ -91,7 +91,7 @@ TEST(CalibrateRelaxation, ColumnsAndUnitsAreAllThatDiffers) {
     EXPECT_EQ(json::parse(result.output)["chosen_by"], "asked");
   }
   expect_words(relaxation({folder / "test0.csv", "--branches", "0"}).output,
-               {"neo-hookean with no branch: as asked for", "youngs_modulus", "no run repeats another"});
+               {"neo-hookean with no branch: as requested", "youngs_modulus", "no run repeats another"});
   expect_words(relaxation({folder / "test0.csv", folder / "test1.csv"}).output, {"repeated runs differ by"});
 }
 

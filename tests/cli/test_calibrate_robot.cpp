@@ -44,9 +44,9 @@ const char* const modulus = "materials.all.youngs_modulus";
 TEST(CalibrateRobot, FindsTheModulusBehindThePoses) {
   const Poses folder;
   const std::string report = folder / "fit.json";
-  const std::vector<std::string> asked{"--fit",   modulus,           "--report", report, "--plot", folder / "fit.svg",
-                                       "--table", folder / "fit.csv"};
-  const ProgramResult fitted = folder.calibrate(asked);
+  const std::vector<std::string> requested{
+      "--fit", modulus, "--report", report, "--plot", folder / "fit.svg", "--table", folder / "fit.csv"};
+  const ProgramResult fitted = folder.calibrate(requested);
   ASSERT_EQ(fitted.exit_code, 0) << fitted.errors;
   expect_words(fitted.output, {"converged", "pose  line", "tip off by [mm]", "  materials.all.youngs_modulus=0.8",
                                "all markers: 0.00 mm root mean square", "readings: ", "plot: "});
@@ -54,7 +54,7 @@ TEST(CalibrateRobot, FindsTheModulusBehindThePoses) {
   EXPECT_NEAR(found["numbers"][0]["value"].get<double>(), 0.8, 1e-5);
   EXPECT_EQ(found["poses"].size(), 4u);
   expect_words(read_text(folder / "fit.csv"), {"pose,line,column,measured,computed,difference,kept", "corner_x_mm"});
-  EXPECT_EQ(folder.calibrate(asked).exit_code, 0) << "what it wrote it replaces";
+  EXPECT_EQ(folder.calibrate(requested).exit_code, 0) << "what it wrote it replaces";
   const ProgramResult again = folder.calibrate({"--fit", modulus, "--report", report, "--resume", "--json"});
   ASSERT_EQ(again.exit_code, 0) << again.errors;
   EXPECT_NEAR(json::parse(again.output)["numbers"][0]["start"].get<double>(), 0.8, 1e-5);
@@ -84,16 +84,16 @@ TEST(CalibrateRobot, FindsTheModulusBehindLengthsAndVolumes) {
   expect_words(refused.errors, {"'air_volume_mm3'", "commanded by that, so it is no reading"});
 }
 
-TEST(CalibrateRobot, ForetellsWhatIsKeptAside) {
+TEST(CalibrateRobot, PredictsWhatIsKeptAside) {
   const Poses folder;
   const ProgramResult fitted = folder.calibrate({"--fit", std::string(modulus) + "=1,0.5,2", "--keep", "1", "--json"});
   ASSERT_EQ(fitted.exit_code, 0) << fitted.errors;
   const json found = json::parse(fitted.output);
   EXPECT_LT(found["kept"]["rms_mm"].get<double>(), 1e-3);
   EXPECT_EQ(found["kept"]["readings"], 2);
-  const ProgramResult foretold = folder.calibrate({"--json"});  // as the scene is: a quarter too stiff
-  ASSERT_EQ(foretold.exit_code, 0) << foretold.errors;
-  EXPECT_GT(json::parse(foretold.output)["markers"]["rms_mm"].get<double>(), 0.02);
+  const ProgramResult predicted = folder.calibrate({"--json"});  // as the scene is: a quarter too stiff
+  ASSERT_EQ(predicted.exit_code, 0) << predicted.errors;
+  EXPECT_GT(json::parse(predicted.output)["markers"]["rms_mm"].get<double>(), 0.02);
 }
 
 /// The poses again, of which a camera saw dots: which is which changes from pose to pose, one is missing, one is none.

@@ -13,7 +13,7 @@ namespace {
 using namespace softkin::testing;
 using nlohmann::json;
 
-/// A bar of length 10 that turns in the plane x, z by so many degrees from step to step, its begin moving along x.
+/// A bar of length 10 that rotates in the plane x, z by given angles [degrees], its start moving along x.
 json turning(const std::vector<double>& angles, double seconds) {
   json report{{"formulation", "target-shape"}, {"solver", {{"name", "newton"}}}, {"steps", json::array()}};
   for (const double angle : angles) {
@@ -90,7 +90,7 @@ TEST_F(Compare, TableNamesLoadsAndWhatDidNotConverge) {
     EXPECT_NE(result.output.find(part), std::string::npos) << "no '" << part << "' in:\n" << result.output;
 }
 
-/// The ratio of an actuator whose pressure is commanded says more than the pressure again.
+/// The ratio of an actuator under pressure control is shown, not its pressure again.
 TEST_F(Compare, ShowsVolumesUnderPressureControl) {
   json report = with_pressure(turning({0, 30, 60}, 1));
   report["actuators"] = {{"air", {{"kind", "pneumatic"}, {"control", "pressure"}, {"unit", "kPa"}}}};
@@ -112,7 +112,7 @@ TEST_F(Compare, WritesAPage) {
   const std::string page = folder_ / "p.html", plot = folder_ / "p.svg";
   const ProgramResult result = run_program({"compare", a, b, "--turn", "begin", "end", "--html", page, "--plot", plot});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_NE(result.output.find(told_of_page(page)), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find(reported_of_page(page)), std::string::npos) << result.output;
   const json shown = shown_by(page).at("comparison");
   EXPECT_EQ(shown.at("plot"), read_text(plot));
   const json& rows = shown.at("tables").at(0).at("rows");
@@ -178,9 +178,9 @@ TEST_F(Compare, APathIsComparedWithACameraTrackByTime) {
   for (int i = 0; i <= 30; ++i) {
     const double t = 0.1 * i;
     const auto k = static_cast<std::size_t>(std::min(2.0, std::floor(t)));
-    const double share = t - static_cast<double>(k);
-    const double a = both_move[k].first + share * (both_move[k + 1].first - both_move[k].first);
-    const double b = both_move[k].second + share * (both_move[k + 1].second - both_move[k].second);
+    const double fraction = t - static_cast<double>(k);
+    const double a = both_move[k].first + fraction * (both_move[k + 1].first - both_move[k].first);
+    const double b = both_move[k].second + fraction * (both_move[k + 1].second - both_move[k].second);
     text += std::to_string(t) + "," + std::to_string(10 * (a - 1) + 0.5) + "," + std::to_string(20 * (b - 1)) + "\n";
   }
   const std::string camera = folder_.write("camera.csv", text);

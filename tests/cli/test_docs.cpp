@@ -21,7 +21,7 @@ using testing::TemporaryFolder;
 
 const fs::path source = SOFTKIN_SOURCE_DIR;
 
-/// Commands of one block of a document, and what the document says they print.
+/// Commands of one block of a document, and their output as the document shows it.
 struct CommandBlock {
   fs::path document;
   std::vector<std::pair<std::size_t, std::string>> commands;  // line, text

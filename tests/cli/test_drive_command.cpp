@@ -174,9 +174,9 @@ TEST(DriveCommand, TakesThePressuresOfCurves) {
     for (std::size_t i = 0; i < steps.size(); ++i)
       rows += std::to_string(i) + "," + steps[i]["actuation"]["air1"].dump() + "\n";
     const std::string by_volume = work.write("volumes.csv", rows);
-    for (const bool told : {true, false}) {  // the curve of the scene knows them without a report
-      const std::string text =
-          schedule_of(by_volume, told ? std::vector<std::string>{"--pressures", report} : std::vector<std::string>{});
+    for (const bool reported : {true, false}) {  // the curve of the scene knows them without a report
+      const std::string text = schedule_of(
+          by_volume, reported ? std::vector<std::string>{"--pressures", report} : std::vector<std::string>{});
       std::istringstream lines(text);
       std::string line;
       std::getline(lines, line);
@@ -264,8 +264,8 @@ TEST(DriveCommand, TakesThePressuresOfAMap) {
     const double kpa = json::parse(read_text(report))["steps"][i]["actuators"]["air"]["pressure_kPa"];
     EXPECT_NEAR(std::stod(rows[i + 1].substr(rows[i + 1].find(',') + 1)), kpa, 2e-3 * kpa) << rows[i + 1];
   }
-  const json told = json::parse(folder.drive({"--map", map, "--dry-run", "--json"}).output);
-  EXPECT_EQ(told["pressures_by_map"]["file"], map);
+  const json reported = json::parse(folder.drive({"--map", map, "--dry-run", "--json"}).output);
+  EXPECT_EQ(reported["pressures_by_map"]["file"], map);
 
   folder.refused({"--map", map, "--pressures", report, "--dry-run"}, "give one of them");
   folder.refused({"--map", report, "--dry-run"}, report + ": is no map of softkin");
@@ -276,7 +276,7 @@ TEST(DriveCommand, TakesThePressuresOfAMap) {
   folder.refused({"--map", map, "--dry-run"}, "has the column 'air_pressure_kPa' already");
 }
 
-/// A curve of 0.01 a kPa is asked before the map's model.
+/// A pressure curve of 0.01 per kPa takes precedence over the map's model.
 TEST(DriveCommand, CurvesComeBeforeAMap) {
   const std::string scene =
       testing::replaced(testing::scene_to_map(), "control: volume, ", "control: volume, curve: air.yaml, ");
@@ -388,7 +388,7 @@ TEST(DriveCommand, RefusesOptions) {
 TEST(DriveCommand, SendsToABoard) {
   const DriveFolder folder;
   testing::LineFaults faults;
-  faults.share = 0.02;
+  faults.fraction = 0.02;
   FaultyMarlin board(faults);
   const std::string log = folder / "out/drive.log";
   const ProgramResult result = folder.drive({"--port", board.port(), "--boot-wait", "0", "--log", log});

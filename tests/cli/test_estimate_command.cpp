@@ -45,11 +45,12 @@ struct PushedBlock : BlockFolder {
 TEST(EstimateCommand, TellsThePushOfEveryRow) {
   const PushedBlock folder;
   const std::string report = folder / "told.json", table = folder / "told.csv";
-  const std::vector<std::string> asked{"--unknown", "push", "--deviation", "0.001",
-                                       "--report",  report, "--table",     table};
-  const ProgramResult told = folder.estimate(asked);
-  ASSERT_EQ(told.exit_code, 0) << told.errors << told.output;
-  expect_words(told.output, {"line 2, 0 s: push_fy ", " N; push_fz 0.02", "3 of 3 rows fit the model", "chi-square"});
+  const std::vector<std::string> requested{"--unknown", "push", "--deviation", "0.001",
+                                           "--report",  report, "--table",     table};
+  const ProgramResult reported = folder.estimate(requested);
+  ASSERT_EQ(reported.exit_code, 0) << reported.errors << reported.output;
+  expect_words(reported.output,
+               {"line 2, 0 s: push_fy ", " N; push_fz 0.02", "3 of 3 rows fit the model", "chi-square"});
   const json found = json::parse(read_text(report));
   EXPECT_EQ(found["softkin_estimate"], 1);
   ASSERT_EQ(found["rows"].size(), 3u);
@@ -58,33 +59,35 @@ TEST(EstimateCommand, TellsThePushOfEveryRow) {
     for (std::size_t n = 0; n < 2; ++n)
       EXPECT_NEAR(found["rows"][r]["numbers"][n]["value"].get<double>(), expected[r][n], 1e-4);
   expect_words(read_text(table), {"reading,line,t_s,push_fy_N,push_fy_deviation_N,push_fz_N"});
-  EXPECT_EQ(folder.estimate(asked).exit_code, 0) << "what it wrote it replaces";
+  EXPECT_EQ(folder.estimate(requested).exit_code, 0) << "what it wrote it replaces";
   const ProgramResult fading =
       folder.estimate({"--unknown", "push:place", "--deviation", "0.001", "--fade", "5", "--json"});
   ASSERT_EQ(fading.exit_code, 0) << fading.errors << fading.output;
   EXPECT_EQ(json::parse(fading.output)["rows"][2]["places"].size(), 1u);
 }
 
-/// A tip that is 3 mm off with one marker alone beside it: which of them is wrong cannot be told, but that one is.
+/// A tip marker is off by 3 mm and one other marker is read: the command reports that one of them is wrong, although it
+/// cannot determine which.
 TEST(EstimateCommand, ReadingsThatDoNotFitAreSaidByTheExitCode) {
   const PushedBlock folder;
   const std::string text = read_text(folder.readings);
   const std::string line = text.substr(0, text.find('\n')) + "\n0,0,23,6,6,20,12,15\n";
   const std::string wrong = folder.write("wrong.csv", line);
-  const ProgramResult told =
+  const ProgramResult reported =
       run_program({"estimate", folder.scene, wrong, "--unknown", "push", "--deviation", "0.01", "--keep-all"});
-  EXPECT_EQ(told.exit_code, 1);
-  expect_words(told.output, {"the readings do not fit the model", "0 of 1 row fit the model"});
+  EXPECT_EQ(reported.exit_code, 1);
+  expect_words(reported.output, {"the readings do not fit the model", "0 of 1 row fit the model"});
 }
 
 /// Beside its two markers the block has a strain sensor that was not read, and its surface.
 TEST(EstimateCommand, PlansWhatToReadFurther) {
   const PushedBlock folder;
   const std::string report = folder / "planned.json";
-  const ProgramResult told = folder.estimate(
+  const ProgramResult reported = folder.estimate(
       {"--unknown", "push", "--deviation", "0.001", "--deviation-length", "0.0001", "--plan", "3", "--report", report});
-  ASSERT_EQ(told.exit_code, 0) << told.errors << told.output;
-  expect_words(told.output, {"what would tell most, one after the other", " bits; push_fy +- ", " N; push_fz +- "});
+  ASSERT_EQ(reported.exit_code, 0) << reported.errors << reported.output;
+  expect_words(reported.output,
+               {"the most informative readings, one after the other", " bits; push_fy +- ", " N; push_fz +- "});
   const json plan = json::parse(read_text(report))["plan"];
   ASSERT_EQ(plan.size(), 3u);
   for (std::size_t i = 0; i < 3; ++i) {
@@ -102,19 +105,19 @@ TEST(EstimateCommand, PlansWhatToReadFurther) {
   expect_words(none.errors, {"--plan: Value 0 not in range", "100"});
 }
 
-/// A map of the block tells the same as the block, to the map's accuracy.
+/// A map of the block gives the same estimates as the block, to the map's accuracy.
 TEST(EstimateCommand, ByAMapTellsTheSame) {
   const PushedBlock folder(replaced(replaced(pushed_scene(), "[-100, 3000]", "[0, 120]"), "[0, 100]", "[0, 0.5]"));
   const std::string map = folder / "block.skmap";
   const ProgramResult made = run_program({"map", folder.scene, "-o", map, "--accuracy", "0.0005"});
   ASSERT_EQ(made.exit_code, 0) << made.errors;
-  const std::vector<std::string> asked{"--unknown", "push", "--deviation", "0.002", "--json"};
-  std::vector<std::string> by_map = asked;
+  const std::vector<std::string> requested{"--unknown", "push", "--deviation", "0.002", "--json"};
+  std::vector<std::string> by_map = requested;
   by_map.insert(by_map.end(), {"--map", map});
-  const ProgramResult told = folder.estimate(by_map), expected = folder.estimate(asked);
-  ASSERT_EQ(told.exit_code, 0) << told.errors << told.output;
+  const ProgramResult reported = folder.estimate(by_map), expected = folder.estimate(requested);
+  ASSERT_EQ(reported.exit_code, 0) << reported.errors << reported.output;
   ASSERT_EQ(expected.exit_code, 0) << expected.errors;
-  const json rows = json::parse(told.output)["rows"], others = json::parse(expected.output)["rows"];
+  const json rows = json::parse(reported.output)["rows"], others = json::parse(expected.output)["rows"];
   ASSERT_EQ(rows.size(), 3u);
   for (std::size_t r = 0; r < 3; ++r) {
     EXPECT_EQ(rows[r]["equilibria"], 0);
@@ -142,14 +145,14 @@ TEST(EstimateCommand, ByAMapTellsTheSame) {
 TEST(EstimateCommand, Refusals) {
   const PushedBlock folder;
   const auto refused = [&](const std::vector<std::string>& more, const std::string& why) {
-    const ProgramResult told = folder.estimate(more);
-    EXPECT_EQ(told.exit_code, 2) << why;
-    EXPECT_NE(told.errors.find(why), std::string::npos) << told.errors;
+    const ProgramResult reported = folder.estimate(more);
+    EXPECT_EQ(reported.exit_code, 2) << why;
+    EXPECT_NE(reported.errors.find(why), std::string::npos) << reported.errors;
   };
   refused({"--deviation", "1"}, "--unknown");
   refused({"--unknown", "pull", "--deviation", "1"}, "the scene has no command of that name");
   refused({"--unknown", "push"}, "needs the deviation of a coordinate: --deviation in mm");
-  refused({"--unknown", "air", "--deviation", "1"}, "a column commands 'air', which is to be told");
+  refused({"--unknown", "air", "--deviation", "1"}, "a column commands 'air', which is to be estimated");
   refused({"--unknown", "push:there", "--deviation", "1"}, "can only be 'place'");
   refused({"--unknown", "push=0+-0", "--deviation", "1"}, "the deviation must be above 0");
 }

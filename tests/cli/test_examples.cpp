@@ -104,7 +104,7 @@ class Example : public ::testing::TestWithParam<std::tuple<fs::path, std::string
     }
   }
 
-  /// That walls are a linear element thick, in the two examples of which their READMEs say so: they say order: 1.
+  /// Checks that walls of one linear element are noted in the two examples whose READMEs mention them (order: 1).
   static void expect_noted(const json& notes, bool physical) {
     const bool locks =
         physical && (scene().stem() == "three_chamber_actuator" || scene().parent_path().filename() == "estimate");
@@ -116,10 +116,10 @@ class Example : public ::testing::TestWithParam<std::tuple<fs::path, std::string
   static void expect_plausible(const json& step, bool physical) {
     EXPECT_LT(step["strain"]["greatest"], 5);
     const double rest = scene().stem() == "bilayer" ? 20 : is_loaded(scene()) ? 0 : 1;  // of it degrees C
-    bool asked = false;
+    bool changes = false;
     for (const auto& [name, value] : step["actuation"].items())
-      asked = asked || (value != rest && name != "field_x");  // a field along magnets at rest turns nothing
-    EXPECT_TRUE(!asked || step["largest_displacement_mm"] > 1e-3);
+      changes = changes || (value != rest && name != "field_x");  // a field along magnets at rest turns nothing
+    EXPECT_TRUE(!changes || step["largest_displacement_mm"] > 1e-3);
     const bool closes = !physical && scene().stem() == "three_tendon_finger";
     EXPECT_TRUE(closes || step["self_overlap"]["points"] == 0) << step["self_overlap"];
   }
@@ -211,7 +211,7 @@ TEST(Examples, BarGivesTheElasticityRatioOfItsMaterials) {
   }
 }
 
-/// In every scene of two materials the shape ratios say what the moduli say.
+/// In every scene of two materials the shape ratios agree with the moduli.
 TEST(Examples, ShapeRatiosAndModuliTellTheSameStory) {
   for (const std::string name : {"two_material_bar/two_material_bar.yaml", "cable_gripper_two_materials/a.yaml",
                                  "cable_gripper_two_materials/b.yaml"}) {
@@ -238,8 +238,8 @@ TEST(Examples, TwoLayoutsOfMaterialBendDifferently) {
   }
 }
 
-/// Both fingers press on the cube, which is held where it is, alike and from both sides; robot and support are told
-/// apart.
+/// Both fingers press with equal force on opposite sides of the cube, which stays in place; the report separates robot
+/// and support.
 TEST(Examples, GripperHoldsItsCubeBetweenItsFingers) {
   const json step = solved_step(examples() / "two_finger_gripper" / "two_finger_gripper.yaml",
                                 {"--set", "left.air=1.2", "--set", "right.air=1.2"});
@@ -309,17 +309,18 @@ TEST(Examples, SealedFingersShareTheirAir) {
     const ProgramResult result = run_program(
         {"fk", scene.string(), "--json", "--threads", "1", "--set", "air=12 mL", "--force", "push=0,0," + push});
     EXPECT_EQ(result.exit_code, 0) << result.errors;
-    const json told = json::parse(result.output)["steps"][0]["actuators"]["air"];
-    const double absolute = told["pressure_kPa"].get<double>() + 101.325, volume = told["volume_mL"];
-    const double amount = told["amount_mL"];
+    const json reported = json::parse(result.output)["steps"][0]["actuators"]["air"];
+    const double absolute = reported["pressure_kPa"].get<double>() + 101.325, volume = reported["volume_mL"];
+    const double amount = reported["amount_mL"];
     EXPECT_NEAR(absolute * (volume + 2 + 20 - 12) / (101.325 * amount), 1, 1e-9);
-    EXPECT_NEAR(told["volumes_mL"]["left.chamber"].get<double>() + told["volumes_mL"]["right.chamber"].get<double>(),
-                volume, 1e-9);
-    return told;
+    EXPECT_NEAR(
+        reported["volumes_mL"]["left.chamber"].get<double>() + reported["volumes_mL"]["right.chamber"].get<double>(),
+        volume, 1e-9);
+    return reported;
   };
   const json free = air("0"), pushed = air("2");
-  const auto left = [](const json& told) { return told["volumes_mL"]["left.chamber"].get<double>(); };
-  const auto right = [](const json& told) { return told["volumes_mL"]["right.chamber"].get<double>(); };
+  const auto left = [](const json& reported) { return reported["volumes_mL"]["left.chamber"].get<double>(); };
+  const auto right = [](const json& reported) { return reported["volumes_mL"]["right.chamber"].get<double>(); };
   EXPECT_NEAR(left(free), right(free), 1e-6);
   EXPECT_LT(left(pushed), left(free) - 0.1);
   EXPECT_GT(right(pushed), right(free) + 0.01);

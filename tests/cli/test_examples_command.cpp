@@ -123,7 +123,7 @@ TEST(ExamplesCopy, CopiesFilesAsTheyAre) {
   }
 }
 
-/// What is told to type next does something; one of them takes the mesh of another example.
+/// The command that is suggested next runs; one of them takes the mesh of another example.
 TEST(ExamplesCopy, TellsACommandThatRuns) {
   for (const char* name : {"chambers", "two_fingers"}) {
     SCOPED_TRACE(name);
@@ -176,7 +176,7 @@ TEST(ExamplesCopy, RefusesNamesThatAreNone) {
   expect_refused("magnetic_", "'magnetic_' may be magnetic_cantilever or magnetic_crawler");
 }
 
-/// A program that stands by itself says what it misses.
+/// A program without its examples reports what is missing.
 TEST(Examples, MissingOnesAreToldOf) {
   const TemporaryFolder folder;
   fs::copy_file(SOFTKIN_PROGRAM, folder / "softkin");

@@ -127,8 +127,8 @@ TEST(FkCommand, RefusesOptions) {
   refused({"--formulation", "elastic"}, "--formulation: elastic not in {physical,target-shape}");
   refused({"--formulation", "physical"}, "the material of region 'body' needs elastic constants");
   refused({"--resume"}, "--resume needs the --path, --report and --output F.pvd");
-  refused({"--frobnicate"}, "there is no option --frobnicate (softkin fk --help tells more)");
-  refused({"--reprot=a.json"}, "there is no option --reprot; did you mean --report? (softkin fk --help tells more)");
+  refused({"--frobnicate"}, "there is no option --frobnicate (softkin fk --help shows more)");
+  refused({"--reprot=a.json"}, "there is no option --reprot; did you mean --report? (softkin fk --help shows more)");
   refused({"other.yaml"}, "other.yaml");
   for (const std::string threads : {"-1", "1.5", "513", "two"}) {
     const ProgramResult result = run_program({"fk", folder.scene, "--threads", threads});
@@ -142,7 +142,7 @@ TEST(FkCommand, RefusesScenes) {
   const BlockFolder folder;
   const ProgramResult none = run_program({"fk"}), absent = run_program({"fk", folder / "absent.yaml"});
   EXPECT_EQ(none.exit_code, 2);
-  EXPECT_EQ(none.errors, "softkin: SCENE is required (softkin fk --help tells more)\n");
+  EXPECT_EQ(none.errors, "softkin: SCENE is required (softkin fk --help shows more)\n");
   EXPECT_EQ(absent.exit_code, 2);
   EXPECT_EQ(absent.errors, "softkin: " + (folder / "absent.yaml") + ": no such file\n");
   folder.write("block.yaml", block_scene("colour: red\n"));
@@ -430,26 +430,26 @@ TEST(FkHelp, WithoutACommandOneLineHelps) {
       "softkin: a command (fk, ik, follow, workspace, map, walk, grasp, compare, calibrate, estimate, measure, drive, "
       "mesh, view, examples) is "
       "required "
-      "(softkin --help tells more)\n");
+      "(softkin --help shows more)\n");
   EXPECT_EQ(run_program({}).exit_code, 2);
 }
 
-/// A misspelt name is told before what the command lacks or cannot read.
+/// A misspelt name is reported before missing or unreadable arguments of the command.
 TEST(FkHelp, NamesAreCorrectedFirst) {
-  const auto told = [](const std::vector<std::string>& arguments) {
+  const auto reported = [](const std::vector<std::string>& arguments) {
     const ProgramResult result = run_program(arguments);
     EXPECT_EQ(result.exit_code, 2);
     EXPECT_EQ(result.output, "");
     return result.errors;
   };
-  EXPECT_EQ(told({"fkk", "nowhere.yaml"}),
-            "softkin: there is no command 'fkk'; did you mean 'fk'? (softkin --help tells more)\n");
-  EXPECT_EQ(told({"mesh", "chekc"}),
-            "softkin: there is no command 'chekc'; did you mean 'check'? (softkin mesh --help tells more)\n");
-  EXPECT_EQ(told({"ik", "--traget", "tip=1,2,3"}),
-            "softkin: there is no option --traget; did you mean --target? (softkin ik --help tells more)\n");
-  EXPECT_EQ(told({"fk", "nowhere.yaml", "--out", "a.vtu"}),
-            "softkin: there is no option --out; did you mean --output? (softkin fk --help tells more)\n");
+  EXPECT_EQ(reported({"fkk", "nowhere.yaml"}),
+            "softkin: there is no command 'fkk'; did you mean 'fk'? (softkin --help shows more)\n");
+  EXPECT_EQ(reported({"mesh", "chekc"}),
+            "softkin: there is no command 'chekc'; did you mean 'check'? (softkin mesh --help shows more)\n");
+  EXPECT_EQ(reported({"ik", "--traget", "tip=1,2,3"}),
+            "softkin: there is no option --traget; did you mean --target? (softkin ik --help shows more)\n");
+  EXPECT_EQ(reported({"fk", "nowhere.yaml", "--out", "a.vtu"}),
+            "softkin: there is no option --out; did you mean --output? (softkin fk --help shows more)\n");
 }
 
 TEST(Help, OfEveryCommandFitsAPage) {

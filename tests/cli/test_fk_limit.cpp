@@ -32,9 +32,9 @@ TEST(FkLimit, IsToldWithTheLastGoodShape) {
   EXPECT_NEAR(step["actuators"]["air"]["pressure_kPa"], reached, 1e-9 * reached);
   std::ostringstream rounded;
   rounded << reached;
-  const std::string told = "softkin: limit: air reached " + rounded.str() +
-                           " kPa of 3000 kPa: the pressure of chamber 'air' has its maximum there, ";
-  EXPECT_EQ(result.errors.rfind(told, 0), 0u) << result.errors;
+  const std::string reported = "softkin: limit: air reached " + rounded.str() +
+                               " kPa of 3000 kPa: the pressure of chamber 'air' has its maximum there, ";
+  EXPECT_EQ(result.errors.rfind(reported, 0), 0u) << result.errors;
   const json& worst = step["limit"];
   const std::string where = "; the shape is the last good one. Deformed most is tetrahedron " +
                             std::to_string(worst["element"].get<int>()) + " (from 0) of region 'body' at (";
@@ -56,14 +56,14 @@ TEST(FkLimit, GoesOnBeyondTheMaximum) {
   std::vector<std::string> options = too_much;
   options.insert(options.end(), {"--report", folder / "a.json"});
   EXPECT_EQ(run_fk(folder.scene, options).exit_code, 1);
-  const json summit = json::parse(read_text(folder / "a.json"))["steps"][0];
-  const double ratio = 1.3 * summit["actuators"]["air"]["achieved"].get<double>();
+  const json limit_point = json::parse(read_text(folder / "a.json"))["steps"][0];
+  const double ratio = 1.3 * limit_point["actuators"]["air"]["achieved"].get<double>();
   options.insert(options.end(), {"--beyond", text(ratio)});
   const ProgramResult result = run_fk(folder.scene, options);
   EXPECT_EQ(result.exit_code, 1);
   const json step = json::parse(read_text(folder / "a.json"))["steps"][0];
   EXPECT_NEAR(step["actuators"]["air"]["achieved"].get<double>(), ratio, 1e-6 * ratio);
-  EXPECT_LT(step["actuators"]["air"]["pressure_kPa"], summit["actuators"]["air"]["pressure_kPa"]);
+  EXPECT_LT(step["actuators"]["air"]["pressure_kPa"], limit_point["actuators"]["air"]["pressure_kPa"]);
   EXPECT_NE(result.errors.find("; beyond it, at "), std::string::npos) << result.errors;
   EXPECT_NE(result.output.find("air by its volume [-]: 0 kPa at 1, "), std::string::npos) << result.output;
   const json& branch = step["branch"];
@@ -79,14 +79,14 @@ TEST(FkLimit, BeyondNeedsALoadThatMayHaveAMaximum) {
   const BlockFolder folder(physical_scene());
   const ProgramResult result = run_fk(folder.scene, {"--set", "air=1.1", "--beyond", "3"});
   EXPECT_EQ(result.exit_code, 2);
-  EXPECT_NE(result.errors.find("--beyond goes on beyond the maximum of a pressure or tension"), std::string::npos)
+  EXPECT_NE(result.errors.find("--beyond continues beyond the maximum of a pressure or tension"), std::string::npos)
       << result.errors;
   EXPECT_EQ(run_fk(folder.scene, {"--set", "air=1.1", "--beyond", "-3"}).exit_code, 2);
 }
 
 TEST(FkLimit, OfLoadsAndDisplacementsIsTold) {
   const BlockFolder folder(physical_scene());
-  const ProgramResult result = run_fk(folder.scene, {"--force", "payload=-1000,0,0"});  // a column gives way
+  const ProgramResult result = run_fk(folder.scene, {"--force", "payload=-1000,0,0"});  // a column buckles
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_EQ(result.errors.rfind("softkin: limit: ", 0), 0u) << result.errors;
   EXPECT_NE(result.errors.find(" % of the loads and displacements were reached: "), std::string::npos) << result.errors;
@@ -122,7 +122,7 @@ TEST(FkLimit, APathGoesOnFromTheLastGoodShape) {
   expect_same_markers(steps[0], steps[3], 1e-5);
 }
 
-/// But for rounding: a solve that begins anew has another factor to predict with than one that goes on.
+/// Compares up to rounding: a new solve has another factor for its predictor than one that continues.
 void expect_same_step(const json& found, const json& expected) {
   SCOPED_TRACE(expected["actuation"].dump());
   EXPECT_EQ(found["status"], expected["status"]);

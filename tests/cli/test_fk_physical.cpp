@@ -154,10 +154,10 @@ TEST(FkPhysical, ABarThatIsPressedBuckles) {
 TEST(FkPhysical, TellsWhereItIsUnstableAndLeavesThatIfAsked) {
   const BlockFolder folder;
   const std::string strip = std::string(SOFTKIN_SOURCE_DIR) + "/docs/scenes/against_field.yaml";
-  const ProgramResult told = run_fk(strip, {"--set", "field=-10", "--report", folder / "told.json"});
-  EXPECT_EQ(told.exit_code, 0) << told.errors;
-  EXPECT_NE(told.output.find("  converged, unstable\n"), std::string::npos) << told.output;
-  EXPECT_NE(told.output.find("warning: this equilibrium is unstable in "), std::string::npos) << told.output;
+  const ProgramResult reported = run_fk(strip, {"--set", "field=-10", "--report", folder / "told.json"});
+  EXPECT_EQ(reported.exit_code, 0) << reported.errors;
+  EXPECT_NE(reported.output.find("  converged, unstable\n"), std::string::npos) << reported.output;
+  EXPECT_NE(reported.output.find("warning: this equilibrium is unstable in "), std::string::npos) << reported.output;
   const ProgramResult left = run_fk(strip, {"--set", "field=-10", "--stable", "--report", folder / "left.json"});
   EXPECT_EQ(left.exit_code, 0) << left.errors;
   EXPECT_EQ(left.output.find("unstable in"), std::string::npos) << left.output;
@@ -182,7 +182,7 @@ TEST(FkPhysical, ReportNamesTheUnitsOfLoads) {
   EXPECT_EQ(report["actuators"]["tendon"]["control"], "tension");
   EXPECT_EQ(report["actuators"]["tendon"]["unit"], "N");
   EXPECT_EQ(report["steps"][0]["actuation"], json({{"air", 0.0}, {"tendon", 0.0}}));
-  EXPECT_FALSE(report["steps"][0]["actuators"]["tendon"]["slack"]) << "a tension of 0 was asked for";
+  EXPECT_FALSE(report["steps"][0]["actuators"]["tendon"]["slack"]) << "a tension of 0 was requested";
 }
 
 /// Along a path of three values of one actuator: the energy's central difference in its measure.

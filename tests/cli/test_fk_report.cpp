@@ -210,21 +210,21 @@ TEST(FkReport, StrainHistogramIsThatOfTheShape) {
   const auto strains = body_strains(solved, least, greatest);
   ASSERT_EQ(strains.size(), 252u);
   const json& strain = solved.report["steps"][0]["strain"];
-  const std::vector<double> edges_of_bins = strain["bin_edges"], shares = strain["volume_shares"];
-  ASSERT_EQ(edges_of_bins.size(), shares.size() + 1);
-  EXPECT_GE(shares.size(), 8u);
-  EXPECT_NEAR(std::accumulate(shares.begin(), shares.end(), 0.0), 1, 1e-12);
+  const std::vector<double> edges_of_bins = strain["bin_edges"], fractions = strain["volume_shares"];
+  ASSERT_EQ(edges_of_bins.size(), fractions.size() + 1);
+  EXPECT_GE(fractions.size(), 8u);
+  EXPECT_NEAR(std::accumulate(fractions.begin(), fractions.end(), 0.0), 1, 1e-12);
 
-  std::vector<double> expected(shares.size(), 0);
+  std::vector<double> expected(fractions.size(), 0);
   double total = 0, beyond = 0;
-  for (const auto& [value, share] : strains) total += share;
-  for (const auto& [value, share] : strains) {
+  for (const auto& [value, fraction] : strains) total += fraction;
+  for (const auto& [value, fraction] : strains) {
     const auto above = std::upper_bound(edges_of_bins.begin(), edges_of_bins.end(), value);
     ASSERT_TRUE(above != edges_of_bins.begin() && above != edges_of_bins.end()) << value;
-    expected[static_cast<std::size_t>(above - edges_of_bins.begin()) - 1] += share / total;
-    if (std::abs(value) > 0.05) beyond += share / total;
+    expected[static_cast<std::size_t>(above - edges_of_bins.begin()) - 1] += fraction / total;
+    if (std::abs(value) > 0.05) beyond += fraction / total;
   }
-  for (std::size_t i = 0; i < shares.size(); ++i) EXPECT_NEAR(shares[i], expected[i], 1e-9) << i;
+  for (std::size_t i = 0; i < fractions.size(); ++i) EXPECT_NEAR(fractions[i], expected[i], 1e-9) << i;
   EXPECT_NEAR(strain["least"], least, 1e-9);
   EXPECT_NEAR(strain["greatest"], greatest, 1e-9);
 
@@ -242,10 +242,10 @@ TEST(FkReport, PercentileBoundsTheLargestStrains) {
   const Solved solved = solve_block(folder, "1.6");
   const double bound = solved.report["steps"][0]["strain"]["magnitude_percentile_95"];
   double total = 0, above = 0, from = 0, least = 0, greatest = 0;
-  for (const auto& [value, share] : body_strains(solved, least, greatest)) {
-    total += share;
-    if (std::abs(value) > bound + 1e-9) above += share;
-    if (std::abs(value) > bound - 1e-9) from += share;
+  for (const auto& [value, fraction] : body_strains(solved, least, greatest)) {
+    total += fraction;
+    if (std::abs(value) > bound + 1e-9) above += fraction;
+    if (std::abs(value) > bound - 1e-9) from += fraction;
   }
   EXPECT_LE(above, 0.05 * total * (1 + 1e-12));
   EXPECT_GE(from, 0.05 * total * (1 - 1e-12));

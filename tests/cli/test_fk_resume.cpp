@@ -29,7 +29,7 @@ std::string path_text(int rows = steps, double changed_first = 1) {
   return text;
 }
 
-/// Steps in the journal that a run keeps beside its report while it goes on; 0 without one.
+/// Returns the number of steps in the journal that a run keeps next to its report until it ends; 0 without one.
 std::size_t journaled(const std::string& report) {
   const std::string text = read_text(report + ".run");
   const std::size_t lines = std::count(text.begin(), text.end(), '\n');
@@ -69,7 +69,8 @@ struct PathFolder : TemporaryFolder {
   [[nodiscard]] json last_run() const { return json::parse(read_text(report)); }
 };
 
-/// Names and content of the shapes, the collection and what should not be there; reports, which tell times, stay out.
+/// Returns names and content of the shapes, the collection and any unexpected files; leaves out reports, which contain
+/// times.
 std::map<std::string, std::string> shapes_of(const PathFolder& folder) {
   std::map<std::string, std::string> files;
   for (const auto& entry : fs::directory_iterator(folder / "out"))
@@ -101,7 +102,7 @@ void expect_refused(const PathFolder& folder, const std::vector<std::string>& wo
   EXPECT_EQ(shapes_of(folder), before);
 }
 
-/// Runs until so many steps are reported and is then interrupted.
+/// Interrupts a run after a number of reported steps.
 ProgramResult interrupted_run(const PathFolder& folder, std::size_t after, int signal_number = SIGINT) {
   StartedProgram program(folder, folder.arguments());
   EXPECT_TRUE(program.wait_until([&] { return folder.reported() >= after; }));
@@ -117,14 +118,14 @@ TEST(FkResume, InterruptKeepsWhatIsFinished) {
     const std::size_t done = folder.reported();
     ASSERT_GE(done, 3u);
     ASSERT_LT(done, std::size_t{steps});
-    const std::string told = "softkin: interrupted after " + std::to_string(done) +
-                             " of 60 steps; they are in the files that were asked for, the same command with "
-                             "--resume goes on";
+    const std::string described = "softkin: interrupted after " + std::to_string(done) +
+                                  " of 60 steps; they are in the files that were requested, the same command with "
+                                  "--resume continues";
     const auto files = shapes_of(folder);
     // in the middle of a step there is a last good shape, too
     const std::size_t stopped = files.count("shape_stopped.vtu");
-    EXPECT_EQ(result.errors.substr(0, told.size()), told);
-    EXPECT_EQ(result.errors.find("shape_stopped.vtu, --start goes on from it\n") != std::string::npos, stopped == 1)
+    EXPECT_EQ(result.errors.substr(0, described.size()), described);
+    EXPECT_EQ(result.errors.find("shape_stopped.vtu, --start continues from it\n") != std::string::npos, stopped == 1)
         << result.errors;
     EXPECT_EQ(files.size(), done + 1 + stopped) << "the shapes and the collection, nothing half";
     for (std::size_t i = 0; i < done; ++i)
@@ -374,10 +375,11 @@ TEST(FkInterrupt, OfASingleSolveLeavesItsLastShape) {
   program.send(SIGINT);
   const ProgramResult result = program.wait();
   EXPECT_EQ(result.exit_code, 1);
-  EXPECT_EQ(result.errors, "softkin: interrupted; the last good shape is in " + shape + ", --start goes on from it\n");
-  const json told = json::parse(read_text(report));
-  EXPECT_TRUE(told["steps"].empty());
-  EXPECT_EQ(told["stopped"]["status"], "interrupted");
+  EXPECT_EQ(result.errors,
+            "softkin: interrupted; the last good shape is in " + shape + ", --start continues from it\n");
+  const json described = json::parse(read_text(report));
+  EXPECT_TRUE(described["steps"].empty());
+  EXPECT_EQ(described["stopped"]["status"], "interrupted");
   const ProgramResult on = run_program({"fk", scene, "--set", "air=1.9", "--start", shape, "-o", folder / "on.vtu"});
   EXPECT_EQ(on.exit_code, 0) << on.errors;
 }
@@ -431,9 +433,9 @@ TEST(FkBudget, StopsInTimeAndSaysHowFarItCame) {
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(15));  // of a busy machine
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_EQ(result.errors, "softkin: the budget of 0.3 s was spent\n");
-  const json told = json::parse(read_text(folder / "r.json"));
-  EXPECT_EQ(told["stopped"]["status"], "not converged");
-  EXPECT_EQ(told["stopped"]["remark"], "the budget of 0.3 s was spent");
+  const json described = json::parse(read_text(folder / "r.json"));
+  EXPECT_EQ(described["stopped"]["status"], "not converged");
+  EXPECT_EQ(described["stopped"]["remark"], "the budget of 0.3 s was spent");
   EXPECT_EQ(run_program({"fk", scene, "--budget", "0"}).exit_code, 2);
 }
 
@@ -453,8 +455,8 @@ TEST(FkTrace, IsATableOfSteps) {
             "shifts,taken,why");
   std::size_t rows = 0, taken = 0;
   for (; std::getline(lines, line); ++rows) EXPECT_TRUE(line.rfind("0,", 0) == 0 || line.rfind("1,", 0) == 0) << line;
-  const json told = json::parse(read_text(folder / "r.json"));
-  for (const json& step : told["steps"]) taken += step["continuation_steps"].get<std::size_t>();
+  const json described = json::parse(read_text(folder / "r.json"));
+  for (const json& step : described["steps"]) taken += step["continuation_steps"].get<std::size_t>();
   EXPECT_EQ(rows, taken);
 }
 
@@ -469,7 +471,7 @@ TEST(FkInterrupt, OfAPathWritesTheLastShape) {
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_EQ(result.errors.rfind("softkin: interrupted after ", 0), 0u) << result.errors;
   EXPECT_EQ(result.output, read_text(report));
-  const json told = json::parse(result.output), last = told.value("stopped", told["steps"].back());
+  const json described = json::parse(result.output), last = described.value("stopped", described["steps"].back());
   const softkin::Points points = softkin::read_vtu_points(shape);
   const int corner = 5 + 10 * (3 + 4 * 3);  // (20, 12, 12)
   for (int axis = 0; axis < 3; ++axis) EXPECT_NEAR(points(corner, axis), last["markers"]["corner"][axis], 1e-9);

@@ -69,7 +69,8 @@ TEST(FkVoltage, APathIsResumed) {
   EXPECT_EQ(json::parse(read_text(report))["steps"], json::parse(before)["steps"]);
 }
 
-/// At the whole prestretch, whether that comes before the voltage, as in a path, or both are asked for at once.
+/// The limit is found at the full prestretch, whether the prestretch precedes the voltage, as in a path, or both are
+/// requested at once.
 TEST(FkVoltage, TellsVoltageAndPlaceOfPullIn) {
   const TemporaryFolder folder;
   const std::string path = folder.write("path.csv", "skin_kV\n0\n25\n");
@@ -77,7 +78,7 @@ TEST(FkVoltage, TellsVoltageAndPlaceOfPullIn) {
                       after = run_program({"fk", charged_crawler, "--path", path});
   EXPECT_EQ(result.exit_code, 1);
   EXPECT_EQ(after.exit_code, 1);
-  // to 0.1 %; near its maximum the voltage hardly tells how thin the layer is
+  // to 0.1 %; near its maximum the voltage hardly depends on the thickness of the layer
   const std::string maximum = "the voltage of dea 'skin' has its maximum there, ", thinnest = "and it is thinnest, ";
   const double most = number_after(after.errors, maximum);
   EXPECT_NEAR(most, 20.55, 0.02);

@@ -60,7 +60,7 @@ struct FollowFolder : BlockFolder {
     return run_program(arguments);
   }
 
-  /// Exit code 2, one line on standard error that says so, nothing printed and nothing written.
+  /// Checks for exit code 2 and one line on standard error with the message; nothing else is printed or written.
   void expect_refused(const std::vector<std::string>& options, const std::string& message) const {
     const std::size_t before = files();
     const ProgramResult result = follow(options);
@@ -109,8 +109,8 @@ TEST(Follow, WritesCommandsThatForwardKinematicsConfirms) {
     EXPECT_NE(read_text(folder.out + "/path.svg").find(">" + std::string(text) + "<"), std::string::npos) << text;
 }
 
-/// The same commands by samples made on the way and by those of a workspace; errors and jumps of what is no inverse
-/// kinematics, in the columns that inverse kinematics has, too.
+/// The commands are the same with samples made during the run and with those of a workspace; errors and jumps are in
+/// the columns that inverse kinematics writes, too.
 TEST(Follow, TakesTheNearestSamplesInstead) {
   const FollowFolder folder;
   const ProgramResult made = folder.follow({"--method", "nearest", "--samples", "30"});  // 5 x 5 of them
@@ -125,8 +125,8 @@ TEST(Follow, TakesTheNearestSamplesInstead) {
   EXPECT_EQ(cell(errors, 0, "command_change"), 0);
   for (std::size_t i = 0; i < 5; ++i) {
     for (const auto& [name, low, high] : {std::tuple("air", 0.5, 3.0), std::tuple("tendon", 0.5, 1.2)}) {
-      const double share = 4 * (cell(commands, i, name) - low) / (high - low);
-      EXPECT_NEAR(share, std::round(share), 1e-9) << name;
+      const double fraction = 4 * (cell(commands, i, name) - low) / (high - low);
+      EXPECT_NEAR(fraction, std::round(fraction), 1e-9) << name;
     }
     EXPECT_GT(cell(errors, i, "error_mm"), 0.01);
     if (i == 0) continue;

@@ -94,7 +94,7 @@ double documented(const std::string& words) {
   return at == std::string::npos ? 0 : std::strtod(text.c_str() + at + words.size(), nullptr);
 }
 
-/// Coulomb's law, and what the document says.
+/// The results agree with Coulomb's law and with the document.
 TEST(GraspCommand, ACubeIsHeldUntilItSlips) {
   const Pull pull = pulled("two_finger_gripper.yaml");
   const double weight = 0.027 * 9.81;

@@ -30,16 +30,16 @@ TEST(HtmlOption, FkWritesItsStepsIntoThePage) {
   const std::string file = folder / "out/p.html";
   const ProgramResult result = run_fk(folder.scene, {"--path", path, "--html", file, "--report", folder / "r.json"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_NE(result.output.find(told_of_page(file)), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find(reported_of_page(file)), std::string::npos) << result.output;
   EXPECT_NE(result.output.find(" MB; open it in a browser)"), std::string::npos) << result.output;
   const json page = shown_by(file), report = json::parse(read_text(folder / "r.json"));
   ASSERT_EQ(page.at("steps").size(), 3u);
   for (std::size_t s = 0; s < 3; ++s) {
-    const json &shown = page.at("steps").at(s), &told = report.at("steps").at(s);
-    EXPECT_EQ(shown.at("markers").at(0), told.at("markers").at("tip"));
-    EXPECT_EQ(shown.at("commands").at(1), told.at("actuation").at("tendon"));
-    EXPECT_EQ(shown.at("loads").at(0), told.at("actuators").at("air").at("pressure_kPa"));
-    EXPECT_EQ(shown.at("time_s"), told.at("time_s"));
+    const json &shown = page.at("steps").at(s), &reported = report.at("steps").at(s);
+    EXPECT_EQ(shown.at("markers").at(0), reported.at("markers").at("tip"));
+    EXPECT_EQ(shown.at("commands").at(1), reported.at("actuation").at("tendon"));
+    EXPECT_EQ(shown.at("loads").at(0), reported.at("actuators").at("air").at("pressure_kPa"));
+    EXPECT_EQ(shown.at("time_s"), reported.at("time_s"));
   }
   EXPECT_EQ(page.at("command"), "softkin fk " + folder.scene + " --threads 1 --path " + path + " --html " + file +
                                     " --report " + (folder / "r.json"));
@@ -83,15 +83,15 @@ TEST(HtmlOption, MapWritesAPageToBend) {
   SKIP_WITHOUT_PAGE();
   const BlockFolder folder(scene_to_map());
   const std::string map = folder / "block.skmap", page = folder / "p.html";
-  std::vector<std::string> asked{"map", folder.scene, "-o", map, "--check", "10", "--threads", "1", "--html", page};
-  const ProgramResult result = run_program(asked);
+  std::vector<std::string> requested{"map", folder.scene, "-o", map, "--check", "10", "--threads", "1", "--html", page};
+  const ProgramResult result = run_program(requested);
   ASSERT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_NE(result.output.find(told_of_page(page)), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find(reported_of_page(page)), std::string::npos) << result.output;
   const json shown = shown_by(page);
   EXPECT_EQ(shown.at("steps").size(), 0u);
   EXPECT_EQ(shown.at("map").at("inputs").at(0).at("name"), "air");
-  asked.insert(asked.end(), {"--shape-accuracy", "0"});
-  const ProgramResult shapeless = run_program(asked);
+  requested.insert(requested.end(), {"--shape-accuracy", "0"});
+  const ProgramResult shapeless = run_program(requested);
   EXPECT_EQ(shapeless.exit_code, 2);
   EXPECT_NE(shapeless.errors.find("--html bends the robot's shape"), std::string::npos) << shapeless.errors;
 }
@@ -103,7 +103,7 @@ TEST(HtmlOption, FollowWritesItsWaypoints) {
   const ProgramResult result =
       run_program({"follow", folder.scene, path, "-o", folder / "out", "--html", page, "--threads", "1"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_NE(result.output.find(told_of_page(page)), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find(reported_of_page(page)), std::string::npos) << result.output;
   const json shown = shown_by(page);
   ASSERT_EQ(shown.at("steps").size(), 2u);
   EXPECT_NEAR(shown.at("steps").at(1).at("markers").at(0).at(0).get<double>(), 20.2, 0.01);

@@ -257,7 +257,7 @@ TEST(IkCommand, RefusesBadInput) {
     more.insert(more.begin(), good.begin(), good.end());
     refused(more, message);
   };
-  also({"--weight", "corner=2"}, "nothing is asked of 'corner'");
+  also({"--weight", "corner=2"}, "nothing is requested of 'corner'");
   also({"--weight", "tip=0"}, "a finite number > 0");
   also({"--weight", "tip=-1"}, "a finite number > 0");
   also({"--start", "air=4"}, "--start 'air=4': the ratio is outside its range, 0.5 to 3 [-]");
@@ -290,7 +290,7 @@ TEST(IkCommand, ReachesWhereItLeansOnABall) {
   EXPECT_EQ(json::parse(result.output).at("ik").at("jacobian").at("one_sided"), json::array());
 }
 
-/// It once had no step and no force out of balance, as if it had not been solved.
+/// Regression test: the report once had no step and no residual, as if nothing had been solved.
 TEST(IkCommand, AStartThatIsTheAnswerSaysHowWellItWasSolved) {
   const IkFolder folder;
   const Point target = folder.marker("tip", 1.2, 1);
@@ -308,7 +308,7 @@ TEST(IkCommand, TellsWhereTheJacobianIsOneSided) {
                                          "--tolerance", "0.3"};
   const ProgramResult text = run_ik(scene, options);
   ASSERT_EQ(text.exit_code, 0) << text.errors;
-  EXPECT_NE(text.output.find("it slips\n"), std::string::npos) << text.output;  // or a share of it
+  EXPECT_NE(text.output.find("it slips\n"), std::string::npos) << text.output;  // or a fraction of the contact slips
   EXPECT_NE(text.output.find("the Jacobian is one-sided: that for sliding on, of robot on floor\n"), std::string::npos)
       << text.output;
   std::vector<std::string> as_json = options;

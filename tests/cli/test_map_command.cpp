@@ -46,11 +46,11 @@ TEST(MapCommand, JsonTellsTheSame) {
   const MapFolder folder;
   const ProgramResult result = folder.run({"--json"});
   EXPECT_EQ(result.exit_code, 0) << result.errors;
-  const auto told = nlohmann::json::parse(result.output);
+  const auto reported = nlohmann::json::parse(result.output);
   const softkin::MapData data = softkin::runs::read_map(folder.map);
-  EXPECT_EQ(told.at("equilibria"), data.equilibria);
-  EXPECT_EQ(told.at("outputs").size(), data.outputs.size());
-  EXPECT_EQ(told.at("outputs")[0].at("largest_error"), data.check.largest[0]);
+  EXPECT_EQ(reported.at("equilibria"), data.equilibria);
+  EXPECT_EQ(reported.at("outputs").size(), data.outputs.size());
+  EXPECT_EQ(reported.at("outputs")[0].at("largest_error"), data.check.largest[0]);
 }
 
 TEST(MapCommand, GoesOnWhereItWasKilled) {
@@ -98,17 +98,17 @@ double distance(const nlohmann::json& a, const nlohmann::json& b) {
 
 TEST(MapUse, AnswersTellTheMapAndNoFiguresOfASolver) {
   const MappedFolder folder;
-  const ProgramResult told =
+  const ProgramResult reported =
       run_program({"fk", folder.scene, "--set", "air=1.3", "--set", "tendon=0.9", "--map", folder.map});
-  EXPECT_EQ(told.exit_code, 0) << told.errors;
-  expect_words(told.output, {"physical formulation (neo-hookean)\n", "\nanswered by the map " + folder.map + ": ",
-                             "; checked at 10 points, largest errors: markers "});
+  EXPECT_EQ(reported.exit_code, 0) << reported.errors;
+  expect_words(reported.output, {"physical formulation (neo-hookean)\n", "\nanswered by the map " + folder.map + ": ",
+                                 "; checked at 10 points, largest errors: markers "});
   for (const char* of_solver : {"solver newton", "last step", "out of balance", "diverged"})
-    EXPECT_EQ(told.output.find(of_solver), std::string::npos) << told.output;
-  const std::vector<std::string> asked{"fk", folder.scene, "--set", "air=1.3", "--set", "tendon=0.9"};
-  std::vector<std::string> by_map = asked;
+    EXPECT_EQ(reported.output.find(of_solver), std::string::npos) << reported.output;
+  const std::vector<std::string> requested{"fk", folder.scene, "--set", "air=1.3", "--set", "tendon=0.9"};
+  std::vector<std::string> by_map = requested;
   by_map.insert(by_map.end(), {"--map", folder.map});
-  const auto answered = MappedFolder::report_of(by_map), solved = MappedFolder::report_of(asked);
+  const auto answered = MappedFolder::report_of(by_map), solved = MappedFolder::report_of(requested);
   const softkin::MapData data = softkin::runs::read_map(folder.map);
   const auto& solver = answered.at("solver");
   EXPECT_EQ(solver.at("name"), "map");
@@ -181,9 +181,9 @@ TEST(MapUse, FollowsPathsAndTellsSo) {
     all.insert(all.end(), more.begin(), more.end());
     return run_program(all);
   };
-  const ProgramResult told = follow({"--map", folder.map});
-  expect_words(told.output, {"answered by the map " + folder.map + ": "});
-  EXPECT_EQ(told.output.find("solver newton"), std::string::npos) << told.output;
+  const ProgramResult reported = follow({"--map", folder.map});
+  expect_words(reported.output, {"answered by the map " + folder.map + ": "});
+  EXPECT_EQ(reported.output.find("solver newton"), std::string::npos) << reported.output;
   const auto report = nlohmann::json::parse(read_text(folder / "out/report.json"));
   EXPECT_EQ(report.at("solver").at("map").at("file"), folder.map);
   const ProgramResult other = follow({"--resume"});  // it would mix answers of two kinds

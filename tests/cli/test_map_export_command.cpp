@@ -108,19 +108,20 @@ TEST(MapExport, RefusesFilesThatAreNoMaps) {
   EXPECT_EQ(none.errors, "softkin: " + folder.map + ": no such file\n");
 }
 
-/// "map" goes on as it was.
+/// "map" works as before.
 TEST(MapExport, IsACommandBesideMakingMaps) {
   const ExportFolder folder;
-  const auto told = [](const std::vector<std::string>& arguments) {
+  const auto reported = [](const std::vector<std::string>& arguments) {
     const ProgramResult result = run_program(arguments);
     EXPECT_EQ(result.exit_code, 2);
     return result.errors;
   };
-  EXPECT_EQ(told({"map", "-o", "a.skmap"}), "softkin: SCENE is required (softkin map --help tells more)\n");
-  EXPECT_EQ(told({"map", "a.yaml"}), "softkin: --output is required (softkin map --help tells more)\n");
-  EXPECT_EQ(told({"map", "export"}), "softkin: MAP is required (softkin map export --help tells more)\n");
-  expect_words(told({"map", "a.yaml", "export", folder.map, "--c", folder / "a.h"}), {"export excludes SCENE"});
-  expect_words(told({"map", "--seed", "3", "export", folder.map, "--c", folder / "a.h"}), {"export excludes --seed"});
+  EXPECT_EQ(reported({"map", "-o", "a.skmap"}), "softkin: SCENE is required (softkin map --help shows more)\n");
+  EXPECT_EQ(reported({"map", "a.yaml"}), "softkin: --output is required (softkin map --help shows more)\n");
+  EXPECT_EQ(reported({"map", "export"}), "softkin: MAP is required (softkin map export --help shows more)\n");
+  expect_words(reported({"map", "a.yaml", "export", folder.map, "--c", folder / "a.h"}), {"export excludes SCENE"});
+  expect_words(reported({"map", "--seed", "3", "export", folder.map, "--c", folder / "a.h"}),
+               {"export excludes --seed"});
   EXPECT_EQ(folder.files(), 1u);
 }
 

@@ -42,7 +42,7 @@ class Measure : public ::testing::Test {
     return run_program(arguments);
   }
 
-  /// Exit code 2, one line that says these words, nothing printed, nothing written.
+  /// Checks for exit code 2 and one line with these words; nothing else is printed or written.
   void expect_refused(const std::vector<std::string>& arguments, const std::vector<std::string>& words) const {
     const std::size_t files = folder_.files();
     const ProgramResult result = measure(arguments);
@@ -228,8 +228,8 @@ TEST_F(Measure, OutlinesGoIntoATable) {
   const Paint disc = discs_on({{{40, 20}, 15, ink}});
   const std::string a = shoot("a.png", disc), b = shoot("b.png", discs_on({{{66, 20}, 15, ink}})),
                     table = folder_ / "o.csv";
-  const std::vector<std::string> asked{a, b, "--outline", "dark", "--scale", "0,199,100,199=20mm", "-o", table};
-  const ProgramResult result = measure(asked);
+  const std::vector<std::string> requested{a, b, "--outline", "dark", "--scale", "0,199,100,199=20mm", "-o", table};
+  const ProgramResult result = measure(requested);
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   for (const char* part : {"outline [mm]", "area [mm^2]", "reaches the frame", "wrote "})
     EXPECT_NE(result.output.find(part), std::string::npos) << "no '" << part << "' in:\n" << result.output;
@@ -242,15 +242,15 @@ TEST_F(Measure, OutlinesGoIntoATable) {
   }
   EXPECT_GT(whole, 150u);
   EXPECT_LE(whole, 400u);
-  const ProgramResult told = measure({a, "--outline", "dark", "--scale", "0,199,100,199=20mm", "--json"});
-  ASSERT_EQ(told.exit_code, 0) << told.errors;
-  const json outline = json::parse(told.output)["pictures"][0]["outline"];
+  const ProgramResult reported = measure({a, "--outline", "dark", "--scale", "0,199,100,199=20mm", "--json"});
+  ASSERT_EQ(reported.exit_code, 0) << reported.errors;
+  const json outline = json::parse(reported.output)["pictures"][0]["outline"];
   EXPECT_EQ(outline["points"], whole);
   EXPECT_EQ(outline["x_mm"].size(), whole);
   EXPECT_NEAR(outline["area_mm2"].get<double>(), M_PI * 225, 0.01 * M_PI * 225);
   EXPECT_NEAR(outline["length_mm"].get<double>(), M_PI * 30, 0.01 * M_PI * 30);
   EXPECT_EQ(outline["cut"], false);
-  EXPECT_EQ(measure(asked).exit_code, 0) << "what it wrote it replaces";
+  EXPECT_EQ(measure(requested).exit_code, 0) << "what it wrote it replaces";
   const std::string other = folder_ / "other.csv";
   const auto refused = [&](const std::vector<std::string>& options, const std::vector<std::string>& words) {
     std::vector<std::string> all{a, "--scale", "0,199,100,199=20mm", "-o", other};

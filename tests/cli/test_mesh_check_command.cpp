@@ -217,7 +217,7 @@ Counts edge_counts(const json& report) {
   return found;
 }
 
-/// Two triangles in every form of file: the same words in every command, which say what to do.
+/// Two triangles in every file format: all commands print the same words, which suggest what to do.
 TEST(MeshCheckCommand, AMeshWithoutVolumeIsNotUsable) {
   const TemporaryFolder folder;
   GmshText sheet;

@@ -4,7 +4,7 @@
 
 #include "fk_samples.hpp"
 
-// --material, --change, and what is said of numbers in other units.
+// --material, --change, and messages about numbers in other units.
 
 namespace {
 
@@ -13,7 +13,7 @@ using nlohmann::json;
 
 const std::string low_loads = replaced(loaded_scene(), "range: [-100, 3000]", "range: [0, 200]");
 
-/// The same report as that of a scene with the numbers in it, but for what it says of the change and of time.
+/// The report is that of a scene with the numbers in it, except for the changes and times that it contains.
 TEST(OtherNumbers, AreThoseOfASceneThatHasThem) {
   const BlockFolder folder(physical_scene());
   const std::string other = folder.write(

@@ -199,7 +199,7 @@ void tidy_up(const Workshop& folder, const Written& to) {
     fs::remove_all(folder / name);
 }
 
-/// What stands there is the user's, and stays; what softkin put there it replaces; and all where it is told to.
+/// A user's file stays, a file that softkin wrote is replaced, and --force-overwrite replaces either.
 TEST(Overwriting, OutputsReplaceOnlyWhatSoftkinWrote) {
   const Workshop& folder = workshop();
   for (const Written& to : all_outputs()) {
@@ -300,7 +300,7 @@ TEST(Overwriting, MeasurementsAreRefusedBeforeAPictureIsRead) {
 }
 #endif
 
-/// What is read stays whatever is said, also under another name of the same file.
+/// Inputs are never overwritten, whatever the options, also under another name of the same file.
 TEST(Overwriting, InputsAreNeverReplaced) {
   const Workshop& folder = workshop();
   fs::create_hard_link(folder / "path.csv", folder / "linked.csv");

@@ -117,24 +117,24 @@ TEST(PlotOption, FkDrawsTheStrainsOfItsReport) {
       run_fk(folder.scene, {"--path", path, "--strains", folder / "s.svg", "--report", folder / "r.json"});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
   EXPECT_NE(result.output.find("strains: " + (folder / "s.svg")), std::string::npos) << result.output;
-  std::vector<std::vector<double>> shares;
+  std::vector<std::vector<double>> fractions;
   double highest = 0;
   const json report = json::parse(read_text(folder / "r.json"));
   for (const json& step : report["steps"]) {
     if (step["actuation"]["air"] == 1) continue;  // at rest there is nothing to see
-    shares.emplace_back();
-    for (const double share : step["strain"]["volume_shares"])
-      if (share > 0) shares.back().push_back(share);
-    for (const double share : shares.back()) highest = std::max(highest, share);
+    fractions.emplace_back();
+    for (const double fraction : step["strain"]["volume_shares"])
+      if (fraction > 0) fractions.back().push_back(fraction);
+    for (const double fraction : fractions.back()) highest = std::max(highest, fraction);
   }
   const std::vector<std::vector<double>> bars = drawn_bars(folder / "s.svg");
   ASSERT_EQ(bars.size(), 2u);
   for (std::size_t i = 0; i < 2; ++i) {
-    ASSERT_EQ(bars[i].size(), shares[i].size());
-    for (std::size_t b = 0; b < bars[i].size(); ++b) EXPECT_NEAR(bars[i][b], shares[i][b] / highest, 0.005);
+    ASSERT_EQ(bars[i].size(), fractions[i].size());
+    for (std::size_t b = 0; b < bars[i].size(); ++b) EXPECT_NEAR(bars[i][b], fractions[i][b] / highest, 0.005);
   }
   const PlotText plot(folder / "s.svg");
-  plot.expect({"principal strain [%]", "share of the body's volume [%]"});
+  plot.expect({"principal strain [%]", "fraction of the body's volume [%]"});
   for (const char* command : {"air = 1.1 [-]", "air = 1.3 [-]"})
     EXPECT_TRUE(std::any_of(plot.texts.begin(), plot.texts.end(), [&](const std::string& text) {
       return text.find(command) != std::string::npos;

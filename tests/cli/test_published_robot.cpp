@@ -104,13 +104,14 @@ TEST(PublishedRobot, FlowerHasThePublishedSize) {
 TEST(PublishedRobot, FkStopsAsTheProgramDoes) {
   const testing::BlockFolder folder;
   const std::string report = folder / "r.json";
-  const testing::ProgramResult told = testing::run_fk(
+  const testing::ProgramResult reported = testing::run_fk(
       folder.scene, {"--set", "air=1.5", "--solver", "local-global", "--as-published", "--report", report});
-  EXPECT_EQ(told.exit_code, 0) << told.errors;
-  EXPECT_NE(told.output.find("\nstopped as published: no marker moved by 0.032 mm in the last iteration; this is no "
-                             "equilibrium\n"),
-            std::string::npos)
-      << told.output;
+  EXPECT_EQ(reported.exit_code, 0) << reported.errors;
+  EXPECT_NE(
+      reported.output.find("\nstopped as published: no marker moved by 0.032 mm in the last iteration; this is no "
+                           "equilibrium\n"),
+      std::string::npos)
+      << reported.output;
   const nlohmann::json stopped = nlohmann::json::parse(testing::read_text(report)), step = stopped["steps"][0];
   EXPECT_EQ(stopped["solver"]["as_published"], true);
   EXPECT_EQ(stopped["solver"]["anderson"], 0);

@@ -45,14 +45,14 @@ class RealRobot {
     std::ofstream(folder_ / "poses.csv") << kept << "\n";
   }
   [[nodiscard]] json calibrated(const std::vector<std::string>& more) const {
-    return told({"calibrate", "robot", folder_ / (name_ + ".yaml"), folder_ / "poses.csv", "--json"}, more);
+    return reported({"calibrate", "robot", folder_ / (name_ + ".yaml"), folder_ / "poses.csv", "--json"}, more);
   }
   [[nodiscard]] json estimated(const std::string& readings, const std::vector<std::string>& more) const {
-    return told({"estimate", folder_ / (name_ + ".yaml"), folder_ / readings, "--json"}, more);
+    return reported({"estimate", folder_ / (name_ + ".yaml"), folder_ / readings, "--json"}, more);
   }
 
  private:
-  [[nodiscard]] static json told(std::vector<std::string> words, const std::vector<std::string>& more) {
+  [[nodiscard]] static json reported(std::vector<std::string> words, const std::vector<std::string>& more) {
     words.insert(words.end(), more.begin(), more.end());
     const ProgramResult result = run_program(words);
     EXPECT_EQ(result.exit_code, 0) << result.errors;
@@ -78,7 +78,8 @@ TEST(RealRobots, ABeamsModulusForetellsItsLoad) {
   EXPECT_LT(both["markers"]["rms_mm"].get<double>(), 0.75);
 }
 
-/// From the beam that bears nothing how stiff it is, and with that what hangs from the other: to so much as is told.
+/// The beam without a load determines the stiffness, and with it the other beam determines the hanging mass, within the
+/// reported deviation.
 TEST(RealRobots, ABeamTellsWhatHangsFromIt) {
   const RealRobot beam("beam");
   if (!beam.is_there()) GTEST_SKIP() << absent;
@@ -92,7 +93,8 @@ TEST(RealRobots, ABeamTellsWhatHangsFromIt) {
   EXPECT_LT(deviation, 0.05);
 }
 
-/// Each pose of the real one has an equilibrium: of half of what is pulled there and of all, either way.
+/// Each measured pose has an equilibrium, whether it is solved at half the tension first or at the full tension at
+/// once.
 TEST(RealRobots, ATentacleStandsWhereItStood) {
   const RealRobot tentacle("tentacle");
   if (!tentacle.is_there()) GTEST_SKIP() << absent;

@@ -27,7 +27,7 @@ void expect_refused(const ProgramResult& result, const std::string& words) {
   EXPECT_EQ(std::count(result.errors.begin(), result.errors.end(), '\n'), 1) << result.errors;
 }
 
-/// Runs softkin with so much address space [KiB].
+/// Runs softkin with limited address space [KiB].
 ProgramResult run_with_memory(int kibibytes, const std::string& arguments) {
   const TemporaryFolder folder;
   const std::string errors = folder / "stderr";

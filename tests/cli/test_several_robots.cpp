@@ -82,7 +82,7 @@ TEST(SeveralRobotsCommand, PathsNameTheRobotsActuators) {
   expect_words(wrong.errors, {"'left.ari'", "'left.air'"});
 }
 
-/// Faces 0.2 mm apart press each other when one of the robots grows; what holds the other bears as much.
+/// Faces 0.2 mm apart press on each other when one of the robots grows; the other's support carries the same force.
 TEST(SeveralRobotsCommand, WhatTouchesIsNamed) {
   const RobotsFolder folder;
   const std::string pair = folder.pair("40.2", "contact: {distance: 0.05}\n");

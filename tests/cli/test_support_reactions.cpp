@@ -45,10 +45,10 @@ TEST(SupportReactions, AreReportedApartFromThePressureOnTheSupport) {
   }
   const BlockFolder folder(bored_scene());
   const std::string shape = folder / "shape.vtu";
-  const ProgramResult told = run_fk(folder.scene, {"--set", "air=20", "-o", shape});
-  EXPECT_EQ(told.exit_code, 0) << told.errors;
-  expect_words(told.output, {"support 'base' exerts (-0.32, 0, 0) N and (0, 0, 0) N mm about (0, 6, 6) mm; the "
-                             "pressure of 'air' acts on the support with (-0.32, 0, 0) N\n"});
+  const ProgramResult reported = run_fk(folder.scene, {"--set", "air=20", "-o", shape});
+  EXPECT_EQ(reported.exit_code, 0) << reported.errors;
+  expect_words(reported.output, {"support 'base' exerts (-0.32, 0, 0) N and (0, 0, 0) N mm about (0, 6, 6) mm; the "
+                                 "pressure of 'air' acts on the support with (-0.32, 0, 0) N\n"});
   const BlockFolder closed(physical_scene());
   EXPECT_FALSE(step_of(closed, {"--set", "air=1.2"}).at("reactions").at(0).contains("chambers"));
 }
@@ -70,7 +70,7 @@ TEST(SupportReactions, AreTheSameInARunThatGoesOn) {
   expect_vector(second.at(0).at("reactions").at(0).at("chambers").at(0).at("air_force_N"), {-0.16, 0, 0}, 1e-12);
 }
 
-/// The robot pulls at its base with p A.
+/// The force of the robot on its base is p A.
 TEST(SupportReactions, APressureIsFoundForAForceOnTheBase) {
   const BlockFolder folder(bored_scene(2));
   const ProgramResult result = run_program({"ik", folder.scene, "--press", "base=0.48,,", "--threads", "1", "--json"});
@@ -83,10 +83,10 @@ TEST(SupportReactions, APressureIsFoundForAForceOnTheBase) {
 TEST(SupportReactions, APressureIsEstimatedFromALoadCell) {
   const BlockFolder folder(bored_scene());
   const std::string readings = folder.write("readings.csv", "base_force_x_N,base_force_y_N\n-0.32,0\n-0.64,0\n");
-  const ProgramResult told =
+  const ProgramResult reported =
       run_program({"estimate", folder.scene, readings, "--unknown", "air=20+-40", "--deviation-force", "0.0001",
                    "--report", folder / "told.json", "--threads", "1"});
-  ASSERT_EQ(told.exit_code, 0) << told.errors << told.output;
+  ASSERT_EQ(reported.exit_code, 0) << reported.errors << reported.output;
   const json rows = json::parse(read_text(folder / "told.json")).at("rows");
   ASSERT_EQ(rows.size(), 2u);
   for (std::size_t r = 0; r < 2; ++r)

@@ -6,8 +6,9 @@
 #include "../support/syringe_pump.hpp"
 #include "run_program.hpp"
 
-// The whole way of Section V-C: a place for the tip, ratios, pressures, plungers, G-code; then back: a simulated pump
-// and the robot's own answer, which settle where closed air and chambers have one pressure; and the shape of that.
+// The whole chain of Section V-C, from a place for the tip to ratios, pressures, plungers and G-code, and back: a
+// simulated pump and the robot's own response, in equilibrium where closed air and chambers have one pressure, and the
+// shape that results.
 
 namespace softkin {
 namespace {
@@ -94,7 +95,7 @@ struct Chain : TemporaryFolder {
   }
 };
 
-Vec3 asked_ratios(const json& step) {
+Vec3 requested_ratios(const json& step) {
   Vec3 ratios;
   for (int i = 0; i < 3; ++i) ratios[i] = step.at("actuation").at("air" + std::to_string(i + 1)).get<double>();
   return ratios;
@@ -110,7 +111,7 @@ Vec3 excess_of(const json& step, const Vec3& ratios, const Vec3& given) {
 }
 
 /// The chambers squeeze each other: Newton's method with differences, begun far from the answer.
-Vec3 settle_together(const Chain& chain, const Vec3& given) {
+Vec3 correct_together(const Chain& chain, const Vec3& given) {
   Vec3 ratios(1.1, 1.1, 1.1);
   constexpr double difference = 1e-3;
   for (int iteration = 0; iteration < 12; ++iteration) {
@@ -134,20 +135,21 @@ TEST(SyringeChain, ClosesPhysically) {
   chain.formulation = "physical";
   const Vec3 target(6, 4, 138.8);
   const json found = chain.bring(target);
-  const Vec3 asked = asked_ratios(found);
-  std::string commands = "air1,air2,air3,air1_pressure_kPa,air2_pressure_kPa,air3_pressure_kPa\n" + ratio_cells(asked);
+  const Vec3 requested = requested_ratios(found);
+  std::string commands =
+      "air1,air2,air3,air1_pressure_kPa,air2_pressure_kPa,air3_pressure_kPa\n" + ratio_cells(requested);
   for (const char* name : {"air1", "air2", "air3"})
     commands += "," + all_digits(found.at("actuators").at(name).at("pressure_kPa").get<double>());
   const Vec3 given = chain.pump(commands + "\n");
   EXPECT_GT(given.minCoeff(), 10);
-  const Vec3 settled = settle_together(chain, given);
-  EXPECT_LT((settled.array() / asked.array() - 1).abs().maxCoeff(), 1e-3) << settled.transpose();
-  const double error = (chain_tip(chain.shapes({settled})[0]) - target).norm();
+  const Vec3 steady = correct_together(chain, given);
+  EXPECT_LT((steady.array() / requested.array() - 1).abs().maxCoeff(), 1e-3) << steady.transpose();
+  const double error = (chain_tip(chain.shapes({steady})[0]) - target).norm();
   EXPECT_LT(error, 0.1);
   RecordProperty("error_mm", all_digits(error));
 }
 
-/// Every chamber with the shipped curve; drive takes its pressures without being told any.
+/// Every chamber uses the shipped curve; drive takes its pressures from there without further input.
 TEST(SyringeChain, ClosesByTargetShapes) {
   Chain chain;
   std::string text = read_text(chamber_folder + "three_chamber_actuator.yaml");
@@ -160,16 +162,16 @@ TEST(SyringeChain, ClosesByTargetShapes) {
   chain.scene = chain.write("robot.yaml", text);
   chain.formulation = "target-shape";
   const Vec3 target = chain_tip(chain.shapes({Vec3(1.24, 1.02, 1.13)})[0]);
-  const Vec3 asked = asked_ratios(chain.bring(target));
-  const Vec3 given = chain.pump("air1,air2,air3\n" + ratio_cells(asked) + "\n");
+  const Vec3 requested = requested_ratios(chain.bring(target));
+  const Vec3 given = chain.pump("air1,air2,air3\n" + ratio_cells(requested) + "\n");
   const ActuatorCurve curve = read_actuator_curve(chamber_folder + "measured/air1.yaml");
-  Vec3 settled;
+  Vec3 steady;
   for (int i = 0; i < 3; ++i)
-    settled[i] = testing::settled_ratio(
+    steady[i] = testing::equilibrium_ratio(
         closed_air, given[i], [&](double ratio) { return closed_air.atmosphere + curve.loading.ratio.inverse(ratio); },
         1, 1.33);
-  EXPECT_LT((settled.array() / asked.array() - 1).abs().maxCoeff(), 1e-3) << settled.transpose();
-  const double error = (chain_tip(chain.shapes({settled})[0]) - target).norm();
+  EXPECT_LT((steady.array() / requested.array() - 1).abs().maxCoeff(), 1e-3) << steady.transpose();
+  const double error = (chain_tip(chain.shapes({steady})[0]) - target).norm();
   EXPECT_LT(error, 0.1);
   RecordProperty("error_mm", all_digits(error));
 }

@@ -3,14 +3,14 @@
 
 #include "fk_physical_samples.hpp"
 
-/// Cables that rub, from scene to report.
+/// Cables with friction, from scene to report.
 
 namespace {
 
 using namespace softkin::testing;
 using nlohmann::json;
 
-/// The loaded block, whose tendon goes up and down on its way and comes through a sheath.
+/// The loaded block, whose tendon has a zigzag path and comes through a sheath.
 std::string rubbing_scene(const std::string& keys = "friction: 0.4, sheath: {turns_degrees: 90, friction: 0.2}, ") {
   return replaced(loaded_scene(), "points: [[0, 6, 12], [20, 6, 12]]",
                   keys + "points: [[0, 6, 11], [7, 6, 9], [14, 6, 11], [20, 6, 11]]");
@@ -34,10 +34,10 @@ TEST(TendonsRub, GoOnFromWhereTheyWere) {
   EXPECT_EQ(pulled["sticking"], 0.0);
   EXPECT_EQ(steps[2]["actuators"]["tendon"]["sticking"], 1.0);
   expect_words(followed.output,
-               {"cable 'tendon' rubs: of 1.8 N at the motor ", " N are left at its far end; it sticks in 100"});
+               {"cable 'tendon' has friction: of 1.8 N at the motor ", " N are left at its far end; it sticks in 100"});
   EXPECT_LT(std::abs(tip_of(steps[2]) - tip_of(steps[1])), 0.1 * std::abs(tip_of(steps[1]) - tip_of(steps[0])));
 
-  // from the shape that was written; and from the report, which is told to go on
+  // from the written shape, and from the report with --resume
   const std::string bent = folder / "bent.vtu";
   ASSERT_EQ(run_fk(folder.scene, {"--set", "tendon=2", "-o", bent}).exit_code, 0);
   const json from_file = report_of(folder, {"--start", bent, "--set", "tendon=1.8"})["steps"][0];
@@ -69,10 +69,10 @@ TEST(TendonsRub, AreRefusedWithAReason) {
   const BlockFolder folder(rubbing_scene());
   const ProgramResult map = run_program({"map", folder.scene, "-o", folder / "block.skmap"});
   EXPECT_EQ(map.exit_code, 2);
-  expect_words(map.errors, {"shapes depend on the way there where something rubs"});
+  expect_words(map.errors, {"with friction shapes depend on the path"});
 }
 
-/// Poses that were taken one after another tell of friction by their hysteresis.
+/// Poses that were taken one after another determine friction by their hysteresis.
 TEST(TendonsRub, IsFittedToPosesInTheirOrder) {
   const BlockFolder folder(rubbing_scene("friction: 0.25, "));
   const std::string path = folder.write("path.csv", "tendon_N\n0\n2\n1.8\n1\n0.4\n1.2\n");

@@ -9,7 +9,7 @@ namespace {
 using namespace softkin::testing;
 using nlohmann::json;
 
-/// The block, whose base turns about z; where the scene says nothing else by 30 degrees.
+/// The block, whose base rotates about z, by 30 degrees where the scene sets no other angle.
 std::string turning_scene(bool physical) {
   return replaced(physical ? physical_scene() : block_scene(), "{region: base}",
                   "{region: base, rotation: {axis: [0, 0, 1], degrees: 30}}");
@@ -45,7 +45,7 @@ TEST(TurnedSupportCommand, IsInDegreesOnTheTerminalInReportsAndAlongAPath) {
   }
 }
 
-/// What is asked is met by the actuators; the angle stays the one of the scene.
+/// The actuators reach the target; the angle stays the one of the scene.
 TEST(TurnedSupportCommand, IsGivenToInverseKinematics) {
   const BlockFolder folder(turning_scene(true));
   const json at = step_of(folder, {"--set", "air=1.2", "--set", "tendon=0.98"});

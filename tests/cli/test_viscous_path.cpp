@@ -82,7 +82,7 @@ TEST(ViscousPath, InverseKinematicsHoldsStillAgainstCreep) {
   for (const json& step : checked) EXPECT_NEAR(step["markers"]["tip"][0], there[0], 2e-3);
 }
 
-/// A pressure that the chamber does not bear: told, with the shape where the search ended.
+/// A pressure that the chamber cannot carry is reported, with the shape where the search ended.
 TEST(ViscousPath, ALimitIsReported) {
   std::string scene = viscous_scene();
   scene.replace(scene.find("range: [1.0, 2.0]"), 17, "control: pressure, range: [0, 9000]");

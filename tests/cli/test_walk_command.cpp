@@ -57,7 +57,7 @@ TEST(WalkCommand, WritesItsStepsIntoAPage) {
   const std::string page = folder / "walk.html";
   const ProgramResult result = folder.walk({"--cycles", "1", "--html", page});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_NE(result.output.find(told_of_page(page)), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find(reported_of_page(page)), std::string::npos) << result.output;
   const json shown = shown_by(page), report = json::parse(read_text(folder.out + "/report.json"));
   ASSERT_EQ(shown.at("steps").size(), 5u);
   for (std::size_t s = 0; s < 5; ++s) {

@@ -77,7 +77,7 @@ TEST(WorkspaceCommand, WritesItsReachIntoAPage) {
   const std::string page = folder / "reach.html";
   const ProgramResult result = folder.run({"--samples", "4", "--threads", "1", "--html", page});
   ASSERT_EQ(result.exit_code, 0) << result.errors;
-  EXPECT_NE(result.output.find(told_of_page(page)), std::string::npos) << result.output;
+  EXPECT_NE(result.output.find(reported_of_page(page)), std::string::npos) << result.output;
   const json reach = shown_by(page).at("workspace");
   EXPECT_EQ(reach.at("marker"), 0);
   EXPECT_EQ(reach.at("points").at("f32").get<std::string>().size(), 4u * 3 * sizeof(float) * 4 / 3);
@@ -213,7 +213,7 @@ TEST(WorkspaceCommand, InterruptedItTellsHowToGoOn) {
     const ProgramResult result = program.wait();
     EXPECT_EQ(result.exit_code, 1);
     EXPECT_NE(result.errors.find("of 3000 samples; they are in " + folder.output +
-                                 ", the same command with --resume goes on"),
+                                 ", the same command with --resume continues"),
               std::string::npos)
         << result.errors;
   }
@@ -273,7 +273,7 @@ TEST(WorkspaceCommand, SamplesWithoutAnEquilibriumAreRowsAndTold) {
   const std::string text = folder.text();
   EXPECT_EQ(row_count(text), 9u);
   EXPECT_NE(result.errors.find("their rows hold the last good shape\n"), std::string::npos) << result.errors;
-  // the last good shape is that of the share of the actuation that was reached
+  // the last good shape is that of the fraction of the actuation that was reached
   std::size_t limits = 0;
   for (const std::string& line : lines_of(text)) {
     const std::vector<std::string> row = cells_of(line);

@@ -10,7 +10,7 @@ struct Sphere {
   std::vector<Corners> triangles;
 };
 
-/// An octahedron, each of whose triangles is split into four so many times: 8 * 4^splits triangles.
+/// Returns an octahedron whose triangles are split into four repeatedly: 8 * 4^splits triangles.
 inline Sphere make_sphere(int splits, double radius) {
   std::vector<Vec3> points{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}, {-1, 0, 0}, {0, -1, 0}, {0, 0, -1}};
   std::vector<Corners> triangles{{0, 1, 2}, {1, 3, 2}, {3, 4, 2}, {4, 0, 2},

@@ -61,7 +61,7 @@ bool apart(const Vec3& along, const std::vector<Index>& a, const std::vector<Ind
   return true;
 }
 
-/// Along the way between the middles, and along the shortest at the end.
+/// Checks for separation along the vector between the centroids and along the shortest vector at the end.
 bool clearly_apart(const std::vector<Index>& a, const std::vector<Index>& b, const std::vector<Points>& instants,
                    double distance) {
   const auto middle = [](const Points& x, const std::vector<Index>& of) -> Vec3 {

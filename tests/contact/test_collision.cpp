@@ -20,7 +20,7 @@ double safe(Kind kind, const FourPoints& from, const FourPoints& to, double keep
   return kind == Kind::vertex_triangle ? safe_vertex_triangle(from, to, keep) : safe_edge_edge(from, to, keep);
 }
 
-FourPoints at_share(const FourPoints& from, const FourPoints& to, double t) {
+FourPoints at_fraction(const FourPoints& from, const FourPoints& to, double t) {
   return from + t * (to - from);
 }
 
@@ -28,11 +28,11 @@ double distance(Kind kind, const FourPoints& x) {
   return std::sqrt(separation(kind, x).squared);
 }
 
-/// The first of so many equal steps after which the distance is below a limit, as a share; 1: none.
+/// Returns the fraction of the motion at the first of equal steps where the distance is below a limit; 1: none.
 double first_below(Kind kind, const FourPoints& from, const FourPoints& to, double limit, int steps) {
   for (int k = 0; k < steps; ++k) {
-    const double share = static_cast<double>(k) / steps;
-    if (distance(kind, at_share(from, to, share)) < limit) return share;
+    const double fraction = static_cast<double>(k) / steps;
+    if (distance(kind, at_fraction(from, to, fraction)) < limit) return fraction;
   }
   return 1;
 }
@@ -58,13 +58,13 @@ Between operator*(double a, const Between& b) {
   return a >= 0 ? widened(a * b.low, a * b.high) : widened(a * b.high, a * b.low);
 }
 
-/// A range of the share of the motion and of the two weights; all are dyadic, which makes 1 - t exact.
+/// A range of the fraction of the motion and of the two weights; all are dyadic, which makes 1 - t exact.
 struct Box {
   double low[3], width[3];
   bool operator>(const Box& other) const { return low[0] > other.low[0]; }
 };
 
-/// One coordinate of what lies between the features at a share and two weights.
+/// Returns one coordinate of the vector between the features at a fraction of the motion and two weights.
 Between gap(Kind kind, const FourPoints& from, const FourPoints& to, int k, const double (&at)[3]) {
   const auto point = [&](int i) {
     return (1 - at[0]) * Between{from(k, i), from(k, i)} + at[0] * Between{to(k, i), to(k, i)};
@@ -74,7 +74,7 @@ Between gap(Kind kind, const FourPoints& from, const FourPoints& to, int k, cons
   return (point(0) + at[1] * (point(1) - point(0))) - (point(2) + at[2] * (point(3) - point(2)));
 }
 
-/// Is there possibly a contact in the box? Each coordinate is linear in the share and in either weight: its range is
+/// Checks if the box may hold a contact. Each coordinate is linear in the fraction and in either weight: its range is
 /// that of its values at the eight corners.
 bool may_touch(Kind kind, const FourPoints& from, const FourPoints& to, const Box& box) {
   if (kind == Kind::vertex_triangle && box.low[1] + box.low[2] > 1) return false;
@@ -91,8 +91,8 @@ bool may_touch(Kind kind, const FourPoints& from, const FourPoints& to, const Bo
   return true;
 }
 
-/// A share before which there is no contact, 2^-resolution from one that cannot be told from contact; infinite: none.
-/// Rigorous, by bisection of share and weights in interval arithmetic.
+/// Returns a fraction before which there is no contact, 2^-resolution from one that cannot be distinguished from
+/// contact; infinite: none. Rigorous, by bisection of fraction and weights in interval arithmetic.
 double first_contact(Kind kind, const FourPoints& from, const FourPoints& to, int resolution) {
   const double narrow = std::ldexp(1, -resolution);
   std::priority_queue<Box, std::vector<Box>, std::greater<>> boxes;
@@ -126,25 +126,25 @@ void random_motion(Random& random, FourPoints& from, FourPoints& to) {
 TEST(Collision, NeverPassesTheFirstContactAndGoesMostOfTheWay) {
   Random random(11);
   for (const Kind kind : kinds) {
-    int contacts = 0, most_of_the_way = 0;
+    int contacts = 0, long_motions = 0;
     for (int i = 0; i < 1500; ++i) {
       FourPoints from, to;
       random_motion(random, from, to);
-      const double share = safe(kind, from, to);
+      const double fraction = safe(kind, from, to);
       double first = first_contact(kind, from, to, 12);
-      if (share >= first) first = first_contact(kind, from, to, 20);  // they start close
-      EXPECT_LT(share, first) << name_of(kind) << "\n" << from << "\n" << to;
+      if (fraction >= first) first = first_contact(kind, from, to, 20);  // they start close
+      EXPECT_LT(fraction, first) << name_of(kind) << "\n" << from << "\n" << to;
       if (first == infinite) continue;
       ++contacts;
-      EXPECT_GT(share, 0) << name_of(kind) << "\n" << from << "\n" << to;
-      // on some ways a tenth of the distance is reached long before the contact
+      EXPECT_GT(fraction, 0) << name_of(kind) << "\n" << from << "\n" << to;
+      // on some motions a tenth of the distance is reached long before the contact
       const bool generic = first_below(kind, from, to, 0.12 * distance(kind, from), 200) > 0.81 * first;
-      EXPECT_TRUE(!generic || share > 0.8 * first) << name_of(kind) << "\n" << from << "\n" << to;
-      most_of_the_way += share > 0.8 * first;
+      EXPECT_TRUE(!generic || fraction > 0.8 * first) << name_of(kind) << "\n" << from << "\n" << to;
+      long_motions += fraction > 0.8 * first;
       if (HasFailure()) return;
     }
     EXPECT_GT(contacts, 80) << name_of(kind);
-    EXPECT_GT(most_of_the_way, 0.8 * contacts) << name_of(kind);
+    EXPECT_GT(long_motions, 0.8 * contacts) << name_of(kind);
   }
 }
 
@@ -156,13 +156,13 @@ TEST(Collision, KeepsItsShareOfTheDistanceAndEndsWhereThatIsUsedUp) {
     for (int i = 0; i < 400; ++i) {
       FourPoints from, to;
       random_motion(random, from, to);
-      const double keep = random.uniform(0.05, 0.9), share = safe(kind, from, to, keep);
+      const double keep = random.uniform(0.05, 0.9), fraction = safe(kind, from, to, keep);
       const double floor = keep * distance(kind, from);
       const double used_up = first_below(kind, from, to, floor, 2000);
-      EXPECT_LE(share, used_up) << name_of(kind) << "\n" << from << "\n" << to;
-      EXPECT_GE(distance(kind, at_share(from, to, share)), floor * (1 - 1e-12));
-      ended += share < 1;
-      late += share > 0.97 * used_up;
+      EXPECT_LE(fraction, used_up) << name_of(kind) << "\n" << from << "\n" << to;
+      EXPECT_GE(distance(kind, at_fraction(from, to, fraction)), floor * (1 - 1e-12));
+      ended += fraction < 1;
+      late += fraction > 0.97 * used_up;
     }
     EXPECT_GT(ended, 100) << name_of(kind);
     EXPECT_GT(late, 390) << name_of(kind);
@@ -247,9 +247,9 @@ TEST(Collision, EndsOnMotionsThatAreSlowAgainstTheSpeedOfTheirPoints) {
     to = from;
     to.col(0) += Vec3(0.2, 0.2, -drop);
     to.rightCols<3>().row(0).array() += random.uniform(-0.1, 0.1);
-    const double contact = height / drop, share = safe_vertex_triangle(from, to);
-    EXPECT_LT(share, contact);
-    EXPECT_NEAR(share, std::min(1.0, 0.9 * contact), 0.01);
+    const double contact = height / drop, fraction = safe_vertex_triangle(from, to);
+    EXPECT_LT(fraction, contact);
+    EXPECT_NEAR(fraction, std::min(1.0, 0.9 * contact), 0.01);
     from << -1, 1, 0, 0, 0, 0, -1, 1, 0, 0, height, height;
     to = from;
     to(2, 0) += height;  // one end moves up to twice the height, the middle to the height
@@ -291,10 +291,10 @@ TEST(Collision, AMotionIsAsSafeAsItsLeastSafePair) {
   Team one(1), two(2);
   Candidates found;
   phase.find(sphere.points, to, 0, one, found);
-  const double share = safe_motion(s, found, sphere.points, to, 0.1, one);
-  EXPECT_EQ(share, safe_motion(s, found, sphere.points, to, 0.1, two));
-  EXPECT_GT(share, 0.3);
-  const Points stop = sphere.points + share * (to - sphere.points);
+  const double fraction = safe_motion(s, found, sphere.points, to, 0.1, one);
+  EXPECT_EQ(fraction, safe_motion(s, found, sphere.points, to, 0.1, two));
+  EXPECT_GT(fraction, 0.3);
+  const Points stop = sphere.points + fraction * (to - sphere.points);
   double least = 1;
   const auto look = [&](Kind kind, const Pair& pair) {
     const Nodes nodes = kind == Kind::edge_edge ? nodes_of_edge_edge(s, pair) : nodes_of_vertex_triangle(s, pair);
@@ -309,8 +309,8 @@ TEST(Collision, AMotionIsAsSafeAsItsLeastSafePair) {
   };
   for (const Pair& pair : found.vertex_triangle) look(Kind::vertex_triangle, pair);
   for (const Pair& pair : found.edge_edge) look(Kind::edge_edge, pair);
-  EXPECT_EQ(share, least);
-  EXPECT_LT(share, 0.9);
+  EXPECT_EQ(fraction, least);
+  EXPECT_LT(fraction, 0.9);
   EXPECT_EQ(safe_motion(s, found, sphere.points, sphere.points, 0.1, two), 1);
 }
 

@@ -31,7 +31,7 @@ WholePoint cross(const WholePoint& a, const WholePoint& b) {
 class Least {
  public:
   void take(Wide numerator, Wide denominator) {
-    least_ = std::min(least_, static_cast<long double>(numerator) / static_cast<long double>(denominator));
+    min_ = std::min(min_, static_cast<long double>(numerator) / static_cast<long double>(denominator));
   }
   void take_points(const WholePoint& a, const WholePoint& b) { take(dot(minus(a, b), minus(a, b)), 1); }
   void take_point_edge(const WholePoint& p, const WholePoint& from, const WholePoint& to) {
@@ -49,10 +49,10 @@ class Least {
     if (size != 0 && inside(-dot(cross(start, v), normal), -dot(cross(u, start), normal), size))
       take(height * height, size);
   }
-  [[nodiscard]] long double value() const { return least_; }
+  [[nodiscard]] long double value() const { return min_; }
 
  private:
-  long double least_ = std::numeric_limits<long double>::infinity();
+  long double min_ = std::numeric_limits<long double>::infinity();
 };
 
 FourPoints to_points(const WholePoints& x) {
@@ -80,7 +80,7 @@ long double exact_squared(Kind kind, const WholePoints& x) {
   return least.value();
 }
 
-/// A share of the largest length.
+/// Error bound, relative to the largest length.
 constexpr double rounding = 4e-15;
 
 void expect_exact(Kind kind, const WholePoints& whole) {

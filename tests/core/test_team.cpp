@@ -34,7 +34,7 @@ TEST(Team, PiecesCoverTheRange) {
 }
 
 TEST(Team, ZeroMeansTheMachine) {
-  // which may not tell: 0
+  // hardware_concurrency() may be unknown: 0
   EXPECT_EQ(Team(0).size(), static_cast<int>(std::max(1u, std::thread::hardware_concurrency())));
 }
 

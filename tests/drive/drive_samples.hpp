@@ -33,7 +33,7 @@ inline HardwareSpec two_motors() {
   return hardware;
 }
 
-/// Ratios of two cables, a row each, at so many seconds (none: no times); lines 2, 3, ...
+/// Returns ratios of two cables, a row each, with times [s] (none: no times); lines 2, 3, ...
 inline Commands two_commands(const std::vector<std::array<double, 2>>& ratios, const std::vector<double>& times = {}) {
   Commands commands{"commands.csv", {true, true}, {false, false}, {}};
   for (std::size_t i = 0; i < ratios.size(); ++i) {

@@ -25,11 +25,11 @@ namespace softkin::testing {
 
 /// How bad the line is. Shares are of all lines, in each direction.
 struct LineFaults {
-  double share = 0;
+  double fraction = 0;
   unsigned seed = 1;
   double delay_s = 0.003;
-  double ok_after_resend = 0.5;  // share of the Resends that "ok" follows
-  double busy = 0;               // share of the moves that are answered late, with "busy" before
+  double ok_after_resend = 0.5;  // fraction of the Resends that "ok" follows
+  double busy = 0;               // fraction of the moves that are answered late, with "busy" before
   long reboot_after_moves = -1;  // then the board boots anew; -1: never
   bool silent_reboot = false;    // its "start" is lost
   long mute_after_moves = -1;    // then it answers nothing any more
@@ -74,7 +74,7 @@ class FaultyMarlin {
   [[nodiscard]] long moves() const { return move_count_; }
 
   using Position = std::map<char, double>;
-  /// Where each move led; moves that lead nowhere are none.
+  /// Returns the position after each move that changes it.
   [[nodiscard]] const std::vector<Position>& motions() const { return motions_; }
   [[nodiscard]] const std::vector<std::string>& executed() const { return executed_; }  // all commands
   [[nodiscard]] long faults_made() const { return faults_made_; }
@@ -92,7 +92,7 @@ class FaultyMarlin {
 
   /// What arrives of a line (its end included).
   std::string damaged(std::string line) {
-    if (chance() >= faults_.share || line.empty()) return line;
+    if (chance() >= faults_.fraction || line.empty()) return line;
     ++faults_made_;
     const std::size_t at = pick(line.size());
     switch (pick(6)) {

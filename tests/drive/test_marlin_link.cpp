@@ -13,7 +13,7 @@ namespace {
 using testing::FaultyMarlin;
 using testing::LineFaults;
 
-/// A program of so many moves, within the limits of the machine, no two neighbours alike.
+/// Returns a program of moves within the limits of the machine; successive moves differ.
 GcodeProgram sample_program(std::size_t moves) {
   std::vector<std::array<double, 2>> ratios;
   std::vector<double> times;
@@ -76,7 +76,7 @@ StreamReport stream_to(FaultyMarlin& board, const GcodeProgram& program, const L
 
 TEST(MarlinLink, HundredThousandLinesOverABadLine) {
   LineFaults faults;
-  faults.share = 0.01;
+  faults.fraction = 0.01;
   const GcodeProgram program = sample_program(102'000);
   ASSERT_GE(program.lines.size(), 100'000u);
   FaultyMarlin board(faults);
@@ -147,7 +147,7 @@ TEST(MarlinLink, WorseLinesOfAllKinds) {
   const GcodeProgram program = sample_program(400);
   for (unsigned seed = 1; seed <= 10; ++seed) {
     LineFaults faults;
-    faults.share = 0.08;
+    faults.fraction = 0.08;
     faults.seed = seed;
     faults.busy = 0.01;
     faults.ok_after_resend = seed % 3 / 2.0;
@@ -164,7 +164,7 @@ TEST(MarlinLink, RebootEndsTheStreamAndMovesNothingMore) {
   const GcodeProgram program = sample_program(300);
   for (unsigned seed = 1; seed <= 10; ++seed) {
     LineFaults faults;
-    faults.share = 0.02;
+    faults.fraction = 0.02;
     faults.seed = seed;
     faults.silent_reboot = seed % 2 == 0;
     faults.reboot_after_moves = 20 * seed;
@@ -199,13 +199,13 @@ TEST(MarlinLink, StopsByOrderWithTheLastMoveDone) {
 TEST(MarlinLink, PausesAndGoesOn) {
   const GcodeProgram program = sample_program(100);
   FaultyMarlin board;
-  int asked = 0;
+  int requested = 0;
   long at_pause = -1, after_pause = -1;
   LinkHooks hooks;
   hooks.order = [&] {
-    if (board.moves() < 30 || asked >= 10) return Order::go;
-    if (asked++ == 2) at_pause = board.moves();  // the line in flight has ended by now
-    if (asked == 10) after_pause = board.moves();
+    if (board.moves() < 30 || requested >= 10) return Order::go;
+    if (requested++ == 2) at_pause = board.moves();  // the line in flight has ended by now
+    if (requested == 10) after_pause = board.moves();
     return Order::pause;
   };
   const StreamReport report = stream_to(board, program, quick_options(), hooks);
@@ -250,7 +250,7 @@ TEST(MarlinLink, MuteBoardsEndTheStream) {
   EXPECT_EQ(report.sent, 31u);
 
   LineFaults dead;
-  dead.share = 1;
+  dead.fraction = 1;
   FaultyMarlin noise(dead);
   options.attempts = 3;
   const StreamReport none = stream_to(noise, program, options);

@@ -113,8 +113,8 @@ TEST(Motion, ArrivesAtTheTimesOfTheRows) {
     const auto arrivals = simulate(planned.program, planned.motion);
     ASSERT_GT(arrivals.size(), 280u);
     for (const Arrival& arrival : arrivals) {
-      const double asked = *commands.rows[arrival.row - 2].time_s - *commands.rows[0].time_s;
-      EXPECT_NEAR(arrival.time_s, asked, 1e-3) << "row " << arrival.row;  // G4 takes whole ms
+      const double requested = *commands.rows[arrival.row - 2].time_s - *commands.rows[0].time_s;
+      EXPECT_NEAR(arrival.time_s, requested, 1e-3) << "row " << arrival.row;  // G4 takes whole ms
     }
     EXPECT_NEAR(planned.motion.seconds, *commands.rows.back().time_s - *commands.rows[0].time_s, 1e-9);
   }
@@ -228,7 +228,7 @@ TEST(Motion, RefusesWhatIsOutsideTheLimits) {
   refused({{0.9, 0.9}, {0.9, 1}}, {0, 1}, "commands.csv:3: tendon 'b': 6.1 mm/s to reach this row");
 }
 
-/// Is what a refusal says of cable a (24 to 38 mm, 4 mm/s) true of the rows?
+/// Checks that a refusal about cable a (24 to 38 mm, 4 mm/s) is true of the rows.
 void expect_reason(const Commands& commands, const std::string& message) {
   if (message.find("tendon 'a'") == std::string::npos) return;
   ASSERT_EQ(message.rfind("commands.csv:", 0), 0u) << message;
@@ -311,7 +311,7 @@ TEST(Motion, GoesBackHomeWithTheBacklashTakenUp) {
   hardware.tendons[0].backlash_mm = 0.5;
   const Planned planned = plan(hardware, two_commands({{0.9, 1}}, {0}), true);
   ASSERT_EQ(planned.motion.back.size(), 2u);
-  EXPECT_EQ(planned.motion.back[0].target, (Steps{-40, 0}));  // the cable is home
+  EXPECT_EQ(planned.motion.back[0].target, (Steps{-40, 0}));  // the cable is at its rest length
   EXPECT_EQ(planned.motion.back[1].target, (Steps{0, 0}));    // and the motor too
   EXPECT_TRUE(planned.motion.moves.empty());
 }

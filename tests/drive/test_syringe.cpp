@@ -75,7 +75,7 @@ TEST(Syringe, StandsWhereTheGasLawSays) {
   EXPECT_NEAR(syringe.ratio(50, 25), 1.2, 1e-9);
   EXPECT_EQ(syringe.plunger_mm(1, 0), 0);
   // 65 mL at 80 kPa are 81.25 mL; 18 in the chamber at 0.9, 5 in the tube: 58.25 in the syringe, 18.25 more than at
-  // home
+  // rest
   EXPECT_NEAR(syringe.plunger_mm(0.9, -20), -18.25 / 0.34, 1e-9 * 60);
   for (const double atmosphere : {80.0, 101.325})
     for (const double gauge : {-30.0, 7.0, 150.0})
@@ -239,7 +239,8 @@ ActuatorCurve straight_curve() {
   return {"air.yaml", CurveInput::pressure, 100, "", {MonotoneCurve({0, 50}, {1, 1.4}), {}}, {}};
 }
 
-/// Half way up the curve is 25 kPa, and so the plunger is at 50 mm, whether the commands tell the pressure or not.
+/// At half the height of the curve the pressure is 25 kPa, and so the plunger is at 50 mm, whether the commands contain
+/// the pressure or not.
 TEST(Syringe, TakesMeasuredCurves) {
   Model model = one_chamber();
   model.actuators[0].curve = straight_curve();
@@ -248,9 +249,9 @@ TEST(Syringe, TakesMeasuredCurves) {
   EXPECT_EQ(plan.program.lines.at(0).text, "G1 Z50 F3000");
   expect_refused(model, one_syringe(), air_commands({{1, 0}, {1.41, 0}}, false),
                  "commands.csv:3: chamber 'air': the loading branch of curve air.yaml does not reach ratio 1.41");
-  // what the commands tell comes first
-  const Plan told = make_plan(model, one_syringe(), air_commands({{1, 0}, {1.2, 30}}), false);
-  EXPECT_EQ(told.commands.rows[1].pressures_kpa[0], 30);
+  // pressures of the commands take precedence
+  const Plan reported = make_plan(model, one_syringe(), air_commands({{1, 0}, {1.2, 30}}), false);
+  EXPECT_EQ(reported.commands.rows[1].pressures_kpa[0], 30);
 }
 
 /// Where the board leaves the axis after each line, read from the text alone.
@@ -265,7 +266,7 @@ std::vector<double> axis_after(const GcodeProgram& program) {
 }
 
 /// A simulated pump: the G-code's places, play in the screw, closed air with a dead volume and a chamber that stiffens.
-/// It comes to the ratios asked within 0.1 %, and to what the dry run says; without the dead volume it does not.
+/// The chamber reaches the commanded ratios within 0.1 % and those of the dry run; without the dead volume it does not.
 TEST(Syringe, BringsAChamberToItsRatio) {
   const auto chamber_kpa = [](double ratio) { return 100 + 120 * (ratio - 1) + 300 * std::pow(ratio - 1, 3); };
   const ClosedAir air{20, 5, 40, 100};
@@ -283,20 +284,20 @@ TEST(Syringe, BringsAChamberToItsRatio) {
   const auto worst_of = [&](const HardwareSpec& bench) {
     const Plan plan = make_plan(one_chamber(), bench, air_commands(rows), false);
     const std::vector<double> places = axis_after(plan.program);
-    const std::vector<PlungerRow> told = plunger_rows(plan, 0);
+    const std::vector<PlungerRow> reported = plunger_rows(plan, 0);
     EXPECT_EQ(places.size(), rows.size() - 1);
     double plunger = 0, worst = 0;
     for (std::size_t i = 0; i < places.size(); ++i) {
       const double motor = places[i] / 5;  // 3200 steps of 1/80 mm a turn of 8 mm
       if (plunger < motor) plunger = motor;
       if (plunger > motor + 0.7) plunger = motor + 0.7;
-      const double settled = testing::settled_ratio(air, 0.34 * plunger, chamber_kpa, 0.5, 2);
-      worst = std::max(worst, std::abs(settled / rows[i + 1].ratio - 1));
-      EXPECT_NEAR(told[i + 1].plunger_mm, plunger, 1e-9);
-      EXPECT_NEAR(told[i + 1].volume_mm3, 340 * plunger, 1e-6);
-      // by Eq. (19) under the pressure asked: a chamber that gives way less than a free one stays nearer
+      const double steady = testing::equilibrium_ratio(air, 0.34 * plunger, chamber_kpa, 0.5, 2);
+      worst = std::max(worst, std::abs(steady / rows[i + 1].ratio - 1));
+      EXPECT_NEAR(reported[i + 1].plunger_mm, plunger, 1e-9);
+      EXPECT_NEAR(reported[i + 1].volume_mm3, 340 * plunger, 1e-6);
+      // by Eq. (19) at the commanded pressure: a chamber stiffer than a free one stays nearer
       if (bench.syringes[0].dead_volume_mL) {
-        EXPECT_NEAR(told[i + 1].reached, settled, 1e-4);
+        EXPECT_NEAR(reported[i + 1].reached, steady, 1e-4);
       }
     }
     return worst;
@@ -307,7 +308,7 @@ TEST(Syringe, BringsAChamberToItsRatio) {
   EXPECT_GT(worst_of(hardware), 1e-2);
 }
 
-/// Moves of fewer than 6 steps wait, and the dry run tells where the plunger then is.
+/// Moves of fewer than 6 steps wait, and the dry run reports where the plunger then is.
 TEST(Syringe, SaysWhereSmallMovesLead) {
   const Plan plan = make_plan(one_chamber(), one_syringe(), air_commands({{1, 0}, {1.0005, 0}, {1.2, 25}}), false);
   const std::vector<PlungerRow> rows = plunger_rows(plan, 0);

@@ -54,7 +54,7 @@ class Random {
     return Matrix::NullaryExpr([&] { return normal(); });
   }
   Mat3 rotation() { return Eigen::Quaterniond(normal(), normal(), normal(), normal()).normalized().toRotationMatrix(); }
-  /// Three unequal stretches of 0.6 to 1.7 in random directions; the last one mirrored if asked.
+  /// Returns three unequal stretches of 0.6 to 1.7 in random directions. mirrored: the last one is negative
   Mat3 deformation(bool mirrored) {
     const Vec3 s(between(1.3, 1.7), between(0.9, 1.2), between(0.6, 0.8) * (mirrored ? -1 : 1));
     return rotation() * s.asDiagonal() * rotation();
@@ -115,7 +115,7 @@ struct Sample {
   }
 };
 
-/// Random elements, deformed by random large stretches and some noise; mirrored in every second lane if asked.
+/// Random elements with large random stretches and some noise. mirrored: every second lane is inverted
 template <int K, int Q>
 Sample<K, Q> random_sample(Law law, Random& random, bool mirrored = false, double noise = 0.05) {
   Sample<K, Q> sample;

@@ -34,7 +34,7 @@ struct BentSample {
     joint.penalty = 2.1;
     joint.along = {0.6, 0.8};
     joint.upwards = {1, -1};
-    joint.share = {0.3, 0.7};
+    joint.fraction = {0.3, 0.7};
     joint.moment = {0.05, -0.2};
     joint.angle = 0.1;
     return joint;

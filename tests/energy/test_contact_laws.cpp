@@ -22,8 +22,8 @@ void expect_differences(const LengthLawOf& law, double x, double step) {
 TEST(ContactLaws, DerivativesOfTheBarrier) {
   constexpr double reach = 0.3;
   const LengthLawOf law = [](double gap) { return barrier(gap, reach); };
-  for (const double share : {1e-3, 0.01, 0.1, 0.5, 0.9, 0.999, 1.2})
-    expect_differences(law, share * reach, 1e-5 * share);
+  for (const double fraction : {1e-3, 0.01, 0.1, 0.5, 0.9, 0.999, 1.2})
+    expect_differences(law, fraction * reach, 1e-5 * fraction);
 }
 
 /// The values of the formula, at a tenth and at half of the reach.
@@ -61,7 +61,7 @@ TEST(ContactLaws, TheBarrierEndsSmoothly) {
 TEST(ContactLaws, DerivativesOfFriction) {
   constexpr double creep = 1e-2;
   const LengthLawOf law = [](double slip) { return friction(slip, creep); };
-  for (const double share : {1e-3, 0.1, 0.5, 0.99, 1.1, 7.0}) expect_differences(law, share * creep, 1e-7);
+  for (const double fraction : {1e-3, 0.1, 0.5, 0.99, 1.1, 7.0}) expect_differences(law, fraction * creep, 1e-7);
 }
 
 TEST(ContactLaws, FrictionIsCoulombsBeyondItsCreep) {

@@ -126,7 +126,7 @@ TEST(Dielectric, MaxwellsStressIsThatOfTheTrueField) {
     }
 }
 
-/// Flat and inverted layers have no energy; without a voltage or a permittivity nothing is asked of them.
+/// Flat and inverted layers have no energy; layers without a voltage or a permittivity are not evaluated.
 TEST(Dielectric, InvertedLayersAreForbiddenAndFinite) {
   Random random(5);
   Layers layers(random);

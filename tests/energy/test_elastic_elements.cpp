@@ -85,7 +85,7 @@ TEST(ElasticRest, VolumesAddUpToTheElements) {
   const double corners = Mat3(straight.middleRows<3>(1).rowwise() - straight.row(0)).determinant() / 6;
   for (const double v : quadratic.volume) EXPECT_NEAR(v, corners / 4, 1e-13);
 
-  // a prism with bilinear sides: the divergence theorem with the sides' exact flux, by diagonals both ways
+  // a prism with bilinear sides: the divergence theorem with the exact flux of the sides, by both diagonals
   const Nodes<6> p = sample_rest<6>(random);
   const auto six = [&](int a, int b, int c) {
     return p.row(a).transpose().dot(p.row(b).transpose().cross(p.row(c).transpose()));

@@ -185,11 +185,11 @@ TYPED_TEST(ElasticLaws, StretchBeyondItsLimitIsForbiddenAndFinite) {
   // uniaxial at constant volume: l^2 + 2 / l - 3 is the limit
   double stretch = std::sqrt(limit + 3);
   for (int i = 0; i < 60; ++i) stretch = std::sqrt(limit + 3 - 2 / stretch);
-  for (const double share : {0.999, 1.001, 2.0, 50.0}) {
-    const double l = share * stretch;
+  for (const double fraction : {0.999, 1.001, 2.0, 50.0}) {
+    const double l = fraction * stretch;
     sample.current[2] = sample.rest[2] * Vec3(l, 1 / std::sqrt(l), 1 / std::sqrt(l)).asDiagonal();
     const ElasticForce<K> force = force_of(sample.block, sample.current);
-    EXPECT_EQ(force.forbidden[2] != 0, share > 1) << share;
+    EXPECT_EQ(force.forbidden[2] != 0, fraction > 1) << fraction;
     EXPECT_FALSE(force.inverted[2]);
     EXPECT_FALSE(force.forbidden[3]);
     EXPECT_TRUE(std::isfinite(force.energy[2]));

@@ -45,7 +45,7 @@ Eigen::MatrixXd brute_force(const Sample<K, Q>& sample, int lane, bool& definite
   return k;
 }
 
-/// Every third element is compressed, every second mirrored if asked, the others are stretched.
+/// Every third element is compressed, every second is inverted if `mirrored`, the others are stretched.
 template <int K, int Q>
 Sample<K, Q> mixed_sample(Law law, Random& random, bool mirrored) {
   auto sample = random_sample<K, Q>(law, random, mirrored, 0.02);

@@ -21,7 +21,7 @@ SheetLaw orthotropic(double e1, double e2, double g12, double nu12, bool tension
 }
 
 /// The least energy of strain + P, P = sum of two wrinkles across each other, over their direction and depths.
-double least_energy(const SheetLaw& law, const Vec3& strain) {
+double min_energy(const SheetLaw& law, const Vec3& strain) {
   constexpr int directions = 2000;
   double least = strain.dot(law.stiffness * strain) / 2;
   for (int i = 0; i < directions; ++i) {
@@ -94,7 +94,7 @@ TEST(Sheet, WrinklesToTheLeastEnergy) {
       const Vec3 strain(any(engine), any(engine), 2 * any(engine));
       const SheetResponse found = sheet_response(law, strain);
       const double plain = strain.dot(law.stiffness * strain) / 2;
-      EXPECT_NEAR(found.energy, least_energy(law, strain), 2e-5 * plain) << strain.transpose();
+      EXPECT_NEAR(found.energy, min_energy(law, strain), 2e-5 * plain) << strain.transpose();
       EXPECT_GE(found.energy, 0);
       ++seen[static_cast<int>(found.state)];
     }

@@ -233,7 +233,7 @@ int check_exact(const Stiffness& stiffness, const Change& pull_change) {
 }
 
 template <int K>
-double least_eigenvalue(const Square<K>& m) {
+double min_eigenvalue(const Square<K>& m) {
   return symmetric_eigenvalues(m)[0];
 }
 
@@ -322,7 +322,7 @@ TEST(TargetShapeStiffness, MatrixOfBlendedTargetsIsPositiveAndNearTheDerivative)
         stiffness_of_body<K>(block, here.current, here.rotation, true, stiffness);
         for (int l = 0; l < lanes; ++l) {
           const Square<K> m = matrix<K>(stiffness, l);
-          EXPECT_GT(least_eigenvalue<K>(m), -1e-10 * m.norm());
+          EXPECT_GT(min_eigenvalue<K>(m), -1e-10 * m.norm());
         }
       }
     }
@@ -359,7 +359,7 @@ TEST(TargetShapeStiffness, MatrixOfRedistributedRatiosIsPositiveAndLeavesGrowthF
       stiffness_of_actuation<K>(block, ratio, true, here.current, here.rotation, false, stiffness);
       for (int l = 0; l < lanes; ++l) {
         const Square<K> m = matrix<K>(stiffness, l);
-        EXPECT_GT(least_eigenvalue<K>(m), -1e-10 * m.norm());
+        EXPECT_GT(min_eigenvalue<K>(m), -1e-10 * m.norm());
       }
     }
   };

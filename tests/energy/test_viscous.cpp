@@ -15,7 +15,7 @@ struct Sample {
   ElasticBlock<K, Q> block;
   Nodes<K> rest, current;
   Pack modulus[branches], rate[branches];
-  BranchShares shares[branches];
+  BranchFractions fractions[branches];
   std::vector<double> strains = std::vector<double>(std::size_t{6} * lanes * (branches + 1) * Q);
   mutable std::vector<double> begun = std::vector<double>(std::size_t{begun_entries} * lanes * branches * Q);
 
@@ -40,7 +40,7 @@ struct Sample {
   void set_time(double time) {
     for (int i = 0; i < branches; ++i) {
       const double x = time * (i + 1), mean = x > 0 ? -std::expm1(-x) / x : 1;
-      shares[i] = {pack(std::exp(-x)), pack(mean - std::exp(-x)), pack(1 - mean)};
+      fractions[i] = {pack(std::exp(-x)), pack(mean - std::exp(-x)), pack(1 - mean)};
       rate[i] = pack(x);
     }
   }
@@ -57,7 +57,7 @@ struct Sample {
     return c;
   }
   [[nodiscard]] ViscousBlock viscous() const {
-    ViscousBlock made{branches, modulus, shares, strains.data()};
+    ViscousBlock made{branches, modulus, fractions, strains.data()};
     begin_step<Q>(made, begun.data());
     made.begun = begun.data();
     return made;
@@ -130,21 +130,23 @@ TYPED_TEST(Viscous, FlowsAsTheBranchEquationSays) {
   Random random(5);
   Sample<K, Q> sample(random, 0);
   const ElasticRest<K, Q> rest = elastic_rest(sample.rest);
-  const Nodes<K> from = sample.current, way = 0.05 * random.matrix<Nodes<K>>();
-  const auto strain_at = [&](int q, double share) { return barred((from + share * way).transpose() * rest.slope[q]); };
+  const Nodes<K> from = sample.current, path = 0.05 * random.matrix<Nodes<K>>();
+  const auto strain_at = [&](int q, double fraction) {
+    return barred((from + fraction * path).transpose() * rest.slope[q]);
+  };
   for (int q = 0; q < Q; ++q) sample.put(3 * q, strain_at(q, 0));
   const auto error_of = [&](double time) {
     sample.set_time(time);
     Shape<K> shape;
-    sample.load(from + time * way, shape);
+    sample.load(from + time * path, shape);
     std::vector<double> after = sample.strains;
     (void)flow<K, Q>(sample.block, sample.viscous(), sample.rate, shape, after.data());
     double error = 0;
     for (int q = 0; q < Q; ++q)
       for (int i = 0; i < 2; ++i) {
         Mat3 c = sample.strain(3 * q + 1 + i, sample.strains);
-        const auto rate = [&](double share, const Mat3& v) {
-          const Mat3 bar = strain_at(q, share * time);
+        const auto rate = [&](double fraction, const Mat3& v) {
+          const Mat3 bar = strain_at(q, fraction * time);
           return Mat3((i + 1) * time * (bar - (bar * v.inverse()).trace() / 3 * v));
         };
         constexpr int steps = 40;
@@ -224,7 +226,7 @@ TEST(Viscous, LosesEnergyOverAnyHistory) {
     constexpr int legs = 4, steps = 50;
     for (int leg = 0; leg < legs; ++leg) {
       const Nodes<4> to = leg + 1 < legs ? Nodes<4>(sample.rest * random.deformation(false).transpose()) : sample.rest;
-      // a straight way whose elements do not invert: the strain is close to the identity, or the leg is left out
+      // a straight segment whose elements do not invert: the strain is close to the identity, or the leg is left out
       bool inverts = false;
       for (int step = 0; step <= steps; ++step) {
         const Nodes<4> nodes = from + (to - from) * step / steps;

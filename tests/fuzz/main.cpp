@@ -10,8 +10,8 @@
 
 #include "fuzz/targets.hpp"
 
-// softkin_fuzz --target=NAME [options of libFuzzer] [corpora or inputs]; --list names targets and dictionaries, --show
-// tells of every input why it was refused.
+// softkin_fuzz --target=NAME [options of libFuzzer] [corpora or inputs]; --list prints targets and dictionaries, --show
+// prints for every input why it was refused.
 
 namespace softkin::fuzz {
 

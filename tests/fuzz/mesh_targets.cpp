@@ -114,7 +114,7 @@ void run_stl(const Input& input) {
   require(copy.vertices == again.vertices && copy.triangles == again.triangles, "a copied surface reads otherwise");
 }
 
-/// Of any form, as its content says.
+/// Reads a surface whose format is determined from its content.
 void run_surface(const Input& input) {
   const TriangleSurface surface = read_surface(input.file("surface.any"));
   check(surface);

@@ -79,7 +79,8 @@ void run_reading_line(const Input& input) {
   require(line.commands[1] == finger().rest_actuation()[1], "what is told was commanded");
 }
 
-/// What a page sends to a server: whatever is refused has one reason. A second part: to one that tells from readings.
+/// Reads what a page sends to a server: each refusal has one reason. With a second part the server estimates from
+/// readings.
 void run_live_message(const Input& input) {
   const Model& model = finger();
   const std::size_t columns = input.parts() > 1 ? 3 : 0;

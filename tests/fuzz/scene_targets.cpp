@@ -125,8 +125,8 @@ void run_curve(const Input& input) {
   const ActuatorCurve curve = read_actuator_curve(input.file("curve.yaml"));
   const CurveBranch& branch = curve.loading;
   const double low = branch.ratio.x().front(), high = branch.ratio.x().back();
-  for (const double share : {0.0, 0.3, 1.0}) {
-    const double at = low + share * (high - low);
+  for (const double fraction : {0.0, 0.3, 1.0}) {
+    const double at = low + fraction * (high - low);
     if (at >= low && at <= high) require_finite(curve.ratio(at, Branch::loading), "a ratio is not finite");
   }
   const std::string text = actuator_curve_text(curve, "again");

@@ -91,19 +91,19 @@ TEST_F(CoupledCurvesFile, CurvedLawsAreInvertedAsBruteForceDoes) {
     return Pair{1 + 0.002 * p + 2e-5 * p * p - 3e-6 * p * q, 1 + 0.003 * q + 1e-5 * q * q - 4e-6 * p * q};
   });
   for (const Pair& p : {Pair{12, 70}, Pair{50, 50}, Pair{88, 4}}) {
-    const Eigen::Vector2d asked = curves.ratios_at(Eigen::Vector2d(p[0], p[1]));
+    const Eigen::Vector2d requested = curves.ratios_at(Eigen::Vector2d(p[0], p[1]));
     Eigen::Vector2d best(0, 0);
     double least = 1;
     for (int i = 0; i <= 360; ++i)
       for (int k = 0; k <= 360; ++k) {
         const Eigen::Vector2d here(0.25 * i, 0.25 * k);
-        const double off = (curves.ratios_at(here) - asked).norm();
+        const double off = (curves.ratios_at(here) - requested).norm();
         if (off < least) {
           least = off;
           best = here;
         }
       }
-    const std::vector<Eigen::VectorXd> found = curves.pressures_for(asked);
+    const std::vector<Eigen::VectorXd> found = curves.pressures_for(requested);
     ASSERT_EQ(found.size(), 1u);
     EXPECT_LT((found[0] - best).cwiseAbs().maxCoeff(), 0.26);
     EXPECT_LT((found[0] - Eigen::Vector2d(p[0], p[1])).cwiseAbs().maxCoeff(), 1e-6);

@@ -12,7 +12,7 @@ using namespace gmsh_samples;
 
 struct Refusal {
   std::string content;
-  std::string where;    // what follows the path: ":LINE: ", ": byte N: " or ": " for the whole file
+  std::string where;    // the text after the path: ":LINE: ", ": byte N: " or ": " for the whole file
   std::string message;  // a part
 };
 

@@ -9,7 +9,7 @@
 #include <softkin/io/table/actuator_curve_file.hpp>
 #include <softkin/io/table/commands.hpp>
 #include <softkin/io/table/csv.hpp>
-#include <softkin/io/table/way.hpp>
+#include <softkin/io/table/path_table.hpp>
 
 #include "text_mesh_files.hpp"
 
@@ -46,7 +46,7 @@ TEST(LfsPointers, AreRecognisedByEveryReader) {
   expect("s.yaml", [](const auto& path) { (void)read_scene(path); });
   expect("h.yaml", [](const auto& path) { (void)read_hardware(path); });
   expect("c.yaml", [](const auto& path) { (void)read_actuator_curve(path); });
-  expect("t.csv", [](const auto& path) { (void)read_way(path); });
+  expect("t.csv", [](const auto& path) { (void)read_path(path); });
   expect("d.csv", [](const auto& path) { (void)read_directions(path); });
   expect("f.csv", [](const auto& path) { (void)read_field_samples(path); });
   expect("side.txt", [](const auto& path) { (void)read_sidecar(path); });

@@ -31,9 +31,9 @@ TEST_F(PictureTest, MarksStandOverTheLayersWhereTheyAre) {
        {place(-0.5, -0.5), place(0, -0.5), place(0.5, 0), place(0.5, 0.5), place(0, 0), place(-0.5, 0.5)})
     EXPECT_TRUE(near(picture.at(x, y), red, 90)) << x << " " << y;
   const auto [x, y] = place(-0.5, 0.5);
-  for (const int way : {-1, 1}) {
-    EXPECT_TRUE(near(picture.at(x + 2 * way, y + 2 * way), red, 90)) << "an arm of the cross";
-    EXPECT_FALSE(near(picture.at(x + 3 * way, y), red, 90)) << "between its arms";
+  for (const int route : {-1, 1}) {
+    EXPECT_TRUE(near(picture.at(x + 2 * route, y + 2 * route), red, 90)) << "an arm of the cross";
+    EXPECT_FALSE(near(picture.at(x + 3 * route, y), red, 90)) << "between its arms";
   }
   EXPECT_EQ(picture.at(70, 110), blue) << "away from all marks";
 }

@@ -113,7 +113,7 @@ TEST(Scene, WholeSceneChambersAndSkins) {
   EXPECT_EQ(skin.as<DeaSpec>()->region, "membrane");
   EXPECT_EQ(skin.rest, 1.2);
   EXPECT_EQ(skin.low, 0.7);
-  EXPECT_EQ(skin.distribution, Distribution::least_norm);
+  EXPECT_EQ(skin.distribution, Distribution::minimum_norm);
   EXPECT_FALSE(bag.as<PneumaticSpec>()->region);
   ASSERT_TRUE(bag.as<PneumaticSpec>()->surface);
   expect_near(bag.as<PneumaticSpec>()->surface->vertices.row(1).transpose(), 1000, 0, 0);
@@ -302,7 +302,7 @@ TEST(Scene, Wrenches) {
 
 TEST(Scene, Fibres) {
   SceneFiles files = fake_files();
-  files.way = [](const std::filesystem::path& path) {
+  files.route = [](const std::filesystem::path& path) {
     EXPECT_EQ(path.filename(), "way.csv");
     return Points(Points::Constant(2, 3, 7));
   };
@@ -320,8 +320,8 @@ TEST(Scene, Fibres) {
   EXPECT_EQ(belly.stiffness_N, 40);
   EXPECT_TRUE(belly.tension_only);
   EXPECT_EQ(belly.region, "skin");
-  EXPECT_LT((std::get<std::vector<Vec3>>(belly.way)[1] - Vec3(10, 20, 30)).norm(), 1e-9);
-  const auto& helix = std::get<Helix>(coil.way);
+  EXPECT_LT((std::get<std::vector<Vec3>>(belly.path)[1] - Vec3(10, 20, 30)).norm(), 1e-9);
+  const auto& helix = std::get<Helix>(coil.path);
   EXPECT_FALSE(coil.stiffness_N);
   EXPECT_FALSE(coil.tension_only);
   EXPECT_LT((helix.start - Vec3(0, 0, 10)).norm(), 1e-9);
@@ -330,8 +330,8 @@ TEST(Scene, Fibres) {
   EXPECT_NEAR(helix.pitch, 2, 1e-9);
   EXPECT_EQ(helix.turns, 3.5);
   EXPECT_TRUE(helix.left_handed);
-  EXPECT_EQ(std::get<std::vector<Vec3>>(drawn.way).size(), 2u);
-  EXPECT_EQ(std::get<std::vector<Vec3>>(drawn.way)[0], Vec3(7, 7, 7));
+  EXPECT_EQ(std::get<std::vector<Vec3>>(drawn.path).size(), 2u);
+  EXPECT_EQ(std::get<std::vector<Vec3>>(drawn.path)[0], Vec3(7, 7, 7));
 }
 
 TEST(Scene, EveryLawByItsName) {
@@ -433,16 +433,16 @@ TEST(Scene, LeastSceneHasDefaults) {
 }
 
 TEST(Scene, FilesAreBesideTheScene) {
-  std::string asked;
+  std::string requested;
   SceneFiles files = fake_files();
   files.mesh = [&](const std::filesystem::path& path) {
-    asked = path.string();
+    requested = path.string();
     return Mesh{};
   };
   (void)parse_scene("{softkin: 1, mesh: {file: sub/a.msh}}", "robots/finger.yaml", files);
-  EXPECT_EQ(asked, "robots/sub/a.msh");
+  EXPECT_EQ(requested, "robots/sub/a.msh");
   (void)parse_scene("{softkin: 1, mesh: {file: /data/a.msh}}", "robots/finger.yaml", files);
-  EXPECT_EQ(asked, "/data/a.msh");
+  EXPECT_EQ(requested, "/data/a.msh");
 }
 
 TEST(Scene, SeveralMeshesAreOneWhereTheirTransformsPutThem) {
@@ -499,7 +499,7 @@ TEST(Scene, DistributionsHaveTheirNames) {
       "actuators:\n  - {name: a, kind: dea, region: r, range: [1, 2], distribution: proportional}\n"
       "  - {name: b, kind: dea, region: r, range: [1, 2], distribution: least-norm}\n");
   EXPECT_EQ(spec.actuators.at(0).distribution, Distribution::proportional);
-  EXPECT_EQ(spec.actuators.at(1).distribution, Distribution::least_norm);
+  EXPECT_EQ(spec.actuators.at(1).distribution, Distribution::minimum_norm);
 }
 
 TEST(Scene, NamesMayBeQuotedOrLookLikeNumbers) {

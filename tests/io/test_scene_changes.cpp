@@ -54,7 +54,7 @@ TEST(SceneChanges, NumbersByTheirPath) {
   EXPECT_EQ(both.materials[1].elastic->poisson_ratio, 0.2);
 }
 
-/// An alias shares its anchor's values; a change of one leaves the other as it is.
+/// An alias has its anchor's values; a change of one leaves the other as it is.
 TEST(SceneChanges, AliasesKeepTheirOwn) {
   const RobotSpec spec = with(arm, {"materials.1.youngs_modulus=9"});
   EXPECT_EQ(spec.materials[0].elastic->youngs_modulus, 9);
@@ -96,7 +96,7 @@ double stress_in_tension(const ElasticSpec& spec, double stretch) {
   return mu * stretch + slope(stretch * s * s, s * s);
 }
 
-/// The constants give back what the makers say, and the scene takes them.
+/// The constants reproduce the makers' data, and scenes accept them.
 TEST(Silicones, StressAtTwiceTheLengthIsThatOfTheDataSheet) {
   ASSERT_EQ(silicones().size(), 12u);
   std::size_t compared = 0;
@@ -107,8 +107,8 @@ TEST(Silicones, StressAtTwiceTheLengthIsThatOfTheDataSheet) {
     EXPECT_EQ(spec.materials[0].density, each.density);
     EXPECT_FALSE(each.source.empty());
     if (each.stress_100_psi == 0) continue;
-    const double told = each.stress_100_psi * 6894.757e-6;
-    EXPECT_NEAR(stress_in_tension(*spec.materials[0].elastic, 2), told, 0.03 * told) << each.name;
+    const double reported = each.stress_100_psi * 6894.757e-6;
+    EXPECT_NEAR(stress_in_tension(*spec.materials[0].elastic, 2), reported, 0.03 * reported) << each.name;
     ++compared;
   }
   EXPECT_EQ(compared, 11u);

@@ -228,8 +228,8 @@ TEST(SceneRefusals, Regions) {
       {"regions: [{name: a, sidecar: {file: odd.txt}}]\n",
        "the sidecar has 3 rows, but the mesh has 5 vertices and 2 tetrahedra", 1},
       {"regions: [{name: a, sidecar: {file: tets.txt, column: 3}}]\n",
-       "column 3 is asked for, but the sidecar has 2, numbered from 1", 1},
-      {"regions: [{name: a, sidecar: {file: tets.txt, column: 0}}]\n", "column 0 is asked for", 1},
+       "column 3 is requested, but the sidecar has 2, numbered from 1", 1},
+      {"regions: [{name: a, sidecar: {file: tets.txt, column: 0}}]\n", "column 0 is requested", 1},
       {"regions: [{name: a, sidecar: {file: tets.txt, of: vertices}}]\n", "the sidecar has 2 rows", 1},
       {"regions: [{name: a, sidecar: {file: none.txt}}]\n", "none.txt: no such file", 1},
   });

@@ -239,7 +239,7 @@ TEST(SceneRobots, TheirScenesAndFilesAreInputs) {
   std::ofstream(folder / "fingers/finger.yaml") << "softkin: 1\nmesh: {file: a.tet}\n";
   std::ofstream(folder / "pair.yaml") << "softkin: 1\nrobots: [{name: a, scene: fingers/finger.yaml}]\n";
   std::vector<fs::path> inputs;
-  const RobotSpec spec = read_asked_scene({(folder / "pair.yaml").string(), "", {}}, inputs);
+  const RobotSpec spec = read_requested_scene({(folder / "pair.yaml").string(), "", {}}, inputs);
   EXPECT_EQ(spec.mesh.tetrahedra.size(), 1u);
   EXPECT_EQ(inputs, (std::vector<fs::path>{folder / "fingers/finger.yaml", folder / "fingers/a.tet"}));
   EXPECT_EQ(read_scene(folder / "pair.yaml").mesh.vertices.rows(), 4);

@@ -15,8 +15,8 @@ actuators:
   - {name: right, kind: dea, region: right, control: voltage, range: [1, 5], voltage_share: shares/right.csv}
 )";
 
-/// The scene with this text as the file of its shares.
-RobotSpec with_shares(const std::string& text) {
+/// Returns the scene with this text as the file of its voltage fractions.
+RobotSpec with_fractions(const std::string& text) {
   SceneFiles files = fake_files();
   files.scene = [&](const std::filesystem::path& path) {
     EXPECT_EQ(path.string(), "robots/shares/right.csv");
@@ -25,9 +25,9 @@ RobotSpec with_shares(const std::string& text) {
   return parse_scene(voltage_scene, "robots/skin.yaml", files);
 }
 
-std::string refusal_of_shares(const std::string& text) {
+std::string refusal_of_fractions(const std::string& text) {
   try {
-    (void)with_shares(text);
+    (void)with_fractions(text);
   } catch (const InvalidInput& error) {
     return error.what();
   }
@@ -37,7 +37,7 @@ std::string refusal_of_shares(const std::string& text) {
 }  // namespace
 
 TEST(SceneVoltage, LayersAndTheirShares) {
-  const RobotSpec spec = with_shares("# by hand\nprism,share\n3,1\n\n1,0.25\n");
+  const RobotSpec spec = with_fractions("# by hand\nprism,share\n3,1\n\n1,0.25\n");
   EXPECT_EQ(spec.formulation, Formulation::physical);
   EXPECT_EQ(spec.materials.at(0).permittivity, 4.7);
   EXPECT_EQ(spec.materials.at(0).elastic->jm, 120);
@@ -45,12 +45,12 @@ TEST(SceneVoltage, LayersAndTheirShares) {
   EXPECT_EQ(left.control, Control::load);
   EXPECT_EQ(left.rest, 0);
   EXPECT_EQ(left.as<DeaSpec>()->prestretch, 0.25);
-  EXPECT_FALSE(left.as<DeaSpec>()->shares);
+  EXPECT_FALSE(left.as<DeaSpec>()->fractions);
   EXPECT_EQ(right.as<DeaSpec>()->prestretch, 1);
-  ASSERT_TRUE(right.as<DeaSpec>()->shares);
-  EXPECT_EQ(right.as<DeaSpec>()->shares->prisms, (std::vector<Index>{3, 1}));
-  EXPECT_EQ(right.as<DeaSpec>()->shares->values, (std::vector<double>{1, 0.25}));
-  EXPECT_EQ(right.as<DeaSpec>()->shares->origins.at(1).text(), "robots/shares/right.csv:5");
+  ASSERT_TRUE(right.as<DeaSpec>()->fractions);
+  EXPECT_EQ(right.as<DeaSpec>()->fractions->prisms, (std::vector<Index>{3, 1}));
+  EXPECT_EQ(right.as<DeaSpec>()->fractions->values, (std::vector<double>{1, 0.25}));
+  EXPECT_EQ(right.as<DeaSpec>()->fractions->origins.at(1).text(), "robots/shares/right.csv:5");
 }
 
 TEST(SceneVoltage, FilesOfSharesThatAreRefused) {
@@ -61,7 +61,7 @@ TEST(SceneVoltage, FilesOfSharesThatAreRefused) {
       {"prism,share\n-1,1\n", "right.csv:2: column 'prism' must hold a whole number from 0, not -1"},
       {"prism,share\n", "no row follows the header"}};
   for (const auto& [text, message] : cases) {
-    const std::string found = refusal_of_shares(text);
+    const std::string found = refusal_of_fractions(text);
     EXPECT_NE(found.find(message), std::string::npos) << found;
     EXPECT_EQ(found.find("robots/skin.yaml:7: "), 0u) << found;
   }

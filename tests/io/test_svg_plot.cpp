@@ -15,7 +15,7 @@ namespace {
 
 using Pairs = std::vector<std::pair<double, double>>;
 
-/// The straight map from values to pixels that an axis' ticks tell.
+/// The linear map from values to pixels, as read from the ticks of an axis.
 struct Scale {
   double first_value = 0, first_pixel = 0, last_value = 0, last_pixel = 0;
 
@@ -312,7 +312,7 @@ TEST(SvgPlot, EndsOfAxesThatAreGivenHold) {
   EXPECT_NEAR(across.at(2), frame.attribute("x").as_double(), 0.05);
   EXPECT_NEAR(across.at(4), frame.attribute("x").as_double() + frame.attribute("width").as_double(), 0.05);
   const std::string clip = Drawing::groups(drawing.panels[0], "series")[0].attribute("clip-path").value();
-  EXPECT_EQ(clip, "url(#frame0)");  // what lies outside is cut
+  EXPECT_EQ(clip, "url(#frame0)");  // curves are clipped at the frame
   EXPECT_STREQ(drawing.panels[0].child("clipPath").attribute("id").value(), "frame0");
 }
 

@@ -15,7 +15,7 @@ using namespace text_mesh_tests;
 
 using Reader = Mesh (*)(const std::filesystem::path&);
 
-/// A file, and how its refusal begins ("NAME:LINE:", or "NAME:" where it concerns the whole file) and what it says.
+/// A file, the start of its refusal ("NAME:LINE:", or "NAME:" where it concerns the whole file), and its message.
 struct BadText {
   Files files;
   std::string at, says;
@@ -362,7 +362,7 @@ TEST(TextRefusals, TruncatedAnywhere) {
       }
       if (!sample.announces_counts) continue;
       if (sample.read == read_medit && (mesh.triangles.empty() || mesh.tetrahedra.empty()))
-        continue;  // sections that are left out are not missed
+        continue;  // sections may be left out
       EXPECT_EQ(mesh.vertices.rows(), full.vertices.rows()) << sample.damaged << " cut at " << length;
       EXPECT_EQ(mesh.tetrahedra.size(), full.tetrahedra.size()) << sample.damaged << " cut at " << length;
       EXPECT_EQ(mesh.triangles.size(), full.triangles.size()) << sample.damaged << " cut at " << length;

@@ -34,7 +34,7 @@ inline std::vector<PoseColumn> marker_columns(const Model& model) {
   return columns;
 }
 
-/// Markers, both sensors, the chamber's volume and what the support bears.
+/// Returns columns for the markers, both sensors, the chamber's volume and the support's reaction.
 inline std::vector<PoseColumn> all_columns(const Model& model) {
   std::vector<PoseColumn> columns = marker_columns(model);
   columns.push_back({"strain_length_mm", -1, -1, -1, Reading::length, -1, 0});
@@ -56,14 +56,15 @@ inline Actuation commands_of(const Model& model, double pressure) {
   return commands;
 }
 
-/// A column of slopes against differences, to a share of the largest slope of what is read of the same kind.
+/// Compares a column of derivatives with differences, to a fraction of the largest derivative of readings of the same
+/// kind.
 inline void expect_slopes(const std::vector<PoseColumn>& columns, const Eigen::MatrixXd& slopes, Index c,
-                          const Eigen::VectorXd& difference, double share) {
+                          const Eigen::VectorXd& difference, double fraction) {
   for (Index r = 0; r < std::ssize(difference); ++r) {
     double size = 0;
     for (Index other = 0; other < std::ssize(difference); ++other)
       if (columns[other].kind == columns[r].kind) size = std::max(size, slopes.row(other).cwiseAbs().maxCoeff());
-    EXPECT_NEAR(slopes(r, c), difference[r], share * size) << "reading " << r << ", column " << c;
+    EXPECT_NEAR(slopes(r, c), difference[r], fraction * size) << "reading " << r << ", column " << c;
   }
 }
 

@@ -12,7 +12,7 @@
 
 #include "kinematics/estimate_samples.hpp"
 
-/// Forces, places and shapes that are told from made-up readings.
+/// Forces, places and shapes that are estimated from synthetic readings.
 
 namespace softkin {
 
@@ -50,7 +50,7 @@ TEST(Estimator, SlopesAreThoseOfDifferences) {
     const Eigen::MatrixXd slopes = problem.slopes(problem.nearby(at), at);
     ASSERT_EQ(slopes.cols(), 6);
     const estimate::Patch& patch = *problem.variables().forces()[0].patch;
-    const Eigen::MatrixXd tangents = patch.shares(places[0]).tangents;
+    const Eigen::MatrixXd tangents = patch.fractions(places[0]).tangents;
     for (Index c = 0; c < 6; ++c) {
       const double h = c < 3 ? 0.02 : c == 3 ? 0.5 : 0.1;
       const auto computed = [&](double times) {
@@ -69,7 +69,7 @@ TEST(Estimator, SlopesAreThoseOfDifferences) {
   }
 }
 
-/// What forces on nodes do to readings, from one solution for each reading, is what one for each force says.
+/// The effects of nodal forces on readings, from one solution per reading, agree with those from one per force.
 TEST(Estimator, ForcesAnywhereDoWhatEachDoes) {
   const Model model = compile(touched_finger());
   std::vector<PoseColumn> columns = all_columns(model);
@@ -94,7 +94,7 @@ TEST(Estimator, ForcesAnywhereDoWhatEachDoes) {
   EXPECT_EQ(Problem(model, {{"touch", true}}, columns, exactly()).by_node_forces(at, 0).cols(), 0);
 }
 
-/// A solve that begins where its caller foretells comes to the same equilibrium, and where it is told nonsense, too.
+/// A solve converges to the same equilibrium from any initial guess of its caller, even from a wrong one.
 TEST(Estimator, WhatIsForetoldChangesNoEquilibrium) {
   const Model model = compile(touched_finger());
   const Statics statics(model);
@@ -105,9 +105,9 @@ TEST(Estimator, WhatIsForetoldChangesNoEquilibrium) {
   const Equilibrium plain = Statics(model).solve(there, first.state, options);
   for (const double off : {0.0, 0.01, 3.0}) {
     const State at = statics.solve(commands_of(model, 10), first.state, options).state;
-    State foretold = plain.state;
-    foretold.positions.col(1).array() += off * foretold.positions.col(0).array() / 60;
-    EXPECT_TRUE(statics.foretell(at, foretold, options));
+    State initial_guess = plain.state;
+    initial_guess.positions.col(1).array() += off * initial_guess.positions.col(0).array() / 60;
+    EXPECT_TRUE(statics.set_initial_guess(at, initial_guess, options));
     const Equilibrium found = statics.solve(there, at, options);
     ASSERT_EQ(found.report.status, Status::converged);
     EXPECT_LT((found.state.positions - plain.state.positions).cwiseAbs().maxCoeff(), 1e-6);
@@ -116,7 +116,7 @@ TEST(Estimator, WhatIsForetoldChangesNoEquilibrium) {
 
 namespace {
 
-/// What a force does that is laid on a face's corners by their shares, as no estimator does.
+/// The effect of a force that is distributed to the corners of a face by its shape functions, as no estimator does it.
 struct Touch {
   Actuation commands;
   Vec3 force, place;
@@ -134,7 +134,7 @@ Touch touched(const Vec3& force, const Vec3& place, double pressure) {
   EXPECT_EQ(touch.found.report.status, Status::converged);
   touch.readings.resize(12);
   for (Index m = 0; m < 4; ++m) touch.readings.segment<3>(3 * m) = model.markers[m].at(touch.found.state.positions);
-  // the model that tells has commands more
+  // the estimator's model has more commands
   touch.commands.conservativeResize(4);
   touch.commands.tail(3).setZero();
   return touch;
@@ -147,8 +147,8 @@ Eigen::VectorXd noisy(const Eigen::VectorXd& readings, double deviation, std::mt
   return noisy;
 }
 
-Vec3 force_of(const Estimate& told) {
-  return {told.numbers[0].value, told.numbers[1].value, told.numbers[2].value};
+Vec3 force_of(const Estimate& reported) {
+  return {reported.numbers[0].value, reported.numbers[1].value, reported.numbers[2].value};
 }
 
 Estimator of_touch(const Model& model, double deviation_mm) {
@@ -157,20 +157,20 @@ Estimator of_touch(const Model& model, double deviation_mm) {
 
 }  // namespace
 
-/// Markers without noise tell force and place: up to what the force's spot does to the markers beside it.
+/// Markers without noise determine force and place, up to the effect of the force's patch on the markers next to it.
 TEST(Estimator, TellsForceAndPlace) {
   const Model model = compile(touched_finger());
   Estimator estimator = of_touch(model, 0.01);
   for (const Touch& touch : {touched({0.05, -0.1, -0.4}, {41, 7, 16}, 10), touched({-0.1, 0.1, -0.3}, {53, 4, 16}, 0),
                              touched({0, 0.25, 0.2}, {27, 9, 16}, 20)}) {
     estimator.forget();
-    const Estimate& told = estimator.update(touch.commands, touch.readings);
-    ASSERT_EQ(told.status, Status::converged) << told.remark;
-    EXPECT_TRUE(told.left_out.empty());
-    EXPECT_LT((force_of(told) - touch.force).norm(), 0.03 * touch.force.norm());
-    ASSERT_EQ(told.places.size(), 1u);
-    EXPECT_LT((told.places[0].at_rest - touch.place).norm(), 0.02 * 60);
-    const Points shape = told.state.positions;
+    const Estimate& reported = estimator.update(touch.commands, touch.readings);
+    ASSERT_EQ(reported.status, Status::converged) << reported.remark;
+    EXPECT_TRUE(reported.left_out.empty());
+    EXPECT_LT((force_of(reported) - touch.force).norm(), 0.03 * touch.force.norm());
+    ASSERT_EQ(reported.places.size(), 1u);
+    EXPECT_LT((reported.places[0].at_rest - touch.place).norm(), 0.02 * 60);
+    const Points shape = reported.state.positions;
     EXPECT_LT((shape - touch.found.state.positions).rowwise().norm().maxCoeff(), 0.3);
   }
 }
@@ -185,24 +185,25 @@ TEST(Estimator, DeviationsAreHonest) {
   double chi_square = 0, freedoms = 0;
   constexpr int draws = 40;
   for (int d = 0; d < draws; ++d) {
-    const Estimate& told = estimator.update(touch.commands, noisy(touch.readings, 0.1, random));
-    ASSERT_EQ(told.status, Status::converged);
-    const Vec3 off = force_of(told) - touch.force;
-    const Mat3 covariance = told.covariance.topLeftCorner<3, 3>();
+    const Estimate& reported = estimator.update(touch.commands, noisy(touch.readings, 0.1, random));
+    ASSERT_EQ(reported.status, Status::converged);
+    const Vec3 off = force_of(reported) - touch.force;
+    const Mat3 covariance = reported.covariance.topLeftCorner<3, 3>();
     held += off.dot(covariance.inverse() * off) < 6.2514;  // 90 % of three freedoms
-    const Eigen::Vector2d slid = (told.places[0].at_rest - touch.place).head<2>();
-    const Eigen::Matrix2d spread = told.places[0].covariance.topLeftCorner<2, 2>();
+    const Eigen::Vector2d slid = (reported.places[0].at_rest - touch.place).head<2>();
+    const Eigen::Matrix2d spread = reported.places[0].covariance.topLeftCorner<2, 2>();
     places_held += slid.dot(spread.inverse() * slid) < 4.6052;  // of two
-    chi_square += told.chi_square;
-    freedoms += told.freedoms;
+    chi_square += reported.chi_square;
+    freedoms += reported.freedoms;
   }
   EXPECT_GE(held, 30);
   EXPECT_GE(places_held, 30);
   EXPECT_NEAR(chi_square / freedoms, 1, 0.35);
 }
 
-/// A weak force is told badly, its place with it, and in a curved way: more where it is stronger, less where it has the
-/// longer arm. The deviations say so; those to first order alone would hold the truth two times of three.
+/// The readings determine a weak force and its place poorly, and nonlinearly: better where the force is larger, worse
+/// where it has the longer arm. The deviations account for this; first-order deviations would cover the truth in two of
+/// three cases.
 TEST(Estimator, DeviationsOfWeakForcesAreHonest) {
   const Model model = compile(touched_finger());
   Estimator estimator = of_touch(model, 0.1);
@@ -217,21 +218,21 @@ TEST(Estimator, DeviationsOfWeakForcesAreHonest) {
     const double along = 10 + 45 * uniform(random), across = 2 + 8 * uniform(random), newtons = 0.1 * uniform(random);
     const Touch touch = touched(newtons * Vec3(x, y, z).normalized(), {along, across, 16}, air);
     estimator.forget();
-    const Estimate& told = estimator.update(touch.commands, noisy(touch.readings, 0.1, random));
-    ASSERT_EQ(told.status, Status::converged) << told.remark;
-    EXPECT_TRUE(told.left_out.empty());
-    const Vec3 off = force_of(told) - touch.force;
-    const Mat3 covariance = told.covariance.topLeftCorner<3, 3>();
+    const Estimate& reported = estimator.update(touch.commands, noisy(touch.readings, 0.1, random));
+    ASSERT_EQ(reported.status, Status::converged) << reported.remark;
+    EXPECT_TRUE(reported.left_out.empty());
+    const Vec3 off = force_of(reported) - touch.force;
+    const Mat3 covariance = reported.covariance.topLeftCorner<3, 3>();
     held += off.dot(covariance.inverse() * off) < 6.2514;
-    const Eigen::Vector2d slid = (told.places[0].at_rest - touch.place).head<2>();
-    const Eigen::Matrix2d spread = told.places[0].covariance.topLeftCorner<2, 2>();
+    const Eigen::Vector2d slid = (reported.places[0].at_rest - touch.place).head<2>();
+    const Eigen::Matrix2d spread = reported.places[0].covariance.topLeftCorner<2, 2>();
     places_held += slid.dot(spread.inverse() * slid) < 4.6052;
   }
   EXPECT_GE(held, 32);
   EXPECT_GE(places_held, 32);
 }
 
-/// In time an update takes about one equilibrium, and ends within its accuracy of what many would tell.
+/// With a time limit, an update takes about one equilibrium and ends within its accuracy of the converged estimate.
 TEST(Estimator, UpdatesInTimeTakeAboutOneEquilibrium) {
   const Model model = compile(touched_finger());
   EstimatorOptions options, exact;
@@ -246,13 +247,13 @@ TEST(Estimator, UpdatesInTimeTakeAboutOneEquilibrium) {
   constexpr int updates = 40;
   for (int u = 0; u <= updates; ++u) {
     const Eigen::VectorXd read = noisy(touch.readings, 0.1, random);
-    const Estimate& told = estimator.update(touch.commands, read, 0.01);
+    const Estimate& reported = estimator.update(touch.commands, read, 0.01);
     const Estimate& best = other.update(touch.commands, read, 0.01);
-    ASSERT_EQ(told.status, Status::converged);
+    ASSERT_EQ(reported.status, Status::converged);
     ASSERT_EQ(best.status, Status::converged);
     if (u == 0) continue;
-    equilibria += told.equilibria;
-    const Vec3 off = force_of(told) - force_of(best);
+    equilibria += reported.equilibria;
+    const Vec3 off = force_of(reported) - force_of(best);
     close += off.dot(best.covariance.topLeftCorner<3, 3>().inverse() * off) < 0.04;  // a fifth of a deviation
   }
   EXPECT_LE(equilibria, 3 * updates / 2);
@@ -283,7 +284,7 @@ TEST(Estimator, NamesAndLeavesOutWrongReadings) {
   }
 }
 
-/// Two markers tell five unknowns badly: the least cost lies in a bent valley, where steps must become short gradually.
+/// Two markers determine five unknowns poorly: the minimum lies in a curved valley, where steps must shorten gradually.
 TEST(Estimator, FitsConvergeWhereReadingsTellLittle) {
   std::mt19937 random(11);
   std::uniform_real_distribution<double> any{-1, 1};
@@ -301,7 +302,7 @@ TEST(Estimator, FitsConvergeWhereReadingsTellLittle) {
   }
 }
 
-/// A camera that is tilted is no wrong reading: nothing is left out, and that the readings do not fit is said.
+/// A tilted camera is no wrong reading: nothing is left out, and the estimate reports that the readings do not fit.
 TEST(Estimator, SaysWhereTheModelIsWrong) {
   const Model model = compile(touched_finger());
   Estimator estimator = of_touch(model, 0.02);
@@ -309,15 +310,15 @@ TEST(Estimator, SaysWhereTheModelIsWrong) {
   const Mat3 tilt = Eigen::AngleAxisd(0.15, Vec3(1, 1, 0).normalized()).toRotationMatrix();
   Eigen::VectorXd values = touch.readings;
   for (Index m = 0; m < 4; ++m) values.segment<3>(3 * m) = tilt * touch.readings.segment<3>(3 * m);
-  const Estimate& told = estimator.update(touch.commands, values);
-  EXPECT_GT(told.misfit(), 4.3);
-  EXPECT_TRUE(told.left_out.empty());
-  const std::vector<std::string> words = estimate_words(told, estimator.groups());
+  const Estimate& reported = estimator.update(touch.commands, values);
+  EXPECT_GT(reported.misfit(), 4.3);
+  EXPECT_TRUE(reported.left_out.empty());
+  const std::vector<std::string> words = estimate_words(reported, estimator.groups());
   ASSERT_FALSE(words.empty());
   EXPECT_NE(words.back().find("the readings do not fit the model"), std::string::npos) << words.back();
 }
 
-/// A chamber's volume at a pressure is one number: it tells of none of five, and that is said of each.
+/// A chamber's volume at a pressure is one number: it determines none of five unknowns, which is reported for each.
 TEST(Estimator, SaysWhatAVolumeDoesNotTell) {
   const Model model = compile(touched_finger());
   Estimator estimator(model, {{"touch", true}}, {{"air_volume_mm3", -1, -1, 0, Reading::volume}},
@@ -326,17 +327,16 @@ TEST(Estimator, SaysWhatAVolumeDoesNotTell) {
   const Equilibrium found = statics.solve(commands_of(model, 10), statics.rest());
   const double volume =
       achieved_ratio(model, model.actuators[0], found.state.positions) * model.actuators[0].rest_measure;
-  const Estimate& told = estimator.update(commands_of(model, 10), Eigen::VectorXd::Constant(1, volume));
-  ASSERT_EQ(told.status, Status::converged);
-  EXPECT_LT(told.numbers[2].deviation, told.numbers[2].known_deviation);
-  const std::vector<std::string> words = estimate_words(told, estimator.groups());
+  const Estimate& reported = estimator.update(commands_of(model, 10), Eigen::VectorXd::Constant(1, volume));
+  ASSERT_EQ(reported.status, Status::converged);
+  EXPECT_LT(reported.numbers[2].deviation, reported.numbers[2].known_deviation);
+  const std::vector<std::string> words = estimate_words(reported, estimator.groups());
   for (const std::string start : {"touch_fx is told to", "touch_fy is told to", "the place of touch is told to"})
     EXPECT_TRUE(std::any_of(words.begin(), words.end(), [&](const std::string& w) { return w.starts_with(start); }))
         << start;
 }
 
-/// A pressure that was not measured, with a force at a place that is known, in sealed and in other words: told from
-/// markers and the strain along the sole.
+/// An unmeasured pressure and a force at a known place are estimated from markers and the strain along the sole.
 TEST(Estimator, TellsCommandsThatWereNotMeasured) {
   RobotSpec spec = touched_finger();
   spec.loads.forces[0].at.point = Vec3(50, 6, 16);
@@ -354,15 +354,16 @@ TEST(Estimator, TellsCommandsThatWereNotMeasured) {
   EstimatorOptions options;
   options.accuracy = 1e-3;
   Estimator estimator(model, {{model.actuators[0].name}, {"touch"}}, columns, deviations, options);
-  EXPECT_EQ(estimator.told_actuators(), (std::vector<Index>{0, 1, 2, 3}));
-  const Estimate& told = estimator.update(model.rest_actuation(), values);
-  ASSERT_EQ(told.status, Status::converged);
-  for (Index a = 0; a < 4; ++a) EXPECT_NEAR(told.numbers[a].value, commands[a], 0.2 * told.numbers[a].deviation);
-  EXPECT_TRUE(told.places.empty());
-  EXPECT_TRUE(told.actuation.isApprox(commands, 1e-2));
+  EXPECT_EQ(estimator.reported_actuators(), (std::vector<Index>{0, 1, 2, 3}));
+  const Estimate& reported = estimator.update(model.rest_actuation(), values);
+  ASSERT_EQ(reported.status, Status::converged);
+  for (Index a = 0; a < 4; ++a)
+    EXPECT_NEAR(reported.numbers[a].value, commands[a], 0.2 * reported.numbers[a].deviation);
+  EXPECT_TRUE(reported.places.empty());
+  EXPECT_TRUE(reported.actuation.isApprox(commands, 1e-2));
 }
 
-/// With a time in which it fades, an estimate goes on from the last one, and dropouts widen it.
+/// With a fading time, an estimate continues from the last one, and dropouts widen it.
 TEST(Estimator, GoesOnFromTheLastEstimateAsFarAsItHolds) {
   const Model model = compile(touched_finger());
   EstimatorOptions options;
@@ -385,8 +386,8 @@ TEST(Estimator, GoesOnFromTheLastEstimateAsFarAsItHolds) {
   EXPECT_NEAR(much_later.numbers[2].value, 0, 1e-2);
 }
 
-/// What a plan foretells of a marker is what an estimator with it tells; and of all vertices it is the best that is
-/// named, as trying each shows.
+/// The deviations that a plan predicts for a marker are those of an estimator with it, and the vertex that a plan
+/// selects is the best of all, as an exhaustive search shows.
 TEST(Estimator, PlansWhatToReadFurther) {
   const Model model = compile(touched_finger());
   const Touch touch = touched({0.1, -0.1, -0.4}, {42, 6, 16}, 10);
@@ -394,14 +395,14 @@ TEST(Estimator, PlansWhatToReadFurther) {
   columns.resize(9);
   EstimatorOptions exact;
   exact.accuracy = 1e-5;
-  const auto told_by = [&](const std::vector<PoseColumn>& read) {
+  const auto reported_by = [&](const std::vector<PoseColumn>& read) {
     const Index count = read.size();
     Estimator estimator(model, {{"touch", true}}, read, Eigen::VectorXd::Constant(count, 0.1), exact);
-    // what the model itself has at the estimate by all markers, so that both are told the same
+    // the model's own outputs at the estimate by all markers, so that both estimates are the same
     Eigen::VectorXd values = touch.readings.head(count);
     return Estimate(estimator.update(touch.commands, values));
   };
-  const Estimate few = told_by(columns);
+  const Estimate few = reported_by(columns);
   ASSERT_EQ(few.status, Status::converged);
   PlanOptions options;
   options.read = columns;
@@ -411,7 +412,7 @@ TEST(Estimator, PlansWhatToReadFurther) {
   ASSERT_EQ(marker.size(), 1u);  // "d" is all that is left
   EXPECT_EQ(marker[0].name, "marker d");
   EXPECT_NEAR((marker[0].at_rest - Vec3(59, 11, 2)).norm(), 0, 1e-9);
-  const Eigen::MatrixXd more = told_by(marker_columns(model)).near_covariance;
+  const Eigen::MatrixXd more = reported_by(marker_columns(model)).near_covariance;
   for (Index i = 0; i < 3; ++i) EXPECT_NEAR(marker[0].numbers[i], std::sqrt(more(i, i)), 0.1 * std::sqrt(more(i, i)));
   EXPECT_NEAR(marker[0].places[0], std::sqrt(more.diagonal().tail<2>().sum()), 0.1 * marker[0].places[0]);
   EXPECT_NEAR(marker[0].bits, 0.5 * std::log2(few.near_covariance.determinant() / more.determinant()), 0.15);
@@ -449,10 +450,10 @@ TEST(Estimator, Refusals) {
       EXPECT_NE(std::string(error.what()).find(why), std::string::npos) << error.what();
     }
   };
-  refused({}, 1, "there is no unknown to tell");
+  refused({}, 1, "there is no unknown to estimate");
   refused({{"push"}}, 1, "the scene has no command of that name, and no force with a 'range'");
   refused({{model.actuators[0].name, true}}, 1, "a command has no place");
-  refused({{"touch"}, {"touch_fx"}}, 1, "command 'touch_fx' is to be told twice");
+  refused({{"touch"}, {"touch_fx"}}, 1, "command 'touch_fx' is to be estimated twice");
   refused({{"touch", true, 5, 1}}, 1, "its mean, 5 N, is outside its range, -1 to 1 N");
   refused({{"touch", true, 0, -1}}, 1, "the deviation must be above 0");
   refused({{"touch"}}, 0, "needs a deviation above 0");

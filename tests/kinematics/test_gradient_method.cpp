@@ -28,7 +28,7 @@ Model two_chambers() {
 TEST(GradientMethod, ReachesWhatNewtonReaches) {
   const Model model = two_chambers();
   const Statics statics(model);
-  const Equilibrium made = settled(statics, values({1.3, 1.2}));
+  const Equilibrium made = solve_converged(statics, values({1.3, 1.2}));
   const std::vector<Goal> goals{{PositionGoal{0, marker_at(model, made)}}};
   const InverseResult result = solve_inverse(statics, goals, statics.rest(), by_gradient(0.2));
   ASSERT_EQ(result.status, InverseStatus::reached) << result.remark;

@@ -29,7 +29,7 @@ RobotSpec warm_bar() {
 TEST(GrowthKinematics, InverseKinematicsFindsTheTemperature) {
   const Model model = compile(warm_bar());
   const Statics statics(model);
-  const Vec3 target = marker_at(model, settled(statics, values({71})));
+  const Vec3 target = marker_at(model, solve_converged(statics, values({71})));
   EXPECT_GT((target - Vec3(40, 2, 2)).norm(), 2);
   const InverseResult result = solve_inverse(statics, {{PositionGoal{0, target}}}, statics.rest());
   EXPECT_EQ(result.status, InverseStatus::reached) << result.remark;
@@ -49,7 +49,7 @@ TEST(GrowthKinematics, AMapTakesDegrees) {
   const double command = 47.3;
   Eigen::VectorXd found(3);
   ASSERT_TRUE(KinematicMap(result.data).evaluate(&command, found.data()));
-  EXPECT_LT((found - marker_at(model, settled(statics, values({command})))).norm(), 2e-3);
+  EXPECT_LT((found - marker_at(model, solve_converged(statics, values({command})))).norm(), 2e-3);
 }
 
 }  // namespace softkin

@@ -41,7 +41,7 @@ void expect_inside(const Model& model, const InverseResult& result) {
 
 /// The shape of the answer is the one that forward kinematics finds from rest.
 void expect_equilibrium(const Statics& statics, const InverseResult& result) {
-  const Equilibrium found = settled(statics, result.equilibrium.actuation);
+  const Equilibrium found = solve_converged(statics, result.equilibrium.actuation);
   EXPECT_LT(distance(found.state.positions, result.equilibrium.state.positions), 1e-4);
 }
 
@@ -76,7 +76,7 @@ void expect_reached(RobotSpec spec, int targets, unsigned seed) {
   const Statics statics(model);
   std::mt19937 engine(seed);
   for (int i = 0; i < targets; ++i) {
-    const Equilibrium made = settled(statics, random_actuation(model, engine));
+    const Equilibrium made = solve_converged(statics, random_actuation(model, engine));
     const InverseResult result = solve_inverse(statics, at_point(marker_at(model, made)), statics.rest());
     ASSERT_EQ(result.status, InverseStatus::reached) << result.remark << ", error " << result.errors_mm.transpose();
     EXPECT_LE((marker_at(model, result.equilibrium) - marker_at(model, made)).norm(), 1e-3);
@@ -111,7 +111,7 @@ TEST(Inverse, ReachesPointsOfTargetShapes) {
 }
 
 /// One equilibrium per cell corner; the least error.
-double least_on_grid(const Model& model, const Statics& statics, const std::vector<Goal>& goals, int cells) {
+double min_on_grid(const Model& model, const Statics& statics, const std::vector<Goal>& goals, int cells) {
   double least = HUGE_VAL;
   State state = statics.rest();
   for (int i = 0; i <= cells; ++i)
@@ -145,7 +145,7 @@ void expect_nearest(const RobotSpec& spec, const std::vector<Goal>& goals, int c
   const InverseResult result = solve_inverse(statics, goals, statics.rest());
   EXPECT_EQ(result.status, InverseStatus::unreachable) << result.remark;
   EXPECT_NE(result.remark, "");
-  const double least = least_on_grid(model, statics, goals, cells), found = weighted_error(goals, result);
+  const double least = min_on_grid(model, statics, goals, cells), found = weighted_error(goals, result);
   EXPECT_GT(least, 0.1);
   EXPECT_LE(found, least + 1e-6);
   EXPECT_GE(found, least - resolution_mm);
@@ -187,8 +187,8 @@ TEST(Inverse, TellsWhichRangesBind) {
 TEST(Inverse, OfManyAnswersTheNearest) {
   const Model model = compile(chambers(2));
   const Statics statics(model);
-  const Equilibrium first = settled(statics, values({1.3, 1.1}));
-  const double target = marker_at(model, settled(statics, values({1.3, 1.4}))).z();
+  const Equilibrium first = solve_converged(statics, values({1.3, 1.1}));
+  const double target = marker_at(model, solve_converged(statics, values({1.3, 1.4}))).z();
   const std::vector<Goal> goals{{PositionGoal{0, {0, 0, target}, {false, false, true}}}};
   for (const Actuation& preferred : {Actuation(), values({1.5, 1.5})}) {
     InverseOptions options;
@@ -217,8 +217,8 @@ TEST(Inverse, OfManyAnswersTheNearest) {
 TEST(Inverse, PullsASlackCableAndLeavesTheOtherSlack) {
   const Model model = compile(two_cables());
   const Statics statics(model);
-  const Equilibrium made = settled(statics, values({0.85, 1.1}));
-  const Equilibrium slack = settled(statics, values({1.1, 1.08}));
+  const Equilibrium made = solve_converged(statics, values({0.85, 1.1}));
+  const Equilibrium slack = solve_converged(statics, values({1.1, 1.08}));
   const InverseResult result = solve_inverse(statics, at_point(marker_at(model, made)), slack.state);
   ASSERT_EQ(result.status, InverseStatus::reached) << result.remark;
   EXPECT_NEAR(result.equilibrium.actuation[0], 0.85, 1e-4);
@@ -233,7 +233,7 @@ TEST(Inverse, PlanesAndDirections) {
   spec.markers.push_back({"side", {Vec3(48, 0, 10), {}}});
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium made = settled(statics, values({1.1, 1.3, 1.45}));
+  const Equilibrium made = solve_converged(statics, values({1.1, 1.3, 1.45}));
   const Vec3 tip = marker_at(model, made), side = marker_at(model, made, 1), normal(1, 2, -0.5);
   const std::vector<Goal> goals{{PlaneGoal{0, tip + normal.cross(Vec3(0, 0, 9)), normal}, 2},
                                 {DirectionGoal{0, 1, 3 * (side - tip), 20}}};
@@ -249,8 +249,8 @@ TEST(Inverse, PlanesAndDirections) {
 TEST(Inverse, FixedActuatorsStay) {
   const Model model = compile(chambers(3));
   const Statics statics(model);
-  const Equilibrium made = settled(statics, values({1.2, 1.3, 1.4}));
-  const Equilibrium start = settled(statics, values({1.0, 1.1, 1.4}));
+  const Equilibrium made = solve_converged(statics, values({1.2, 1.3, 1.4}));
+  const Equilibrium start = solve_converged(statics, values({1.0, 1.1, 1.4}));
   InverseOptions options;
   options.free = {true, true, false};
   const InverseResult result = solve_inverse(statics, at_point(marker_at(model, made)), start.state, options);
@@ -269,11 +269,11 @@ TEST(Inverse, AWarmTargetCostsOneEquilibriumOrTwo) {
   const Statics statics(model);
   const auto on_path = [](int i) -> Actuation { return values({1.2, 1.3, 1.4}) + 0.005 * i * values({1, -1, 0.5}); };
   InverseResult last;
-  last.equilibrium = settled(statics, on_path(0));
+  last.equilibrium = solve_converged(statics, on_path(0));
   InverseOptions options;
   int equilibria = 0;
   for (int i = 1; i <= 10; ++i) {
-    const Vec3 target = marker_at(model, settled(statics, on_path(i)));
+    const Vec3 target = marker_at(model, solve_converged(statics, on_path(i)));
     InverseResult next = solve_inverse(statics, at_point(target), last.equilibrium.state, options);
     ASSERT_EQ(next.status, InverseStatus::reached);
     const InverseResult computed = [&] {
@@ -295,7 +295,7 @@ TEST(Inverse, AWarmTargetCostsOneEquilibriumOrTwo) {
 TEST(Inverse, SensitivityIsThatOfTheAnswer) {
   const Model model = compile(loaded_robot());
   const Statics statics(model);
-  const Equilibrium made = settled(statics, values({1.3, 20, 0.95}));
+  const Equilibrium made = solve_converged(statics, values({1.3, 20, 0.95}));
   const InverseResult result = solve_inverse(statics, at_point(marker_at(model, made)), statics.rest());
   ASSERT_EQ(result.status, InverseStatus::reached);
   const Eigen::MatrixXd found = jacobian(model, result.equilibrium.state.positions, result.sensitivity, {0});
@@ -331,7 +331,7 @@ TEST(Inverse, StopsWhereEquilibriaEnd) {
   const Model by_volume = compile(bending_finger());
   const Statics volumes(by_volume);
   const double ratio = achieved_ratio(model, model.actuators[0], result.equilibrium.state.positions);
-  const Equilibrium again = settled(volumes, values({ratio}));
+  const Equilibrium again = solve_converged(volumes, values({ratio}));
   EXPECT_LT(distance(again.state.positions, result.equilibrium.state.positions), 1e-2);
   EXPECT_NEAR(again.state.multipliers[0], result.equilibrium.actuation[0], 1e-3 * result.equilibrium.actuation[0]);
 }
@@ -356,7 +356,7 @@ TEST(Inverse, EndsWithItsAllowance) {
   const Statics statics(model);
   InverseOptions options;
   options.max_equilibria = 2;
-  const Vec3 target = marker_at(model, settled(statics, values({1.5, 1.2})));
+  const Vec3 target = marker_at(model, solve_converged(statics, values({1.5, 1.2})));
   const InverseResult result = solve_inverse(statics, at_point(target), statics.rest(), options);
   EXPECT_EQ(result.status, InverseStatus::not_converged);
   EXPECT_EQ(result.equilibria, 2);

@@ -7,7 +7,7 @@
 
 #include "statics/physical_samples.hpp"
 
-/// Commands for what a robot exerts on what holds it and on what it touches.
+/// Inverse kinematics for the forces that a robot exerts on its supports and on obstacles.
 
 namespace softkin {
 namespace {
@@ -54,7 +54,7 @@ struct Pressing {
     const std::vector<Goal> goals{{goal}};
     return inverse::exertions_of(statics, goals, found.state)[0].force;
   }
-  [[nodiscard]] ForceGoal asked(const std::string& name, const Vec3& force, std::array<bool, 3> axes) const {
+  [[nodiscard]] ForceGoal requested(const std::string& name, const Vec3& force, std::array<bool, 3> axes) const {
     ForceGoal goal = force_on(model, name);
     goal.force = force;
     goal.axes = axes;
@@ -76,7 +76,7 @@ std::vector<inverse::ExertionSlopes> slopes_at(const Pressing& robot, const std:
 
 /// Terms of forces by the commands, against those of equilibria beside.
 void expect_slopes(const Pressing& robot, const std::vector<Goal>& goals, const Actuation& at, double accuracy) {
-  const Equilibrium found = settled(robot.statics, at);
+  const Equilibrium found = solve_converged(robot.statics, at);
   const auto exertions = inverse::exertions_of(robot.statics, goals, found.state);
   Sensitivity sensitivity = robot.statics.sensitivity(found.state, tight(), 1e-10);
   const auto changes = slopes_at(robot, goals, found, sensitivity);
@@ -99,17 +99,17 @@ void expect_slopes(const Pressing& robot, const std::vector<Goal>& goals, const 
 
 TEST(InverseForces, SlopesOfASupportsForceEqualDifferences) {
   const Pressing robot(beam_on_a_cell());
-  const std::vector<Goal> goals{{robot.asked("cell", {0, 0.2, 0.5}, {false, true, true})},
-                                {robot.asked("x_low", {1, 1, 1}, {true, true, true}), 3},
+  const std::vector<Goal> goals{{robot.requested("cell", {0, 0.2, 0.5}, {false, true, true})},
+                                {robot.requested("x_low", {1, 1, 1}, {true, true, true}), 3},
                                 {PositionGoal{1, {20, 10, 10}}}};
   expect_slopes(robot, goals, values({1.2, 1.1, 1.3}), 1e-6);
 }
 
 TEST(InverseForces, SlopesOfAnObstaclesForceEqualDifferences) {
   const Pressing robot(beam_over_a_floor());
-  const std::vector<Goal> goals{{robot.asked("floor", {0.1, 0.1, -2}, {true, true, true})}};
-  const Equilibrium found = settled(robot.statics, values({1.05, 1.1, 3}));
-  EXPECT_LT(robot.force(robot.asked("floor", {0, 0, -1}, only_z), found).z(), -0.3);
+  const std::vector<Goal> goals{{robot.requested("floor", {0.1, 0.1, -2}, {true, true, true})}};
+  const Equilibrium found = solve_converged(robot.statics, values({1.05, 1.1, 3}));
+  EXPECT_LT(robot.force(robot.requested("floor", {0, 0, -1}, only_z), found).z(), -0.3);
   expect_slopes(robot, goals, values({1.05, 1.1, 3}), 1e-6);
 }
 
@@ -118,18 +118,18 @@ TEST(InverseForces, SlopesOfABodysForceEqualDifferences) {
   spec.contact->obstacles.clear();
   spec.contact->bodies = {{"cube", Box{{36, 5, -10.3}, {47, 14, -0.5}}, std::nullopt, {}, 1000}};
   const Pressing robot(spec);
-  const std::vector<Goal> goals{{robot.asked("cube", {0.1, 0.1, -1}, {true, true, true})}};
+  const std::vector<Goal> goals{{robot.requested("cube", {0.1, 0.1, -1}, {true, true, true})}};
   Actuation at = robot.model.rest_actuation();  // with the body's
   at.head(3) = values({1.05, 1.1, 3});
-  EXPECT_LT(robot.force(robot.asked("cube", {0, 0, -1}, only_z), settled(robot.statics, at)).z(), -0.2);
+  EXPECT_LT(robot.force(robot.requested("cube", {0, 0, -1}, only_z), solve_converged(robot.statics, at)).z(), -0.2);
   expect_slopes(robot, goals, at, 1e-6);
 }
 
 /// Of what slides the derivative is that for sliding on.
 TEST(InverseForces, SlopesOfAForceThatRubsAreThoseForSlidingOn) {
   const Pressing robot(beam_over_a_floor(0.2));
-  const std::vector<Goal> goals{{robot.asked("floor", {0.1, 0.1, -2}, {true, true, true})}};
-  Equilibrium found = settled(robot.statics, values({1, 1, 2.5}), tight(1e-10));
+  const std::vector<Goal> goals{{robot.requested("floor", {0.1, 0.1, -2}, {true, true, true})}};
+  Equilibrium found = solve_converged(robot.statics, values({1, 1, 2.5}), tight(1e-10));
   for (const double high : {2.8, 2.9, 3.0})
     found = robot.statics.solve(values({1, 1, high}), found.state, tight(1e-10));
   ASSERT_EQ(found.report.status, Status::converged);
@@ -145,11 +145,11 @@ TEST(InverseForces, SlopesOfAForceThatRubsAreThoseForSlidingOn) {
       << changes[0].force.col(2).transpose() << " and " << difference.transpose();
 }
 
-/// Nothing touches: the way to the floor has a slope.
+/// There is no contact: the gap to the floor has a gradient.
 TEST(InverseForces, SlopesOfAGapEqualDifferences) {
   const Pressing robot(beam_over_a_floor());
-  const std::vector<Goal> goals{{robot.asked("floor", {0, 0, -2}, only_z)}};
-  const Equilibrium found = settled(robot.statics, values({1.05, 1.02, 1.1}));
+  const std::vector<Goal> goals{{robot.requested("floor", {0, 0, -2}, only_z)}};
+  const Equilibrium found = solve_converged(robot.statics, values({1.05, 1.02, 1.1}));
   const auto exertions = inverse::exertions_of(robot.statics, goals, found.state);
   ASSERT_TRUE(exertions[0].gap.has_value());
   EXPECT_GT(exertions[0].gap->width_mm, 0.1);
@@ -159,17 +159,17 @@ TEST(InverseForces, SlopesOfAGapEqualDifferences) {
 
 TEST(InverseForces, ALoadCellIsPressedAsAsked) {
   const Pressing robot(beam_on_a_cell());
-  const ForceGoal any = robot.asked("cell", {0, 0, 1}, only_z);
+  const ForceGoal any = robot.requested("cell", {0, 0, 1}, only_z);
   std::mt19937 engine(7);
   std::uniform_real_distribution<double> ratio(1, 2);
   for (int i = 0; i < 6; ++i) {
-    const Equilibrium made = settled(robot.statics, values({ratio(engine), ratio(engine), ratio(engine)}));
+    const Equilibrium made = solve_converged(robot.statics, values({ratio(engine), ratio(engine), ratio(engine)}));
     const Vec3 force = robot.force(any, made);
-    const std::vector<Goal> goals{{robot.asked("cell", force, {false, true, true})},
+    const std::vector<Goal> goals{{robot.requested("cell", force, {false, true, true})},
                                   {PositionGoal{1, marker_at(robot.model, made, 1), only_x}}};
     const InverseResult result = solve_inverse(robot.statics, goals, robot.statics.rest());
     ASSERT_EQ(result.status, InverseStatus::reached) << result.remark << ", errors " << result.errors_mm.transpose();
-    const Equilibrium again = settled(robot.statics, result.equilibrium.actuation);
+    const Equilibrium again = solve_converged(robot.statics, result.equilibrium.actuation);
     EXPECT_LT((robot.force(any, again) - force).tail<2>().norm(), 2e-3 * force.norm());
     const ElementDeformation deformation = robot.statics.measured(again.state);
     EXPECT_EQ(robot.force(any, again), -reactions(robot.model, again.state.positions, deformation)[1].force);
@@ -177,24 +177,24 @@ TEST(InverseForces, ALoadCellIsPressedAsAsked) {
   }
 }
 
-/// Made-up poses that press, each asked for from rest, where nothing touches.
+/// Synthetic poses in contact are each requested from rest, where there is no contact.
 TEST(InverseForces, AFloorIsPressedWhileAMarkerStays) {
   const Pressing robot(beam_over_a_floor());
-  const ForceGoal any = robot.asked("floor", {0, 0, -1}, only_z);
+  const ForceGoal any = robot.requested("floor", {0, 0, -1}, only_z);
   std::mt19937 engine(4);
   std::uniform_real_distribution<double> low(1, 1.6), high(2.2, 4);
   int pressed = 0;
   for (int i = 0; i < 12; ++i) {
-    const Equilibrium made = settled(robot.statics, values({low(engine), low(engine), high(engine)}), {});
+    const Equilibrium made = solve_converged(robot.statics, values({low(engine), low(engine), high(engine)}), {});
     const double force = robot.force(any, made).z();
     if (force > -0.2) continue;
     ++pressed;
     const Vec3 there = marker_at(robot.model, made);
-    const std::vector<Goal> goals{{robot.asked("floor", {0, 0, force}, only_z)},
+    const std::vector<Goal> goals{{robot.requested("floor", {0, 0, force}, only_z)},
                                   {PositionGoal{0, there, {true, true, false}}}};
     const InverseResult result = solve_inverse(robot.statics, goals, robot.statics.rest());
     ASSERT_EQ(result.status, InverseStatus::reached) << result.remark << ", errors " << result.errors_mm.transpose();
-    const Equilibrium again = settled(robot.statics, result.equilibrium.actuation);
+    const Equilibrium again = solve_converged(robot.statics, result.equilibrium.actuation);
     EXPECT_NEAR(robot.force(any, again).z(), force, 2e-3 * std::abs(force));
     EXPECT_LT((marker_at(robot.model, again) - there).head<2>().norm(), 2e-3);
   }
@@ -202,27 +202,27 @@ TEST(InverseForces, AFloorIsPressedWhileAMarkerStays) {
   EXPECT_TRUE(doubts_about(robot.model, {{any}}).empty());
 }
 
-/// Friction holds back: the search meets the force all the same, as its own way has it.
+/// With friction, the search still reaches the requested force, along its own motion.
 TEST(InverseForces, AFloorThatRubsIsPressedAsAsked) {
   const Pressing robot(beam_over_a_floor(0.4));
-  const std::vector<Goal> goals{{robot.asked("floor", {0, 0, -2}, only_z)}};
+  const std::vector<Goal> goals{{robot.requested("floor", {0, 0, -2}, only_z)}};
   ASSERT_EQ(doubts_about(robot.model, goals).size(), 1u);
   EXPECT_NE(doubts_about(robot.model, goals)[0].find("remembers its way"), std::string::npos);
   const InverseResult result = solve_inverse(robot.statics, goals, robot.statics.rest());
   ASSERT_EQ(result.status, InverseStatus::reached) << result.remark << ", errors " << result.errors_mm.transpose();
-  EXPECT_NEAR(robot.force(robot.asked("floor", {0, 0, -2}, only_z), result.equilibrium).z(), -2, 0.0021);
+  EXPECT_NEAR(robot.force(robot.requested("floor", {0, 0, -2}, only_z), result.equilibrium).z(), -2, 0.0021);
 }
 
 TEST(InverseForces, SaysWhatIsOutOfReach) {
   const Pressing robot(beam_over_a_floor());
-  const std::vector<Goal> much{{robot.asked("floor", {0, 0, -200}, only_z)}};
+  const std::vector<Goal> much{{robot.requested("floor", {0, 0, -200}, only_z)}};
   const InverseResult most = solve_inverse(robot.statics, much, robot.statics.rest());
   EXPECT_EQ(most.status, InverseStatus::unreachable) << most.remark;
   EXPECT_NE(most.active, (std::vector<int>{0, 0, 0}));
   EXPECT_GT(most.errors_mm[0], 0.9);
-  EXPECT_LT(robot.force(robot.asked("floor", {0, 0, -1}, only_z), most.equilibrium).z(), -2);
+  EXPECT_LT(robot.force(robot.requested("floor", {0, 0, -1}, only_z), most.equilibrium).z(), -2);
   // a floor does not hold back
-  const std::vector<Goal> pull{{robot.asked("floor", {0, 0, 2}, only_z)}};
+  const std::vector<Goal> pull{{robot.requested("floor", {0, 0, 2}, only_z)}};
   const InverseResult none = solve_inverse(robot.statics, pull, robot.statics.rest());
   EXPECT_EQ(none.status, InverseStatus::unreachable);
   EXPECT_NE(none.remark.find("nothing touches 'floor' there"), std::string::npos) << none.remark;
@@ -234,7 +234,7 @@ TEST(InverseForces, AnObstacleOutOfReachStaysUntouched) {
   RobotSpec spec = beam_over_a_floor();
   spec.contact->obstacles = {{"wall", Halfspace{{0, 0, -60}, {0, 0, 1}}, std::nullopt, {}}};
   const Pressing robot(spec);
-  const std::vector<Goal> goals{{robot.asked("wall", {0, 0, -2}, only_z)}};
+  const std::vector<Goal> goals{{robot.requested("wall", {0, 0, -2}, only_z)}};
   const InverseResult result = solve_inverse(robot.statics, goals, robot.statics.rest());
   EXPECT_EQ(result.status, InverseStatus::unreachable) << result.remark;
   EXPECT_NE(result.remark.find("nothing touches 'wall' there"), std::string::npos) << result.remark;
@@ -246,7 +246,7 @@ TEST(InverseForces, RefusesWhatMeansNothing) {
   EXPECT_THROW((void)force_on(robot.model, "flor"), InvalidInput);
   EXPECT_THROW((void)force_on(robot.model, "robot"), InvalidInput);
   EXPECT_EQ(names_of_pressed(robot.model), (std::vector<std::string>{"x_low", "floor"}));
-  const ForceGoal good = robot.asked("floor", {0, 0, -2}, only_z);
+  const ForceGoal good = robot.requested("floor", {0, 0, -2}, only_z);
   const auto expect_refused = [&](ForceGoal goal, const Model& model) {
     EXPECT_THROW(check_goals(model, {{goal}}), InvalidInput);
   };

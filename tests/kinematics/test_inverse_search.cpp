@@ -12,35 +12,35 @@ namespace {
 using Vector = Eigen::VectorXd;
 using Matrix = Eigen::MatrixXd;
 
-/// Terms that are a function of the shares; slopes by central differences.
+/// Terms that are a function of the command fractions; derivatives by central differences.
 class Function : public inverse::Response {
  public:
   std::function<Vector(const Vector&)> terms;
   double tolerance = 1e-6;
-  int most = 200, asked = 0;
+  int most = 200, requested = 0;
   bool inside = true;
 
-  inverse::Pose at(const Vector& shares) const {
+  inverse::Pose at(const Vector& fractions) const {
     inverse::Pose pose;
-    pose.shares = shares;
-    pose.terms = terms(shares);
+    pose.fractions = fractions;
+    pose.terms = terms(fractions);
     pose.miss = pose.terms.norm() / tolerance;
-    pose.idle.setZero(shares.size());
+    pose.idle.setZero(fractions.size());
     pose.tensions.resize(0);
     return pose;
   }
-  Outcome go(const Vector& shares, const inverse::Pose&, inverse::Pose& to) override {
-    ++asked;
-    inside = inside && shares.minCoeff() >= 0 && shares.maxCoeff() <= 1;
-    to = at(shares);
+  Outcome go(const Vector& fractions, const inverse::Pose&, inverse::Pose& to) override {
+    ++requested;
+    inside = inside && fractions.minCoeff() >= 0 && fractions.maxCoeff() <= 1;
+    to = at(fractions);
     return Outcome::arrived;
   }
   bool slopes(const inverse::Pose& at, inverse::Slopes& slopes) override {
-    slopes.terms = difference(terms, at.shares);
-    slopes.tensions.resize(0, at.shares.size());
+    slopes.terms = difference(terms, at.fractions);
+    slopes.tensions.resize(0, at.fractions.size());
     return true;
   }
-  [[nodiscard]] bool any_left() const override { return asked < most; }
+  [[nodiscard]] bool any_left() const override { return requested < most; }
 
   static Matrix difference(const std::function<Vector(const Vector&)>& value, const Vector& at) {
     constexpr double reach = 1e-5;
@@ -55,11 +55,11 @@ class Function : public inverse::Response {
 };
 
 /// Tip of a planar arm of links of length 10 mm whose joints turn by -90 to 90 degrees.
-Eigen::Vector2d arm(const Vector& shares) {
+Eigen::Vector2d arm(const Vector& fractions) {
   Eigen::Vector2d tip(0, 0);
   double angle = 0;
-  for (const double share : shares) {
-    angle += std::numbers::pi * (share - 0.5);
+  for (const double fraction : fractions) {
+    angle += std::numbers::pi * (fraction - 0.5);
     tip += 10 * Eigen::Vector2d(std::cos(angle), std::sin(angle));
   }
   return tip;
@@ -88,13 +88,13 @@ TEST(InverseSearch, ReachesWhatCanBeReached) {
     Function response;
     response.terms = [&](const Vector& u) -> Vector { return arm(u) - target; };
     const inverse::Pose start = response.at(point({0.5, 0.6}));
-    const inverse::SearchResult found = inverse::search_inverse(response, start, settings_for(start.shares));
+    const inverse::SearchResult found = inverse::search_inverse(response, start, settings_for(start.fractions));
     EXPECT_TRUE(response.inside);
-    EXPECT_LT(response.asked, 40);
+    EXPECT_LT(response.requested, 40);
     // else it is at a range's end, with the elbow on the other side
     if (found.end != inverse::SearchEnd::stationary) {
       EXPECT_EQ(found.end, inverse::SearchEnd::reached);
-      EXPECT_LT((arm(found.pose.shares) - target).norm(), 1e-6);
+      EXPECT_LT((arm(found.pose.fractions) - target).norm(), 1e-6);
       ++reached;
     }
   }
@@ -118,13 +118,13 @@ TEST(InverseSearch, NearestPointIsThatOfTheGrid) {
         }
       }
     const inverse::Pose start = response.at(nearest.array().max(0.1).min(0.9).matrix());
-    const inverse::SearchResult found = inverse::search_inverse(response, start, settings_for(start.shares));
+    const inverse::SearchResult found = inverse::search_inverse(response, start, settings_for(start.fractions));
     ASSERT_EQ(found.end, inverse::SearchEnd::stationary) << target.transpose();
     EXPECT_LE(found.pose.terms.norm(), least + 1e-9) << target.transpose();
     EXPECT_GE(found.pose.terms.norm(), least - 0.05) << target.transpose();  // slope times half a cell
     EXPECT_LT(found.slope, 1e-3);
     EXPECT_TRUE(response.inside);
-    EXPECT_LT(response.asked, 30) << target.transpose();
+    EXPECT_LT(response.requested, 30) << target.transpose();
   }
 }
 
@@ -137,10 +137,10 @@ TEST(InverseSearch, NearestPointOfACurveFarAway) {
       return 10 * Eigen::Vector2d(std::cos(angle) - far * std::cos(1.0), std::sin(angle) - far * std::sin(1.0));
     };
     const inverse::Pose start = response.at(point({0.1}));
-    const inverse::SearchResult found = inverse::search_inverse(response, start, settings_for(start.shares));
+    const inverse::SearchResult found = inverse::search_inverse(response, start, settings_for(start.fractions));
     ASSERT_EQ(found.end, inverse::SearchEnd::stationary) << far;
-    EXPECT_NEAR(found.pose.shares[0], 2 / std::numbers::pi, 1e-4) << far;
-    EXPECT_LT(response.asked, 25) << far;
+    EXPECT_NEAR(found.pose.fractions[0], 2 / std::numbers::pi, 1e-4) << far;
+    EXPECT_LT(response.requested, 25) << far;
   }
 }
 
@@ -149,14 +149,14 @@ class Coarse : public Function {
  public:
   static constexpr double grain = 4e-6;
 
-  inverse::Pose rounded(const Vector& shares) const {
-    inverse::Pose pose = at(shares);
+  inverse::Pose rounded(const Vector& fractions) const {
+    inverse::Pose pose = at(fractions);
     pose.terms = (pose.terms / grain).array().round() * grain;
     return pose;
   }
-  Outcome go(const Vector& shares, const inverse::Pose&, inverse::Pose& to) override {
-    ++asked;
-    to = rounded(shares);
+  Outcome go(const Vector& fractions, const inverse::Pose&, inverse::Pose& to) override {
+    ++requested;
+    to = rounded(fractions);
     return Outcome::arrived;
   }
 };
@@ -171,17 +171,17 @@ TEST(InverseSearch, EndsWhereNothingMeasurableIsLeftToGain) {
     Coarse response;
     response.terms = [&](const Vector& u) -> Vector { return arm(u) - target; };
     const inverse::Pose start = response.rounded(point({0.45, 0.6, 0.4}));
-    inverse::SearchSettings settings = settings_for(start.shares);
+    inverse::SearchSettings settings = settings_for(start.fractions);
     settings.accuracy_mm = Coarse::grain;
     const inverse::SearchResult found = inverse::search_inverse(response, start, settings);
     EXPECT_EQ(found.end, inverse::SearchEnd::stationary) << target.transpose();
     EXPECT_LT(found.slope, 1e-2) << target.transpose();
-    EXPECT_LT(response.asked, 60) << target.transpose();
+    EXPECT_LT(response.requested, 60) << target.transpose();
   }
 }
 
 /// Three joints for two coordinates: scan the first, solve for the others, and take the nearest to the preferred.
-double least_distance(const Eigen::Vector2d& target, const Vector& preferred) {
+double min_distance(const Eigen::Vector2d& target, const Vector& preferred) {
   double least = HUGE_VAL;
   constexpr int steps = 20000;
   for (int i = 0; i <= steps; ++i) {
@@ -212,10 +212,10 @@ TEST(InverseSearch, OfManyAnswersTheNearest) {
       ASSERT_EQ(found.end, inverse::SearchEnd::reached)
           << target.transpose() << ", preferred " << preferred.transpose();
       EXPECT_LE(found.pose.miss, 1);
-      EXPECT_NEAR((found.pose.shares - preferred).norm(), least_distance(target, preferred), 2e-4)
+      EXPECT_NEAR((found.pose.fractions - preferred).norm(), min_distance(target, preferred), 2e-4)
           << target.transpose() << ", preferred " << preferred.transpose();
       EXPECT_TRUE(response.inside);
-      EXPECT_LT(response.asked, 60) << target.transpose() << ", preferred " << preferred.transpose();
+      EXPECT_LT(response.requested, 60) << target.transpose() << ", preferred " << preferred.transpose();
     }
 }
 
@@ -227,7 +227,7 @@ TEST(InverseSearch, PrefersAnActuationOtherThanTheStart) {
   const inverse::SearchResult found =
       inverse::search_inverse(response, response.at(point({0.5, 0.6, 0.6})), settings_for(preferred));
   ASSERT_EQ(found.end, inverse::SearchEnd::reached);
-  EXPECT_NEAR((found.pose.shares - preferred).norm(), least_distance(target, preferred), 2e-4);
+  EXPECT_NEAR((found.pose.fractions - preferred).norm(), min_distance(target, preferred), 2e-4);
 }
 
 /// Two cables, of which the second is taut only where it is shorter than a path that depends on the first.
@@ -243,16 +243,16 @@ class Cables : public Function {
     result.tensions = Vector::Constant(1, 3 * (path(u) - u[1]));
     return result;
   }
-  Outcome go(const Vector& shares, const inverse::Pose&, inverse::Pose& to) override {
-    ++asked;
-    inside = inside && shares.minCoeff() >= 0 && shares.maxCoeff() <= 1;
-    to = pose(shares);
+  Outcome go(const Vector& fractions, const inverse::Pose&, inverse::Pose& to) override {
+    ++requested;
+    inside = inside && fractions.minCoeff() >= 0 && fractions.maxCoeff() <= 1;
+    to = pose(fractions);
     return Outcome::arrived;
   }
   bool slopes(const inverse::Pose& at, inverse::Slopes& slopes) override {
-    slopes.terms = difference(terms, at.shares);
+    slopes.terms = difference(terms, at.fractions);
     slopes.tensions =
-        difference([](const Vector& u) -> Vector { return Vector::Constant(1, 3 * (path(u) - u[1])); }, at.shares);
+        difference([](const Vector& u) -> Vector { return Vector::Constant(1, 3 * (path(u) - u[1])); }, at.fractions);
     return true;
   }
 };
@@ -264,7 +264,7 @@ TEST(InverseSearch, PullsASlackCable) {
   const Vector start = point({0.9, 1});  // slack
   const inverse::SearchResult found = inverse::search_inverse(response, response.pose(start), settings_for(start));
   ASSERT_EQ(found.end, inverse::SearchEnd::reached);
-  EXPECT_LT((found.pose.shares - point({0.7, 0.58})).norm(), 1e-5);
+  EXPECT_LT((found.pose.fractions - point({0.7, 0.58})).norm(), 1e-5);
 }
 
 TEST(InverseSearch, CablesDoNotPush) {
@@ -278,7 +278,7 @@ TEST(InverseSearch, CablesDoNotPush) {
         const inverse::Pose pose = response.pose(point({i / 500.0, j / 500.0}));
         if (pose.terms.norm() < least) {
           least = pose.terms.norm();
-          nearest = pose.shares;
+          nearest = pose.fractions;
         }
       }
     ASSERT_GT(least, 0.5) << target.transpose();
@@ -286,32 +286,33 @@ TEST(InverseSearch, CablesDoNotPush) {
     for (const double pulled : {0.05, 1e-8, 0.0}) {  // also from where the cable all but hangs through
       Vector start = inside;
       start[1] = Cables::path(start) - pulled;
-      response.asked = 0;
+      response.requested = 0;
       const inverse::SearchResult found = inverse::search_inverse(response, response.pose(start), settings_for(start));
       ASSERT_EQ(found.end, inverse::SearchEnd::stationary) << target.transpose() << ", " << pulled;
       EXPECT_LE(found.pose.terms.norm(), least + 1e-4) << target.transpose() << ", " << pulled;
       EXPECT_GE(found.pose.terms.norm(), least - 0.05) << target.transpose() << ", " << pulled;
       EXPECT_LT(found.slope, 1e-3) << target.transpose() << ", " << pulled;
       EXPECT_GE(found.pose.tensions[0], 0);
-      EXPECT_LT(response.asked, 40) << target.transpose() << ", " << pulled;
+      EXPECT_LT(response.requested, 40) << target.transpose() << ", " << pulled;
     }
   }
 }
 
-/// Beyond a wall nothing converges; what was asked for ends on the way.
+/// Nothing converges behind a wall; a solve that is to pass it ends on the path.
 class Walled : public Function {
  public:
   double wall = 0.6;
   bool halfway = true;
 
-  Outcome go(const Vector& shares, const inverse::Pose& from, inverse::Pose& to) override {
-    ++asked;
-    if (shares[0] <= wall) {
-      to = at(shares);
+  Outcome go(const Vector& fractions, const inverse::Pose& from, inverse::Pose& to) override {
+    ++requested;
+    if (fractions[0] <= wall) {
+      to = at(fractions);
       return Outcome::arrived;
     }
-    if (!halfway || from.shares[0] > wall - 1e-3) return Outcome::failed;
-    to = at(from.shares + (wall - from.shares[0]) / (shares[0] - from.shares[0]) * (shares - from.shares));
+    if (!halfway || from.fractions[0] > wall - 1e-3) return Outcome::failed;
+    to = at(from.fractions +
+            (wall - from.fractions[0]) / (fractions[0] - from.fractions[0]) * (fractions - from.fractions));
     return Outcome::halfway;
   }
 };
@@ -323,14 +324,14 @@ TEST(InverseSearch, ShortensItsStepsWhereNothingConverges) {
     const Eigen::Vector2d target = arm(point({0.58, 0.7}));
     response.terms = [&](const Vector& u) -> Vector { return arm(u) - target; };
     const inverse::Pose start = response.at(point({0.1, 0.9}));
-    EXPECT_EQ(inverse::search_inverse(response, start, settings_for(start.shares)).end, inverse::SearchEnd::reached);
+    EXPECT_EQ(inverse::search_inverse(response, start, settings_for(start.fractions)).end, inverse::SearchEnd::reached);
 
     const Eigen::Vector2d beyond = arm(point({0.8, 0.7}));
     response.terms = [&](const Vector& u) -> Vector { return arm(u) - beyond; };
-    response.asked = 0;
+    response.requested = 0;
     const inverse::Pose again = response.at(point({0.1, 0.9}));
-    const inverse::SearchResult found = inverse::search_inverse(response, again, settings_for(again.shares));
-    EXPECT_EQ(found.end, inverse::SearchEnd::stuck);  // and does not say that nothing helps
+    const inverse::SearchResult found = inverse::search_inverse(response, again, settings_for(again.fractions));
+    EXPECT_EQ(found.end, inverse::SearchEnd::stuck);  // and does not claim that nothing helps
     EXPECT_LT(found.pose.terms.norm(), again.terms.norm());
   }
 }
@@ -340,9 +341,9 @@ TEST(InverseSearch, EndsWithItsAllowance) {
   response.most = 2;
   response.terms = [&](const Vector& u) -> Vector { return arm(u) - arm(point({0.9, 0.1})); };
   const inverse::Pose start = response.at(point({0.3, 0.6}));
-  const inverse::SearchResult found = inverse::search_inverse(response, start, settings_for(start.shares));
+  const inverse::SearchResult found = inverse::search_inverse(response, start, settings_for(start.fractions));
   EXPECT_EQ(found.end, inverse::SearchEnd::none_left);
-  EXPECT_EQ(response.asked, 2);
+  EXPECT_EQ(response.requested, 2);
   EXPECT_LE(found.pose.terms.norm(), start.terms.norm());
 }
 

@@ -10,13 +10,13 @@ namespace {
 
 using namespace testing;
 
-/// A beam with three chambers, settled where they are a bit filled.
-struct SettledBeam {
+/// A beam with three chambers, in equilibrium with all of them partly filled.
+struct EquilibriumBeam {
   Model model;
   Statics statics;
   Equilibrium start;
 
-  SettledBeam()
+  EquilibriumBeam()
       : model(compile(beam_to_settle())),
         statics(model),
         start(statics.solve(values({1.2, 1.3, 1.4}), statics.rest())) {}
@@ -33,26 +33,26 @@ struct SettledBeam {
   [[nodiscard]] Vec3 tip() const { return marker_at(model, start); }
 };
 
-/// What solve() tells of an equilibrium: the same as of one that is solved for where it is.
-void expect_told(const SettledBeam& beam, const InverseResult& result) {
+/// Checks that solve() reports an equilibrium that it is given as it reports one that it solves for.
+void expect_reported(const EquilibriumBeam& beam, const InverseResult& result) {
   const Equilibrium again =
       beam.statics.solve(beam.start.actuation, beam.start.state, StaticsOptions{.keep_history = false});
-  const SolveReport &told = result.equilibrium.report, &known = again.report;
-  EXPECT_EQ(told.status, Status::converged);
-  EXPECT_EQ(told.solver, "newton");
-  EXPECT_EQ(told.tolerance_mm, known.tolerance_mm);
-  EXPECT_GT(told.step_mm, 0);
-  EXPECT_LE(told.step_mm, told.tolerance_mm);
-  EXPECT_NEAR(told.physical.pull_N, known.physical.pull_N, 1e-6 * known.physical.pull_N);
-  EXPECT_LE(told.physical.residual_N, 1e-6 * told.physical.pull_N);
-  EXPECT_NEAR(told.energy, known.energy, 1e-9 * known.energy);
+  const SolveReport &reported = result.equilibrium.report, &known = again.report;
+  EXPECT_EQ(reported.status, Status::converged);
+  EXPECT_EQ(reported.solver, "newton");
+  EXPECT_EQ(reported.tolerance_mm, known.tolerance_mm);
+  EXPECT_GT(reported.step_mm, 0);
+  EXPECT_LE(reported.step_mm, reported.tolerance_mm);
+  EXPECT_NEAR(reported.physical.pull_N, known.physical.pull_N, 1e-6 * known.physical.pull_N);
+  EXPECT_LE(reported.physical.residual_N, 1e-6 * reported.physical.pull_N);
+  EXPECT_NEAR(reported.energy, known.energy, 1e-9 * known.energy);
   EXPECT_EQ(result.equilibrium.actuation, beam.start.actuation);
   EXPECT_LT(distance(result.equilibrium.state.positions, beam.start.state.positions), 1e-5);
 }
 
-/// Whoever stops it, and wherever: an equilibrium that is no farther away than the start.
+/// A search that is interrupted at any point returns an equilibrium that is no farther from the target than the start.
 TEST(InverseStart, StoppedItKeepsTheBest) {
-  const SettledBeam beam;
+  const EquilibriumBeam beam;
   const Vec3 target = beam.tip() + Vec3(-2, 4, 3);
   const double at_start = (target - beam.tip()).norm();
   double least = at_start;
@@ -80,49 +80,49 @@ TEST(InverseStart, StoppedItKeepsTheBest) {
 }
 
 TEST(InverseStart, ThatStaysBestIsMeasured) {
-  const SettledBeam beam;
+  const EquilibriumBeam beam;
   const InverseResult reached = solve_inverse(beam.statics, beam.tip_at(beam.tip()), beam.start.state);
   EXPECT_EQ(reached.status, InverseStatus::reached);
   EXPECT_EQ(reached.equilibria, 1);
-  expect_told(beam, reached);
+  expect_reported(beam, reached);
   InverseOptions options;
   options.free = {false, false, false};
   const InverseResult missed =
       solve_inverse(beam.statics, beam.tip_at(beam.tip() + Vec3(0, 0, 1)), beam.start.state, options);
   EXPECT_EQ(missed.status, InverseStatus::unreachable);
   EXPECT_NEAR(missed.errors_mm[0], 1, 1e-5);
-  expect_told(beam, missed);
+  expect_reported(beam, missed);
 }
 
 TEST(InverseStart, WithAReportKeepsIt) {
-  const SettledBeam beam;
+  const EquilibriumBeam beam;
   const InverseResult result = solve_inverse(beam.statics, beam.tip_at(beam.tip()), beam.start);
   EXPECT_EQ(result.status, InverseStatus::reached);
   EXPECT_EQ(result.equilibria, 0);
   EXPECT_EQ(result.equilibrium.report.iterations, beam.start.report.iterations);
   EXPECT_EQ(result.equilibrium.report.physical.residual_N, beam.start.report.physical.residual_N);
   EXPECT_EQ(result.equilibrium.state.positions, beam.start.state.positions);
-  expect_told(beam, result);
+  expect_reported(beam, result);
 }
 
 TEST(InverseStart, OfASolveThatDidNotConvergeIsMeasured) {
-  const SettledBeam beam;
+  const EquilibriumBeam beam;
   Equilibrium lost = beam.start;
   lost.report.status = Status::limit;  // farther on; its state is an equilibrium
   lost.report.physical.pull_N = 0;
   const InverseResult result = solve_inverse(beam.statics, beam.tip_at(beam.tip()), lost);
   EXPECT_EQ(result.equilibria, 1);
-  expect_told(beam, result);
+  expect_reported(beam, result);
 }
 
-/// A waypoint to which the prediction leads needs no search, and is told of all the same.
+/// A waypoint that the prediction reaches needs no search, and is reported all the same.
 TEST(InverseStart, OfAWaypointIsThatOfItsPrediction) {
-  const SettledBeam beam;
+  const EquilibriumBeam beam;
   MarkerPath path{{0}, {{true, true, true}}, {}};
   for (int i = 0; i < 6; ++i) {
     const Actuation actuation = values({1.2, 1.3, 1.4}) + 0.002 * i * values({1, -1, 0.5});
     Waypoint waypoint;
-    waypoint.targets = {marker_at(beam.model, settled(beam.statics, actuation))};
+    waypoint.targets = {marker_at(beam.model, solve_converged(beam.statics, actuation))};
     path.waypoints.push_back(waypoint);
   }
   for (const InverseResult& each : follow_path(beam.statics, path)) {

@@ -4,7 +4,7 @@
 
 #include "statics/physical_samples.hpp"
 
-/// Inverse kinematics of robots whose cables rub: an answer is what its commands do on the way from the start.
+/// Inverse kinematics of robots with friction of cables: a solution is reached by the motion from the start.
 
 namespace softkin {
 namespace {
@@ -31,7 +31,7 @@ TEST(InverseTendons, AnswersAreReachedFromTheStart) {
   const Model model = compile(arm_with_two_tendons());
   const Statics statics(model);
   InverseOptions options;
-  const Equilibrium far = settled(statics, values({5, 1}));
+  const Equilibrium far = solve_converged(statics, values({5, 1}));
   for (const State& start : {statics.rest(), far.state})
     for (const Actuation& commands : {values({3, 1.5}), values({1, 4})}) {
       const Equilibrium there = statics.solve(commands, start, tight());

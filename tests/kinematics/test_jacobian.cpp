@@ -22,7 +22,7 @@ Eigen::VectorXd places(const Model& model, const std::vector<Index>& markers, co
 void expect_slopes(const RobotSpec& spec, const Actuation& actuation) {
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium at = settled(statics, actuation);
+  const Equilibrium at = solve_converged(statics, actuation);
   const std::vector<Index> markers{1, 0, 2};
   const Eigen::MatrixXd slopes = jacobian(statics, at, markers);
   ASSERT_EQ(slopes.rows(), 9);
@@ -57,18 +57,18 @@ TEST(Jacobian, EqualsDifferencesOfEquilibria) {
   RobotSpec strip = dea_strip();
   add_markers(strip, {40, 6, 2}, {17, 2.2, 0.7});
   expect_slopes(strip, values({1.25}));
-  for (const bool least_norm : {false, true}) {
-    RobotSpec mixed = mixed_robot(least_norm, least_norm ? 0.6 : 1);
+  for (const bool minimum_norm : {false, true}) {
+    RobotSpec mixed = mixed_robot(minimum_norm, minimum_norm ? 0.6 : 1);
     add_markers(mixed, {60, 20, 24}, {33.3, 9.1, 15.2});
     expect_slopes(mixed, values({1.2, 1.6, 0.85}));
   }
 }
 
-/// Three numbers a marker, in the order asked for, as often as asked for; a column an actuator.
+/// The Jacobian has three rows per marker, in the requested order and with repetitions, and a column per actuator.
 TEST(Jacobian, HasThreeRowsAMarker) {
   const Model model = compile(chambers_beam(2));
   const Statics statics(model);
-  const Equilibrium at = settled(statics, values({1.3, 1.1}));
+  const Equilibrium at = solve_converged(statics, values({1.3, 1.1}));
   const Sensitivity sensitivity = statics.sensitivity(at.state);
   const Eigen::MatrixXd once = jacobian(model, at.state.positions, sensitivity, {0}),
                         twice = jacobian(model, at.state.positions, sensitivity, {0, 0});
@@ -85,7 +85,7 @@ TEST(Jacobian, IsZeroWhereNotRegular) {
   spec.actuators[1].name = "twin";
   const Model model = compile(spec);
   const Statics statics(model);
-  Equilibrium at = settled(statics, values({0.9, 0.9}));
+  Equilibrium at = solve_converged(statics, values({0.9, 0.9}));
   at.state.multipliers.setConstant(0.1);
   EXPECT_TRUE(jacobian(statics, at, {0}).isZero(0));
 }
@@ -93,7 +93,7 @@ TEST(Jacobian, IsZeroWhereNotRegular) {
 TEST(Jacobian, RefusesUnknownMarkers) {
   const Model model = compile(chambers_beam(2));
   const Statics statics(model);
-  const Equilibrium at = settled(statics, values({1.3, 1.1}));
+  const Equilibrium at = solve_converged(statics, values({1.3, 1.1}));
   EXPECT_THROW((void)jacobian(statics, at, {1}), InvalidInput);
   EXPECT_THROW((void)jacobian(statics, at, {0, -1}), InvalidInput);
 }

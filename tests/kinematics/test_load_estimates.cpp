@@ -7,7 +7,7 @@
 
 #include "kinematics/estimate_samples.hpp"
 
-/// Wrenches on rigid parts, pressures over patches and how stiff materials are, told from made-up readings.
+/// Wrenches on rigid parts, pressures over patches and stiffnesses of materials, estimated from synthetic readings.
 
 namespace softkin {
 
@@ -59,17 +59,17 @@ TEST(WrenchEstimates, TellForceAndMoment) {
     ASSERT_TRUE(truth.solved());
     Eigen::VectorXd values = truth.computed;
     for (Index r = 0; r < values.size(); ++r) values[r] += deviations[r] * normal(random);
-    const Estimate& told = estimator.update(commands, values);
-    ASSERT_EQ(told.status, Status::converged) << told.remark;
-    ASSERT_EQ(told.numbers.size(), 6u);
-    EXPECT_EQ(told.numbers[3].name, "tool_mx");
-    EXPECT_EQ(told.numbers[3].unit, "N mm");
-    EXPECT_LT(told.misfit(), 3);
+    const Estimate& reported = estimator.update(commands, values);
+    ASSERT_EQ(reported.status, Status::converged) << reported.remark;
+    ASSERT_EQ(reported.numbers.size(), 6u);
+    EXPECT_EQ(reported.numbers[3].name, "tool_mx");
+    EXPECT_EQ(reported.numbers[3].unit, "N mm");
+    EXPECT_LT(reported.misfit(), 3);
     for (std::size_t i = 0; i < 6; ++i, ++all) {
-      const double off = told.numbers[i].value - wrench[i];
-      EXPECT_LT(std::abs(off), 4.5 * told.numbers[i].deviation) << told.numbers[i].name;
-      EXPECT_LT(told.numbers[i].deviation, i < 3 ? 0.003 : 0.3);
-      held += std::abs(off) < 1.645 * told.numbers[i].deviation ? 1 : 0;
+      const double off = reported.numbers[i].value - wrench[i];
+      EXPECT_LT(std::abs(off), 4.5 * reported.numbers[i].deviation) << reported.numbers[i].name;
+      EXPECT_LT(reported.numbers[i].deviation, i < 3 ? 0.003 : 0.3);
+      held += std::abs(off) < 1.645 * reported.numbers[i].deviation ? 1 : 0;
     }
   }
   EXPECT_GE(held, 56) << "of " << all << ", 90 %; fewer by chance once in 1,000";
@@ -86,11 +86,11 @@ TEST(WrenchEstimates, TellThePressureOverAPatch) {
   Eigen::VectorXd values(columns.size());
   for (std::size_t r = 0; r < columns.size(); ++r)
     values[r] = model.markers[columns[r].marker].at(truth.state.positions)[columns[r].axis];
-  const Estimate& told = estimator.update(commands_of(model, 5), values);
-  ASSERT_EQ(told.status, Status::converged);
-  EXPECT_EQ(told.numbers[0].unit, "kPa");
-  EXPECT_NEAR(told.numbers[0].value, 2.5, 0.3 * told.numbers[0].deviation);
-  EXPECT_LT(told.numbers[0].deviation, 0.1);
+  const Estimate& reported = estimator.update(commands_of(model, 5), values);
+  ASSERT_EQ(reported.status, Status::converged);
+  EXPECT_EQ(reported.numbers[0].unit, "kPa");
+  EXPECT_NEAR(reported.numbers[0].value, 2.5, 0.3 * reported.numbers[0].deviation);
+  EXPECT_LT(reported.numbers[0].deviation, 0.1);
 }
 
 TEST(WrenchEstimates, OfUnknownPlaceAreRefused) {
@@ -100,7 +100,7 @@ TEST(WrenchEstimates, OfUnknownPlaceAreRefused) {
     Estimator(model, {{"tool", true}}, columns, Eigen::VectorXd::Ones(columns.size()));
     ADD_FAILURE() << "accepted";
   } catch (const InvalidInput& error) {
-    EXPECT_NE(std::string(error.what()).find("acts on its region as a whole: its place cannot be told"),
+    EXPECT_NE(std::string(error.what()).find("acts on its region as a whole: its place cannot be estimated"),
               std::string::npos)
         << error.what();
   }
@@ -128,7 +128,7 @@ EstimatedUnknown stiffness(const std::string& region, double mean, double deviat
 
 }  // namespace
 
-/// Equilibria are those of a robot whose moduli are so many times as large; slopes those of their differences.
+/// Equilibria are those of a robot with scaled moduli; derivatives are those of their differences.
 TEST(StiffnessEstimates, AreOfTheRobotThatIsSoStiff) {
   const Model model = compile(two_materials(0.4, 0.2)), other = compile(two_materials(0.4 * 1.3, 0.2 * 0.8));
   const std::vector<PoseColumn> columns = all_columns(model);
@@ -183,14 +183,14 @@ TEST(StiffnessEstimates, FollowAMaterialThatDrifts) {
     ASSERT_TRUE(made.solved());
     Eigen::VectorXd values = made.computed;
     for (Index r = 0; r < values.size(); ++r) values[r] += deviations[r] * normal(random);
-    const Estimate& told = estimator.update(commands, values, 1);
-    ASSERT_EQ(told.status, Status::converged) << told.remark;
-    EXPECT_EQ(told.numbers[0].name, "materials.all.stiffness");
-    EXPECT_EQ(told.numbers[0].unit, "");
+    const Estimate& reported = estimator.update(commands, values, 1);
+    ASSERT_EQ(reported.status, Status::converged) << reported.remark;
+    EXPECT_EQ(reported.numbers[0].name, "materials.all.stiffness");
+    EXPECT_EQ(reported.numbers[0].unit, "");
     for (std::size_t i = 0; i < 4; ++i)
-      EXPECT_LT(std::abs(told.numbers[i].value - truth[i]), 4 * told.numbers[i].deviation)
-          << told.numbers[i].name << " at " << time;
-    EXPECT_LT(told.numbers[0].deviation, 0.05) << "0.2 before";
+      EXPECT_LT(std::abs(reported.numbers[i].value - truth[i]), 4 * reported.numbers[i].deviation)
+          << reported.numbers[i].name << " at " << time;
+    EXPECT_LT(reported.numbers[0].deviation, 0.05) << "0.2 before";
   }
 }
 
@@ -207,7 +207,7 @@ TEST(StiffnessEstimates, AreRefusedWithAReason) {
   };
   refused({{"materials.all.stiffness"}}, "such as materials.all.stiffness=1+-0.2");
   refused({stiffness("lost", 1, 0.2)}, "there is no material of region 'lost'; did you mean 'last'?");
-  refused({stiffness("all", 1, 0.2), stiffness("all", 1, 0.2)}, "it is to be told twice");
+  refused({stiffness("all", 1, 0.2), stiffness("all", 1, 0.2)}, "it is to be estimated twice");
   refused({stiffness("all", 0, 0.2)}, "its mean must be above 0");
   refused({{"materials.all.stiffness", true, 1, 0.2}}, "a stiffness has no place");
 }

@@ -29,7 +29,7 @@ RobotSpec steered_strip(bool coil) {
 TEST(MagneticKinematics, InverseKinematicsFindsTheField) {
   const Model model = compile(steered_strip(true));
   const Statics statics(model);
-  const Vec3 target = marker_at(model, settled(statics, values({2, -4, 0.5})));
+  const Vec3 target = marker_at(model, solve_converged(statics, values({2, -4, 0.5})));
   const InverseResult result = solve_inverse(statics, {{PositionGoal{0, target}}}, statics.rest());
   EXPECT_EQ(result.status, InverseStatus::reached) << result.remark;
   EXPECT_LT((marker_at(model, result.equilibrium) - target).norm(), 0.05);
@@ -50,7 +50,7 @@ TEST(MagneticKinematics, AMapTakesFieldsAsItsInputs) {
   const Eigen::Vector2d commands(3, -4.5);
   Eigen::VectorXd found(3);
   ASSERT_TRUE(map.evaluate(commands.data(), found.data()));
-  EXPECT_LT((found - marker_at(model, settled(statics, values({3, -4.5})))).norm(), 0.02);
+  EXPECT_LT((found - marker_at(model, solve_converged(statics, values({3, -4.5})))).norm(), 0.02);
 }
 
 /// A coil pulls along the direction of travel.

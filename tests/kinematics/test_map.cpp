@@ -55,7 +55,7 @@ void expect_agreement(const Model& model, const MapResult& result, int points) {
   for (Index i = 0; i < points; ++i) {
     Actuation actuation = model.rest_actuation();
     for (Index j = 0; j < map.inputs(); ++j) actuation[result.data.inputs[j].actuator] = commands(i, j);
-    const Equilibrium found = settled(statics, actuation);
+    const Equilibrium found = solve_converged(statics, actuation);
     Eigen::VectorXd values(map.outputs());
     const auto place = map.evaluate(commands.row(i).data(), values.data());
     ASSERT_TRUE(place);
@@ -83,7 +83,7 @@ TEST(Map, StrainsOfTheShapeAreAsTheCheckSays) {
       for (const auto& strain : deformation_of(model, positions).strain) found = std::max(found, strain[0]);
       return found;
     };
-    const Points solved = settled(statics, commands.row(i)).state.positions;
+    const Points solved = solve_converged(statics, commands.row(i)).state.positions;
     largest = std::max(largest, std::abs(greatest(map.shape(commands.row(i).data(), *place)) - greatest(solved)));
   }
   EXPECT_GT(result.data.check.strain_largest, 0);
@@ -118,7 +118,7 @@ TEST(Map, SlopesAreTheJacobian) {
   Eigen::VectorXd values(map.outputs());
   maps::RowMatrix slopes(map.inputs(), map.outputs());
   ASSERT_TRUE(map.evaluate(commands.data(), values.data(), slopes.data()));
-  const Eigen::MatrixXd expected = jacobian(statics, settled(statics, commands), {0});
+  const Eigen::MatrixXd expected = jacobian(statics, solve_converged(statics, commands), {0});
   EXPECT_LT((slopes.leftCols(3).transpose() - expected).cwiseAbs().maxCoeff(), 1e-3 * expected.norm());
 }
 
@@ -140,14 +140,14 @@ class Memory : public MapDesk {
     const auto found = samples_.find({piece, number});
     if (found == samples_.end()) return std::nullopt;
     EXPECT_EQ(found->second.commands, commands);
-    ++told;
+    ++reported;
     return found->second;
   }
   void keep(Index piece, Index number, const maps::Sample& sample) override {
     EXPECT_FALSE(samples_.contains({piece, number}));
     samples_[{piece, number}] = sample;
   }
-  std::size_t told = 0;
+  std::size_t reported = 0;
 
  private:
   std::map<std::pair<Index, Index>, maps::Sample> samples_;
@@ -164,7 +164,7 @@ TEST(Map, AStoppedMakingIsGoneOnWith) {
                        [&](const MapProgress& at) { return at.equilibria + at.checks < most || ++seen < 0; });
   }
   ASSERT_TRUE(result);
-  EXPECT_GT(memory.told, 20u);
+  EXPECT_GT(memory.reported, 20u);
   EXPECT_EQ(result->data.pieces[0].cells[0].outputs.coefficients(), whole.pieces[0].cells[0].outputs.coefficients());
   EXPECT_EQ(result->data.check.largest, whole.check.largest);
 }
@@ -186,7 +186,7 @@ TEST(Map, InverseKinematicsAsWithTheSolver) {
       const InverseResult solved = solve_inverse_from(statics, goals, model.rest_actuation());
       EXPECT_EQ(by_map.status, solved.status);
       EXPECT_NEAR(by_map.errors_mm[0], solved.errors_mm[0], 2e-3);
-      const Equilibrium there = settled(statics, by_map.equilibrium.actuation);
+      const Equilibrium there = solve_converged(statics, by_map.equilibrium.actuation);
       EXPECT_LT((model.markers[0].point.at(there.state.positions) -
                  model.markers[0].point.at(solved.equilibrium.state.positions))
                     .norm(),

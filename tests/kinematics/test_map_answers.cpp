@@ -88,7 +88,7 @@ TEST_F(MapAnswers, AreWithinTheMapsAccuracyOfTheSolver) {
   const maps::RowMatrix commands = maps::random_commands(data, 4, 6);
   for (Index i = 0; i < commands.rows(); ++i) {
     const Actuation actuation = actuation_at(data, commands.row(i));
-    const Equilibrium exact = settled(solver, actuation), found = mapped_.solve(actuation, mapped_.rest());
+    const Equilibrium exact = solve_converged(solver, actuation), found = mapped_.solve(actuation, mapped_.rest());
     for (const Marker& marker : model_.markers)
       EXPECT_LT((marker.at(found.state.positions) - marker.at(exact.state.positions)).norm(), 0.02) << marker.name;
     for (const Actuator& actuator : model_.actuators)

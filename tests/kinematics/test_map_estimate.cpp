@@ -8,7 +8,7 @@
 
 #include "statics/physical_samples.hpp"
 
-/// Forces that a map tells from markers.
+/// Forces that a map estimates from markers.
 
 namespace softkin {
 
@@ -66,12 +66,12 @@ TEST(MapEstimate, TellsTheSolversForces) {
     for (Index m = 0; m < 3; ++m) values.segment<3>(3 * m) = model.markers[m].at(found.state.positions);
     Eigen::VectorXd begin = map.commands(commands);
     for (const MapUnknown& unknown : forces) begin[unknown.input] = 0;
-    const auto told = estimate_by_map(map, forces, begin, values, Eigen::VectorXd::Constant(map.outputs(), 1e-3));
-    ASSERT_TRUE(told && told->converged);
-    EXPECT_LE(told->iterations, 8);
+    const auto reported = estimate_by_map(map, forces, begin, values, Eigen::VectorXd::Constant(map.outputs(), 1e-3));
+    ASSERT_TRUE(reported && reported->converged);
+    EXPECT_LE(reported->iterations, 8);
     for (Index k = 0; k < 3; ++k)
-      EXPECT_NEAR(told->commands[forces[k].input], force[k], 5 * std::sqrt(told->covariance(k, k)));
-    EXPECT_LT((told->commands - map.commands(commands)).norm(), 0.01);
+      EXPECT_NEAR(reported->commands[forces[k].input], force[k], 5 * std::sqrt(reported->covariance(k, k)));
+    EXPECT_LT((reported->commands - map.commands(commands)).norm(), 0.01);
   }
 }
 
@@ -87,9 +87,9 @@ TEST(MapEstimate, IsTheLeastCost) {
   Eigen::VectorXd begin = truth;
   for (const MapUnknown& unknown : unknowns) begin[unknown.input] = 0.15;
   const Eigen::VectorXd deviations = Eigen::VectorXd::Constant(map.outputs(), 0.2);
-  const auto told = estimate_by_map(map, unknowns, begin, values, deviations);
-  ASSERT_TRUE(told && told->converged);
-  EXPECT_LT((told->commands - truth).norm(), 1e-5);
+  const auto reported = estimate_by_map(map, unknowns, begin, values, deviations);
+  ASSERT_TRUE(reported && reported->converged);
+  EXPECT_LT((reported->commands - truth).norm(), 1e-5);
   const auto cost = [&, &map = map](const Eigen::VectorXd& at) {
     EXPECT_TRUE(map.evaluate(at.data(), outputs.data()));
     double sum = ((outputs - values).array() / 0.2).square().sum();
@@ -103,7 +103,7 @@ TEST(MapEstimate, IsTheLeastCost) {
     move[unknowns[i].input] = by;
     return move;
   };
-  const Eigen::Matrix3d information = told->covariance.inverse();
+  const Eigen::Matrix3d information = reported->covariance.inverse();
   for (Index i = 0; i < 3; ++i)
     for (Index j = 0; j < 3; ++j) {
       const double second = (cost(truth + column(i, h) + column(j, h)) - cost(truth + column(i, h) - column(j, h)) -
@@ -139,16 +139,16 @@ TEST(MapEstimate, DeviationsAreHonest) {
       unknown.deviation *= 0.2;
       begin[unknown.input] = 0;
     }
-    const auto told = estimate_by_map(map, known, begin, values, deviations);
-    ASSERT_TRUE(told && told->converged);
+    const auto reported = estimate_by_map(map, known, begin, values, deviations);
+    ASSERT_TRUE(reported && reported->converged);
     Vec3 off;
     for (Index k = 0; k < 3; ++k) {
       const Index i = forces[k].input;
-      off[k] = told->commands[i] - truth[i];
+      off[k] = reported->commands[i] - truth[i];
     }
-    held += off.dot(told->covariance.inverse() * off) < 6.2514;
-    chi_square += told->chi_square;
-    freedoms += told->freedoms;
+    held += off.dot(reported->covariance.inverse() * off) < 6.2514;
+    chi_square += reported->chi_square;
+    freedoms += reported->freedoms;
     if (draw > 0) continue;
     values[4] += 3;
     EXPECT_GT(estimate_by_map(map, known, begin, values, deviations)->misfit(), 5);
@@ -164,14 +164,15 @@ TEST(MapEstimate, StaysInItsRangesAndRefuses) {
   ASSERT_TRUE(map.evaluate(begin.data(), values.data()));
   values[8] -= 100;  // far below what the range allows
   const Eigen::VectorXd deviations = Eigen::VectorXd::Constant(map.outputs(), 0.1);
-  const auto told = estimate_by_map(map, forces, begin, values, deviations);
-  ASSERT_TRUE(told);
+  const auto reported = estimate_by_map(map, forces, begin, values, deviations);
+  ASSERT_TRUE(reported);
   bool at_end = false;
   for (const MapUnknown& unknown : forces) {
     const MapInput& input = map.data().inputs[unknown.input];
-    EXPECT_GE(told->commands[unknown.input], input.low);
-    EXPECT_LE(told->commands[unknown.input], input.high);
-    at_end = at_end || told->commands[unknown.input] == input.low || told->commands[unknown.input] == input.high;
+    EXPECT_GE(reported->commands[unknown.input], input.low);
+    EXPECT_LE(reported->commands[unknown.input], input.high);
+    at_end =
+        at_end || reported->commands[unknown.input] == input.low || reported->commands[unknown.input] == input.high;
   }
   EXPECT_TRUE(at_end);
   Eigen::VectorXd outside = begin;

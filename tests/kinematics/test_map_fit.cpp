@@ -17,7 +17,7 @@ Eigen::VectorXd random_point(Index variables, std::mt19937& engine) {
 
 Polynomials random_polynomials(Index variables, Index terms, Index count, std::mt19937& engine) {
   std::normal_distribution<double> normal;
-  const Terms chosen = least_terms(Eigen::VectorXd::LinSpaced(variables, 1, 1.7), terms);
+  const Terms chosen = min_terms(Eigen::VectorXd::LinSpaced(variables, 1, 1.7), terms);
   RowMatrix coefficients(chosen.rows(), count);
   for (Index t = 0; t < coefficients.rows(); ++t)
     for (Index q = 0; q < count; ++q) coefficients(t, q) = normal(engine);
@@ -32,7 +32,7 @@ double chebyshev_by_cosine(int degree, double x) {
 TEST(MapFit, TermsAreThoseOfLeastSumWithAllBelowThem) {
   Eigen::VectorXd decay(2);
   decay << 1, 2;
-  const Terms terms = least_terms(decay, 6);  // sums 0, 1, 2, 2, 3, 3
+  const Terms terms = min_terms(decay, 6);  // sums 0, 1, 2, 2, 3, 3
   ASSERT_EQ(terms.rows(), 6);
   const std::vector<std::array<int, 2>> expected{{0, 0}, {0, 1}, {1, 0}, {1, 1}, {2, 0}, {3, 0}};
   for (Index t = 0; t < 6; ++t) {
@@ -100,7 +100,7 @@ TEST(MapFit, FindsPolynomialsAgainFromValuesAndSlopes) {
 TEST(MapFit, DecayIsThatOfTheFunction) {
   // 1 / (1.25 - x) in x: coefficients fall by 2 per degree; exp in y: faster and faster
   std::mt19937 engine(4);
-  const Terms terms = least_terms(Eigen::Vector2d(0.7, 1.5), 60);
+  const Terms terms = min_terms(Eigen::Vector2d(0.7, 1.5), 60);
   std::vector<Observation> observations;
   for (int i = 0; i < 60; ++i) {
     const Eigen::VectorXd x = random_point(2, engine);
@@ -114,11 +114,11 @@ TEST(MapFit, DecayIsThatOfTheFunction) {
   EXPECT_GT(decay[1], 1.5);
 }
 
-/// Else more and more terms of high degree are taken, which tell nothing.
+/// Otherwise the fit would take more and more terms of high degree, which do not improve it.
 TEST(MapFit, WhatDoesNotFallAnyMoreIsNoDecay) {
   RowMatrix coefficients(21, 1);
   for (int k = 0; k <= 20; ++k) coefficients(k, 0) = std::max(1000 * std::exp(-2.5 * k), k % 3 == 0 ? 0.04 : 0.02);
-  const Terms terms = least_terms(Eigen::VectorXd::Ones(1), 21);
+  const Terms terms = min_terms(Eigen::VectorXd::Ones(1), 21);
   EXPECT_NEAR(decay_of(Polynomials(terms, coefficients))[0], 2.5, 0.2);
 }
 
@@ -126,7 +126,7 @@ TEST(MapFit, WhatDoesNotFallAnyMoreIsNoDecay) {
 TEST(MapFit, NextPointIsTheWorstKnown) {
   std::mt19937 engine(5);
   const Eigen::VectorXd decay = Eigen::VectorXd::Constant(2, 1.6);
-  const Terms terms = least_terms(decay, 15);
+  const Terms terms = min_terms(decay, 15);
   RowMatrix known(4, 2);
   for (Index i = 0; i < 4; ++i) known.row(i) = random_point(2, engine);
   const RowMatrix chosen = worst_known(terms, decay, known, 2), first = worst_known(terms, decay, known, 1);

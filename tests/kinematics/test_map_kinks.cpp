@@ -9,7 +9,8 @@ using runs::testing::askew_map;
 using runs::testing::ending_map;
 using runs::testing::TwoCables;
 
-/// Pieces that agree but for an error: beside the kink the taut cable pushes and the slack one is too long.
+/// Pieces that agree up to an error: near the kink the taut cable has a negative tension, and the slack one is too
+/// long.
 TEST(MapKinks, AreWhatThePiecesSayUpToTheirAccuracy) {
   const KinematicMap map(askew_map());
   int circles = 0;

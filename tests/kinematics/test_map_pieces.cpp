@@ -22,11 +22,11 @@ struct Made {
     piece.inputs = {0, 1};
     const Wanted wanted{Eigen::VectorXd::Constant(1, 0.01), {}, 0, most};
     PieceFit fit(data, wanted, piece);
-    for (RowMatrix asked = fit.next(); asked.rows() > 0; asked = fit.next()) {
-      std::vector<Sample> samples(asked.rows());
-      for (Index i = 0; i < asked.rows(); ++i) {
+    for (RowMatrix requested = fit.next(); requested.rows() > 0; requested = fit.next()) {
+      std::vector<Sample> samples(requested.rows());
+      for (Index i = 0; i < requested.rows(); ++i) {
         Sample& sample = samples[i];
-        sample.commands = asked.row(i);
+        sample.commands = requested.row(i);
         sample.values = Eigen::VectorXd::Constant(1, function(sample.commands));
         sample.slopes.resize(2, 1);
         for (Index j = 0; j < 2; ++j) {

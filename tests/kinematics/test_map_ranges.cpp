@@ -12,9 +12,9 @@ namespace {
 using namespace testing;
 
 /// A thick ball whose pressure has a maximum, and a force on it that has none in its range.
-RobotSpec ball_to_map(double most_kpa) {
+RobotSpec ball_to_map(double max_kpa) {
   RobotSpec spec = hollow_ball(4, 40, 6);
-  ActuatorSpec gas = by_load(air("hollow"), 0, most_kpa);
+  ActuatorSpec gas = by_load(air("hollow"), 0, max_kpa);
   gas.name = "gas";
   spec.actuators = {gas};
   spec.loads.forces.push_back(

@@ -19,7 +19,7 @@ class PolynomialSums : public ::testing::TestWithParam<Case> {
   Polynomials polynomials() {
     const auto [variables, count, sums] = GetParam();
     const Eigen::VectorXd decay = Eigen::VectorXd::LinSpaced(variables, 1, 1.5);
-    const Terms terms = variables == 0 ? Terms(1, 0) : least_terms(decay, count);
+    const Terms terms = variables == 0 ? Terms(1, 0) : min_terms(decay, count);
     return {terms, RowMatrix::NullaryExpr(terms.rows(), sums, [&] { return random(); })};
   }
 };
@@ -36,7 +36,7 @@ TEST_P(PolynomialSums, AreThoseOfTheirTerms) {
   };
   for (int n = 0; n < 20; ++n) {
     const Eigen::VectorXd x = Eigen::VectorXd::NullaryExpr(d, [&] { return 0.99 * random(); });
-    // what lies behind the results is not written to
+    // memory behind the results is not written to
     Eigen::VectorXd values = Eigen::VectorXd::Constant(size + 1, 7), alone = values;
     Eigen::VectorXd slopes = Eigen::VectorXd::Constant(d * size + 1, 7);
     sums.evaluate(x.data(), values.data(), slopes.data());

@@ -30,7 +30,7 @@ RobotSpec finger_on_a_syringe() {
 TEST(SealedKinematics, InverseKinematicsFindsWhatIsPushed) {
   const Model model = compile(finger_on_a_syringe());
   const Statics statics(model);
-  const Vec3 target = marker_at(model, settled(statics, values({1.7})));
+  const Vec3 target = marker_at(model, solve_converged(statics, values({1.7})));
   const InverseResult result = solve_inverse(statics, {{PositionGoal{0, target}}}, statics.rest());
   EXPECT_EQ(result.status, InverseStatus::reached) << result.remark;
   EXPECT_NEAR(result.equilibrium.actuation[0], 1.7, 0.05);
@@ -51,7 +51,7 @@ TEST(SealedKinematics, AMapTellsPressureAndVolume) {
   EXPECT_EQ(result.data.outputs[4].name, "chamber_ratio");
   const KinematicMap map(result.data);
   const Statics statics(model);
-  const Equilibrium there = settled(statics, values({1.234}));
+  const Equilibrium there = solve_converged(statics, values({1.234}));
   const double command = 1.234;
   Eigen::VectorXd found(5);
   ASSERT_TRUE(map.evaluate(&command, found.data()));

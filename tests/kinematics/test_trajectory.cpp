@@ -34,8 +34,8 @@ struct Robot {
   [[nodiscard]] Vec3 tip(const State& state) const { return model.markers[0].point.at(state.positions); }
 };
 
-Actuation turn(double share) {
-  const double angle = 2 * std::numbers::pi * share;
+Actuation turn(double fraction) {
+  const double angle = 2 * std::numbers::pi * fraction;
   return Actuation{{1.4 + 0.25 * std::cos(angle), 1.4 + 0.25 * std::sin(angle), 1.4 - 0.25 * std::cos(2 * angle)}};
 }
 
@@ -102,8 +102,8 @@ TEST(Trajectory, PredictionSavesEquilibria) {
   EXPECT_LT(mean_equilibria(predicted), 0.9 * mean_equilibria(plain));
 }
 
-/// Of all samples of the grid, each solved for alone, the one whose tip is nearest: the same commands whether the
-/// samples are made on the way or were known. Making them costs the first waypoint as many equilibria.
+/// Of all samples of the grid, each solved for alone, the one with the nearest tip is taken: the commands are the same
+/// whether the samples are made during the run or are given. Making them costs the first waypoint as many equilibria.
 TEST(Trajectory, NearestTakesTheNearestOfAllSamples) {
   for (const Formulation formulation : {Formulation::physical, Formulation::target_shape}) {
     const Robot robot(formulation);
@@ -284,16 +284,16 @@ TEST(Densified, InsertsEvenlyOnTheStraightLines) {
   MarkerPath path{{0, 1}, {{true, true, true}, {true, true, true}}, {}};
   path.waypoints.resize(3);
   path.waypoints[0] = {{Vec3(0, 0, 0), Vec3(5, 5, 5)}, 1.0, 2, false};
-  path.waypoints[1] = {{Vec3(3, 0, 0), Vec3(5, 9, 5)}, 3.0, 3, false};  // the second has the longer way: 4 mm
+  path.waypoints[1] = {{Vec3(3, 0, 0), Vec3(5, 9, 5)}, 3.0, 3, false};  // the second marker moves farther: 4 mm
   path.waypoints[2] = {{Vec3(3, 0, 0.9), Vec3(5, 9, 5)}, 3.5, 4, false};
   const MarkerPath dense = densified(path, 1);
   ASSERT_EQ(dense.waypoints.size(), 6u);
   for (std::size_t i = 0; i < 5; ++i) {
-    const double share = static_cast<double>(i) / 4;
+    const double fraction = static_cast<double>(i) / 4;
     EXPECT_EQ(dense.waypoints[i].inserted, i % 4 != 0);
-    EXPECT_LE((dense.waypoints[i].targets[0] - Vec3(3 * share, 0, 0)).norm(), 1e-12);
-    EXPECT_LE((dense.waypoints[i].targets[1] - Vec3(5, 5 + 4 * share, 5)).norm(), 1e-12);
-    EXPECT_NEAR(*dense.waypoints[i].time, 1 + 2 * share, 1e-12);
+    EXPECT_LE((dense.waypoints[i].targets[0] - Vec3(3 * fraction, 0, 0)).norm(), 1e-12);
+    EXPECT_LE((dense.waypoints[i].targets[1] - Vec3(5, 5 + 4 * fraction, 5)).norm(), 1e-12);
+    EXPECT_NEAR(*dense.waypoints[i].time, 1 + 2 * fraction, 1e-12);
   }
   EXPECT_FALSE(dense.waypoints[5].inserted);
   EXPECT_EQ(densified(path, 100).waypoints.size(), 3u);

@@ -77,7 +77,7 @@ TEST(Walk, LengthsAreThoseUnderDeadLoads) {
     loaded.loads.forces = {{"floor", {std::string("x_high"), {}}, {force, 0, 0}}};
     const Model model = compile(loaded);
     const Statics statics(model);
-    const Equilibrium found = testing::settled(statics, testing::values({command}));
+    const Equilibrium found = testing::solve_converged(statics, testing::values({command}));
     return (testing::marker_at(model, found, 1) - testing::marker_at(model, found, 0)).x();
   };
   EXPECT_NEAR(steps[1].front_mm - steps[1].rear_mm, length_under(pull, friction), 1e-6);
@@ -90,7 +90,7 @@ TEST(Walk, StandsWhereFrictionBearsThePull) {
     EXPECT_EQ(step.sliding, Sliding::none);
     EXPECT_EQ(step.rear_mm, 0);
     EXPECT_NEAR(step.front_mm, 60, 1e-9);
-    EXPECT_NEAR(step.friction_N, step.equilibrium.actuation[0], 1e-6);  // it bears the pull, the bar nothing
+    EXPECT_NEAR(step.friction_N, step.equilibrium.actuation[0], 1e-6);  // friction carries the tension, the bar nothing
   }
 }
 
@@ -138,7 +138,7 @@ TEST(Walk, TargetShapesSlideFreely) {
 
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium longer = testing::settled(statics, testing::values({2}), testing::tight(1e-8));
+  const Equilibrium longer = testing::solve_converged(statics, testing::values({2}), testing::tight(1e-8));
   const double change = testing::marker_at(model, longer, 1).x() - 50;
   ASSERT_GT(change, 0.5);
   EXPECT_NEAR(steps[2].travel_mm, change, 1e-6);

@@ -164,7 +164,7 @@ TEST(Workspace, SamplesWithoutAnEquilibriumAreTold) {
       EXPECT_EQ(sample.status, Status::converged) << number;
       continue;
     }
-    if (sample.status == Status::converged) continue;  // by another way
+    if (sample.status == Status::converged) continue;  // along another path
     ++missing;
     ASSERT_EQ(sample.status, Status::limit);
     ASSERT_GT(sample.reached, 0);
@@ -204,13 +204,13 @@ TEST(Workspace, FailuresOfTheDeskComeThrough) {
 TEST(Neighbourhood, PredictsToFirstOrder) {
   const PlannedRobot robot(two_ranged_cables(), Sampling::grid, 4);
   const Actuation centre = testing::values({0.9, 0.98}), change = testing::values({0.01, -0.004});
-  const Equilibrium at = testing::settled(robot.statics, centre);
+  const Equilibrium at = testing::solve_converged(robot.statics, centre);
   Neighbourhood around(robot.statics, at.state);
   const auto error = [&](double size) {
     const Actuation there = centre + size * change;
     const State predicted = around.predict(there);
     EXPECT_EQ(predicted.actuation, there);
-    return testing::distance(predicted.positions, testing::settled(robot.statics, there).state.positions);
+    return testing::distance(predicted.positions, testing::solve_converged(robot.statics, there).state.positions);
   };
   const double whole = error(1), half = error(0.5), quarter = error(0.25);
   EXPECT_NEAR(whole / half, 4, 0.8);

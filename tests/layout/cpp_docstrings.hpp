@@ -7,12 +7,12 @@
 
 namespace softkin::testing {
 
-/// Which public names of a header have no comment. A name has one where
+/// Finds the public names of a header that have no comment. A name has one where
 /// - lines of comments stand directly above its declaration, indented as it is, or
 /// - a comment stands behind it, on a line of its declaration (of a class its head, of a function before its body), or
-/// - it goes on a run of declarations, without an empty line between, the first of which has a comment above.
-/// No comment is asked of what says nothing new: declarations of classes, special members (destructors, copies, moves,
-/// what is defaulted or deleted), overriders, friends, using declarations, enumerators; nor of what is not public.
+/// - it continues a run of declarations, without an empty line between, the first of which has a comment above.
+/// No comment is required of classes that are only declared, special members (destructors, copies, moves, defaulted or
+/// deleted ones), overriders, friends, using declarations and enumerators, nor of members that are not public.
 class DocstringFinder {
  public:
   explicit DocstringFinder(const std::string& text) : tokens_(Tokenizer(text).tokens()) {
@@ -40,7 +40,7 @@ class DocstringFinder {
   struct Item {
     std::string name;
     std::size_t first = 0, head = 0, last = 0;  // lines: its first one, where its head ends, its last one
-    bool asked = true, type = false;
+    bool requested = true, type = false;
   };
 
   [[nodiscard]] const std::string& look(std::size_t at) const {
@@ -67,8 +67,8 @@ class DocstringFinder {
       } else {
         const Item item = read_item(owner, seen);
         run = has_comment_above(item) || (run && item.first == last + 1);
-        last = item.type ? 0 : item.last;  // what a comment says of a class is not of what follows
-        if (seen && item.asked) {
+        last = item.type ? 0 : item.last;  // the comment of a class does not apply to the next declaration
+        if (seen && item.requested) {
           ++names_;
           if (!run && !has_comment_behind(item)) bare_.push_back({owner + item.name, item.first});
         }
@@ -120,12 +120,12 @@ class DocstringFinder {
       skip("{", "}");
       if (type && tokens_[at_ - 1].line == item.first) item.head = item.first;
     } else {
-      item.asked = item.asked && !type;  // a class that is declared alone
+      item.requested = item.requested && !type;  // a class that is declared alone
       item.head = at_ < tokens_.size() ? tokens_[at_].line : item.first;
     }
     if (look(at_) == ";") ++at_;
     item.last = tokens_[at_ - 1].line;
-    item.asked = item.asked && !says_nothing_new(begin, item);
+    item.requested = item.requested && !says_nothing_new(begin, item);
     return item;
   }
 

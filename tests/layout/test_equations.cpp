@@ -105,7 +105,7 @@ using Numbers = std::set<int>;
 
 }  // namespace
 
-/// Where docs/paper.md says that something is an equation, its docstring says so too.
+/// If docs/paper.md names a function's equation, its docstring names it, too.
 TEST(Equations, StandBesideWhatThePaperPageNames) {
   const std::vector<Docstring> all = docstrings();
   const auto placed = placed_equations();

@@ -112,10 +112,10 @@ TEST(Headers, ThatArePublicHaveADocstringForEveryName) {
 TEST(Headers, ThatArePublicAreInTheTableOfTheDocument) {
   static const std::regex row(R"(\n\| `([\w/]+\.hpp)` \|)");
   const std::string text = text_of_source(project_folder / "docs/cpp.md");
-  Headers told;
+  Headers reported;
   for (std::sregex_iterator match(text.begin(), text.end(), row), end; match != end; ++match)
-    told.push_back((*match)[1].str());
-  EXPECT_EQ(told, public_headers());
+    reported.push_back((*match)[1].str());
+  EXPECT_EQ(reported, public_headers());
 }
 
 TEST(Headers, OfTheExamplesArePublic) {

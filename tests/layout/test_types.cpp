@@ -78,7 +78,7 @@ std::vector<std::string> defined_twice_in(const fs::path& root) {
   return found;
 }
 
-/// "type: members" of each with more than so many.
+/// Returns "type: members" of each type with more than `most` members.
 std::vector<std::string> larger_than(std::size_t most, const std::string& text) {
   std::vector<std::string> found;
   for (const testing::MemberCount& type : testing::MemberCounter(text).types())

@@ -66,8 +66,8 @@ inline BlockColumns ordered_pattern(const std::vector<Index>& widths, const Link
   return pattern;
 }
 
-/// balance: added to the diagonal, times the sign that a random share of the unknowns has.
-inline Symmetric make_sample(const std::vector<Index>& widths, const Links& links, double negative_share,
+/// Makes a sample. balance: added to the diagonal, times a sign that is negative for a random fraction of the unknowns
+inline Symmetric make_sample(const std::vector<Index>& widths, const Links& links, double negative_fraction,
                              unsigned seed) {
   Symmetric sample;
   sample.pattern = ordered_pattern(widths, links);
@@ -83,7 +83,7 @@ inline Symmetric make_sample(const std::vector<Index>& widths, const Links& link
       Eigen::MatrixXd block = Eigen::MatrixXd::NullaryExpr(p.width(i), p.width(j), [&] { return normal(engine); });
       if (i == j) {
         block = (block + block.transpose()).eval();
-        for (Index k = 0; k < p.width(j); ++k) block(k, k) += uniform(engine) < negative_share ? -6 : 6;
+        for (Index k = 0; k < p.width(j); ++k) block(k, k) += uniform(engine) < negative_fraction ? -6 : 6;
       }
       Eigen::Map<Eigen::MatrixXd>(sample.values.data() + p.offsets[e], p.width(i), p.width(j)) = block;
       sample.dense.block(p.unknowns[i], p.unknowns[j], p.width(i), p.width(j)) = block;
@@ -106,20 +106,20 @@ inline Eigen::MatrixXd random_matrix(Index rows, Index columns) {
   return Eigen::MatrixXd::NullaryExpr(rows, columns, [&] { return normal(engine); });
 }
 
-inline std::vector<Symmetric> samples(double negative_share) {
+inline std::vector<Symmetric> samples(double negative_fraction) {
   Links apart = grid_links(5, 4, 1);
   for (const auto& [a, b] : grid_links(3, 3, 3)) apart.emplace_back(20 + a, 20 + b);
   Links star;  // a hub that touches all
   for (Index i = 1; i < 40; ++i) star.emplace_back(0, i);
-  return {make_sample({1}, {}, negative_share, 1),
-          make_sample({6}, {}, negative_share, 2),
-          make_sample({3, 2}, {{0, 1}}, negative_share, 3),
-          make_sample({3, 2, 5}, {}, negative_share, 4),  // diagonal
-          make_sample(std::vector<Index>(60, 3), grid_links(60, 1, 1), negative_share, 5),
-          make_sample(std::vector<Index>(180, 3), grid_links(9, 5, 4), negative_share, 6),
-          make_sample(mixed_widths(180, 1), grid_links(9, 5, 4), negative_share, 7),
-          make_sample(mixed_widths(47, 2), apart, negative_share, 8),
-          make_sample(mixed_widths(40, 3), star, negative_share, 9)};
+  return {make_sample({1}, {}, negative_fraction, 1),
+          make_sample({6}, {}, negative_fraction, 2),
+          make_sample({3, 2}, {{0, 1}}, negative_fraction, 3),
+          make_sample({3, 2, 5}, {}, negative_fraction, 4),  // diagonal
+          make_sample(std::vector<Index>(60, 3), grid_links(60, 1, 1), negative_fraction, 5),
+          make_sample(std::vector<Index>(180, 3), grid_links(9, 5, 4), negative_fraction, 6),
+          make_sample(mixed_widths(180, 1), grid_links(9, 5, 4), negative_fraction, 7),
+          make_sample(mixed_widths(47, 2), apart, negative_fraction, 8),
+          make_sample(mixed_widths(40, 3), star, negative_fraction, 9)};
 }
 
 }  // namespace softkin::linear::testing

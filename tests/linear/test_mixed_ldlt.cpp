@@ -52,8 +52,8 @@ double error_of(MixedLdlt& factor, const Symmetric& sample, Index columns, Team&
 
 TEST(MixedLdlt, SinglePrecisionServesWhereItContracts) {
   Team alone(1);
-  for (const double negative_share : {0.0, 0.3})
-    for (const Symmetric& sample : samples(negative_share)) {
+  for (const double negative_fraction : {0.0, 0.3})
+    for (const Symmetric& sample : samples(negative_fraction)) {
       MixedLdlt factor = factor_of(sample);
       EXPECT_EQ(factorise(factor, sample, 1e-12, Precision::enough, alone).negative, negative_eigenvalues(sample));
       EXPECT_FALSE(factor.in_double());
@@ -66,11 +66,11 @@ TEST(MixedLdlt, SinglePrecisionServesWhereItContracts) {
     }
 }
 
-/// Whatever the eigenvalue nearest 0 is, its sign is told, and the error of solutions is what is promised.
+/// The sign of the eigenvalue nearest 0 is detected, whatever its size, and solutions have the promised accuracy.
 TEST(MixedLdlt, WhatIsNearlySingularIsFactorisedInDouble) {
   Team alone(1);
-  for (const double negative_share : {0.0, 0.3}) {
-    const Symmetric sample = make_sample(mixed_widths(60, 1), grid_links(5, 4, 3), negative_share, 7);
+  for (const double negative_fraction : {0.0, 0.3}) {
+    const Symmetric sample = make_sample(mixed_widths(60, 1), grid_links(5, 4, 3), negative_fraction, 7);
     int single = 0, twice = 0;
     for (double nearest = 1; nearest > 1e-10; nearest /= 4)
       for (const double sign : {1, -1})
@@ -88,16 +88,16 @@ TEST(MixedLdlt, WhatIsNearlySingularIsFactorisedInDouble) {
   }
 }
 
-/// Where the sign is all that matters single precision does for what is not definite, and says that it is a guess.
+/// Where only the sign matters, single precision suffices for indefinite matrices, and is reported as a guess.
 TEST(MixedLdlt, ASignNeedsNoDouble) {
   Team alone(1);
-  for (const double negative_share : {0.0, 0.3}) {
+  for (const double negative_fraction : {0.0, 0.3}) {
     const Symmetric sample =
-        shifted_to(make_sample(mixed_widths(60, 1), grid_links(5, 4, 3), negative_share, 7), 1e-10);
+        shifted_to(make_sample(mixed_widths(60, 1), grid_links(5, 4, 3), negative_fraction, 7), 1e-10);
     MixedLdlt factor = factor_of(sample);
     const Index negative = factorise(factor, sample, 1e-15, Precision::sign, alone).negative;
     const bool guessed = !factor.in_double();  // so near 0 rounding may turn what is definite into what is not
-    EXPECT_TRUE(guessed || negative_share == 0);
+    EXPECT_TRUE(guessed || negative_fraction == 0);
     EXPECT_NE(factor.trusted(), guessed);
     EXPECT_EQ(guessed, negative > 0);
     EXPECT_EQ(factorise(factor, sample, 1e-15, Precision::enough, alone).negative, negative_eigenvalues(sample));

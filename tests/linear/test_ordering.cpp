@@ -112,9 +112,9 @@ TEST(Ordering, MeshesOfOrderTwoAreDissectedAtTheirCornersToo) {
     std::sort(sorted.begin(), sorted.end());
     for (Index i = 0; i < bar.matrix.rows(); ++i) ASSERT_EQ(sorted[i], i);
     const auto flops = [&](const Ordering& order) { return make_front_tree(columns_of(bar.matrix, order)).flops; };
-    const double share = flops(found) / flops(alike);
-    EXPECT_LT(share, 1.05) << length << " " << width;
-    least = std::min(least, share);
+    const double fraction = flops(found) / flops(alike);
+    EXPECT_LT(fraction, 1.05) << length << " " << width;
+    least = std::min(least, fraction);
   }
   EXPECT_LT(least, 0.98);
 }

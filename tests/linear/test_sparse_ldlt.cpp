@@ -18,8 +18,8 @@ using namespace testing;
 template <class Number>
 void expect_solved(double rounding) {
   Team alone(1);
-  for (const double negative_share : {0.0, 0.3})
-    for (const Symmetric& sample : samples(negative_share)) {
+  for (const double negative_fraction : {0.0, 0.3})
+    for (const Symmetric& sample : samples(negative_fraction)) {
       SparseLdltOf<Number> factor(sample.pattern);
       const Pivots pivots = factor.factorise(sample.values, 1e-12, alone);
       const Eigen::VectorXd eigenvalues = symmetric_eigenvalues(sample.dense);

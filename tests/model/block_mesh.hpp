@@ -53,7 +53,7 @@ inline void split_cell(const std::array<Index, 8>& v, Split split, bool odd, Mes
   }
 }
 
-/// Elements alone; the lowest layer of cells may be split in another way, unless one of them is five.
+/// Returns elements alone; the lowest layer of cells may be split differently, unless one of the splits is `five`.
 [[nodiscard]] inline Mesh layered_mesh(const std::array<int, 3>& cells, const Vec3& size, Split above,
                                        Split lowest = Split::prisms) {
   Mesh mesh;

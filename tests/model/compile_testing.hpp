@@ -20,7 +20,7 @@ inline std::string refusal(const RobotSpec& spec) {
   return "";
 }
 
-/// A change that makes a good robot bad, and what the message must say.
+/// A change that makes a valid robot invalid, and a part of its message.
 struct BadCase {
   std::string what;
   std::function<void(RobotSpec&)> change;

@@ -17,7 +17,8 @@ struct Footprint {
   std::vector<Triangle> triangles;
 };
 
-/// A disc of radius 1 around the origin: so many rings of so many corners; with a hole no triangles at the middle.
+/// Returns a disc of radius 1 around the origin, of rings with equal numbers of corners; a hole leaves its middle
+/// empty.
 inline Footprint disc(int corners, int rings, double hole = 0) {
   Footprint plan;
   plan.vertices = Points::Zero(1 + corners * (hole > 0 ? rings + 1 : rings), 3);
@@ -75,7 +76,7 @@ inline Footprint ball_surface(int cuts) {
                      cuts);
 }
 
-/// Its half above z = 0, of a pyramid with so many sides.
+/// Returns its half above z = 0, of a pyramid with a number of sides.
 inline Footprint dome_surface(int sides, int cuts) {
   std::vector<Vec3> at;
   std::vector<Triangle> triangles;

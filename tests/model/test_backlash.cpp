@@ -3,7 +3,7 @@
 #include <random>
 #include <softkin/model/backlash.hpp>
 
-/// What acts of commands where motors have play.
+/// Effective commands of motors with play.
 
 namespace softkin {
 
@@ -29,15 +29,15 @@ Actuation pair_of(double first, double second) {
 
 TEST(Backlash, LagsBehindWhatFalls) {
   const Model model = two_loads(0.5, 0);
-  const std::vector<double> told{0, 1, 3, 2.8, 2, 1, 1.2, 1.5, 1.6, 0, -2},
+  const std::vector<double> reported{0, 1, 3, 2.8, 2, 1, 1.2, 1.5, 1.6, 0, -2},
       acts{0, 1, 3, 3, 2.5, 1.5, 1.5, 1.5, 1.6, 0.5, -1.5};
   std::vector<Actuation> commands;
-  for (const double each : told) commands.push_back(pair_of(each, each));
+  for (const double each : reported) commands.push_back(pair_of(each, each));
   const std::vector<Actuation> found = acting_in_order(model, model.rest_actuation(), commands);
-  ASSERT_EQ(found.size(), told.size());
-  for (std::size_t i = 0; i < told.size(); ++i) {
+  ASSERT_EQ(found.size(), reported.size());
+  for (std::size_t i = 0; i < reported.size(); ++i) {
     EXPECT_DOUBLE_EQ(found[i][0], acts[i]) << i;
-    EXPECT_EQ(found[i][1], told[i]) << "without backlash";
+    EXPECT_EQ(found[i][1], reported[i]) << "without backlash";
   }
   EXPECT_DOUBLE_EQ(acting_in_order(model, pair_of(4, 4), commands)[0][0], 0.5) << "a start that is known";
 }
@@ -51,15 +51,15 @@ TEST(Backlash, KnowsNoRate) {
   double block = 0, motor = 0;
   Actuation before = pair_of(0, 0);
   for (int i = 0; i < 200; ++i) {
-    const double told = anywhere(engine);
-    before = acting(model, before, pair_of(told, 0));
+    const double reported = anywhere(engine);
+    before = acting(model, before, pair_of(reported, 0));
     constexpr int pieces = 1000;
     for (int piece = 1; piece <= pieces; ++piece) {
-      const double at = motor + (told - motor) * piece / pieces;
+      const double at = motor + (reported - motor) * piece / pieces;
       if (block < at) block = at;              // the stop that winds
       if (block > at + 0.7) block = at + 0.7;  // the one that lets go
     }
-    motor = told;
+    motor = reported;
     EXPECT_NEAR(before[0], block, 1e-12) << i;
   }
 }

@@ -49,7 +49,7 @@ TEST(Compile, ReversedElementsAreTurned) {
   model = compile(shell);
   EXPECT_EQ(model.elements.prisms, upright);
   EXPECT_TRUE(has_note(model, "1 element was reordered"));
-  // also where the triangles run the wrong way round
+  // also with triangles of the opposite orientation
   std::swap(shell.mesh.prisms[1][1], shell.mesh.prisms[1][2]);
   std::swap(shell.mesh.prisms[1][4], shell.mesh.prisms[1][5]);
   model = compile(shell);

@@ -59,7 +59,7 @@ std::set<Face> faces_of(const Actuator& actuator) {
   return faces;
 }
 
-/// The region's chamber and the space that a surface selects have the same faces, passed the same way, whatever
+/// The region's chamber and the space that a surface selects have the same faces with the same orientation, whatever
 /// the surface's facets.
 TEST(Cavity, ASurfaceSelectsTheFacesOfItsSpace) {
   for (const bool quadratic : {false, true}) {

@@ -14,10 +14,10 @@ namespace {
 
 using namespace testing;
 
-FibreSpec thread(std::vector<Vec3> way) {
+FibreSpec thread(std::vector<Vec3> path) {
   FibreSpec fibre;
   fibre.name = "thread";
-  fibre.way = std::move(way);
+  fibre.path = std::move(path);
   fibre.stiffness_N = 10;
   fibre.origin = line(7);
   return fibre;
@@ -25,7 +25,7 @@ FibreSpec thread(std::vector<Vec3> way) {
 
 FibreSpec coil() {
   FibreSpec fibre = thread({});
-  fibre.way = Helix{{5, 6, 5}, {2, 0, 0}, {0, 3, 0}, 3, 4, 4.5};
+  fibre.path = Helix{{5, 6, 5}, {2, 0, 0}, {0, 3, 0}, 3, 4, 4.5};
   return fibre;
 }
 
@@ -41,9 +41,9 @@ double length_of(const Fibre& fibre) {
   return length;
 }
 
-double length_of(const std::vector<Vec3>& way) {
+double length_of(const std::vector<Vec3>& path) {
   double length = 0;
-  for (std::size_t i = 0; i + 1 < way.size(); ++i) length += (way[i + 1] - way[i]).norm();
+  for (std::size_t i = 0; i + 1 < path.size(); ++i) length += (path[i + 1] - path[i]).norm();
   return length;
 }
 
@@ -67,27 +67,27 @@ TEST(CompileFibres, StraightOnesStretchAsTheShapeDoes) {
   std::mt19937 engine(3);
   std::uniform_real_distribution<double> within(0, 1);
   const auto drawn = [&] { return Vec3(30 * within(engine), 12 * within(engine), 10 * within(engine)); };
-  std::vector<std::vector<Vec3>> ways{{{0, 0, 0}, {30, 0, 0}},
-                                      {{0, 4, 5}, {30, 4, 5}},
-                                      {{0, 0, 5}, {30, 12, 5}},
-                                      {{2, 3, 10.5}, {25, 9, 10.5}},
-                                      {{15, -0.4, 3}, {15, 12.4, 3}}};
-  for (int i = 0; i < 20; ++i) ways.push_back({drawn(), drawn()});
+  std::vector<std::vector<Vec3>> paths{{{0, 0, 0}, {30, 0, 0}},
+                                       {{0, 4, 5}, {30, 4, 5}},
+                                       {{0, 0, 5}, {30, 12, 5}},
+                                       {{2, 3, 10.5}, {25, 9, 10.5}},
+                                       {{15, -0.4, 3}, {15, 12.4, 3}}};
+  for (int i = 0; i < 20; ++i) paths.push_back({drawn(), drawn()});
   Mat3 shape;
   shape << 1.3, 0.2, -0.4, -0.1, 0.8, 0.3, 0.5, 0.1, 1.1;
   for (const auto& [quadratic, split] :
        {std::pair{false, Split::five}, std::pair{true, Split::five}, std::pair{false, Split::prisms}})
-    for (const std::vector<Vec3>& way : ways) {
+    for (const std::vector<Vec3>& path : paths) {
       RobotSpec spec = block(quadratic, split);
-      spec.fibres = {thread(way)};
+      spec.fibres = {thread(path)};
       const Model model = compile(spec);
       const Fibre& fibre = model.reinforcement.fibres.at(0);
-      EXPECT_NEAR(length_of(fibre), length_of(way), 1e-9);
-      const Vec3 t = (way[1] - way[0]).normalized();
+      EXPECT_NEAR(length_of(fibre), length_of(path), 1e-9);
+      const Vec3 t = (path[1] - path[0]).normalized();
       EXPECT_NEAR(stretch_of(fibre, model.rest * shape.transpose()), (shape * t).norm(), 1e-9);
       EXPECT_NEAR(stretch_of(fibre, model.rest), 1, 1e-9);
       for (std::size_t k = 0; k < 2; ++k)
-        EXPECT_LT(((k == 0 ? fibre.knots.front() : fibre.knots.back()).at(model.rest) - way[k]).norm(), 1e-9);
+        EXPECT_LT(((k == 0 ? fibre.knots.front() : fibre.knots.back()).at(model.rest) - path[k]).norm(), 1e-9);
     }
 }
 
@@ -114,7 +114,7 @@ TEST(CompileFibres, Helices) {
   for (const bool left : {false, true}) {
     RobotSpec spec = block(false);
     FibreSpec fibre = coil();
-    std::get<Helix>(fibre.way).left_handed = left;
+    std::get<Helix>(fibre.path).left_handed = left;
     spec.fibres = {fibre};
     const Model model = compile(spec);
     const double turn = 2 * std::numbers::pi * 3;
@@ -182,7 +182,7 @@ TEST(CompileFibres, Refusals) {
   const auto helix = [](const std::function<void(Helix&)>& change) {
     return [change](RobotSpec& spec) {
       spec.fibres = {coil()};
-      change(std::get<Helix>(spec.fibres[0].way));
+      change(std::get<Helix>(spec.fibres[0].path));
     };
   };
   expect_refused(good, {{"one point",

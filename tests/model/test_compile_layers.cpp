@@ -95,7 +95,7 @@ TEST(CompileLayers, TurnFreelyWhereTheyAreFoldedAndAreClampedByWhatIsHeld) {
   const Layer& layer = *clamped.reinforcement.layers[0];
   EXPECT_EQ(layer.bends.size(), 3u * 24u);
   EXPECT_EQ(std::count_if(layer.joints.begin(), layer.joints.end(),
-                          [](const LayerJoint& joint) { return joint.joint.share[0] == 1; }),
+                          [](const LayerJoint& joint) { return joint.joint.fraction[0] == 1; }),
             2 * 3);
 }
 

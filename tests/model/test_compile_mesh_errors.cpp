@@ -90,7 +90,7 @@ TEST(MeshErrors, TheScreenAgreesWithTheCheck) {
     const bool wrong = !(check.duplicate_elements.empty() && check.overlapping.empty() &&
                          check.nonmanifold_faces.empty() && check.nonmanifold_quads.empty());
     clashes += wrong;
-    EXPECT_EQ(share_a_side(mesh.tetrahedra, {}, mesh.prisms, mesh.vertices.rows()), wrong);
+    EXPECT_EQ(have_common_side(mesh.tetrahedra, {}, mesh.prisms, mesh.vertices.rows()), wrong);
   }
   EXPECT_GT(clashes, 50);
 }

@@ -192,7 +192,7 @@ TEST(Physical, LoadControlRestsAtZero) {
   EXPECT_EQ(model.rest_actuation(), Eigen::Vector2d(0, 2));
   ASSERT_EQ(model.notes.size(), 1u);
   EXPECT_EQ(model.notes[0],
-            "The range [2, 9] of actuator 'tendon' excludes its load at rest 0: where none is asked for, 2 is taken.");
+            "The range [2, 9] of actuator 'tendon' excludes its load at rest 0: where none is requested, 2 is taken.");
 }
 
 TEST(Physical, ActuatorRefusals) {
@@ -275,14 +275,14 @@ RobotSpec charged_shell() {
   return shell;
 }
 
-PrismValues shares_of(const std::vector<Index>& prisms) {
-  PrismValues shares;
+PrismValues fractions_of(const std::vector<Index>& prisms) {
+  PrismValues fractions;
   for (const Index prism : prisms) {
-    shares.prisms.push_back(prism);
-    shares.values.push_back(0.1 * prism);
-    shares.origins.push_back({.file = "share.csv", .line = static_cast<std::size_t>(prism) + 2});
+    fractions.prisms.push_back(prism);
+    fractions.values.push_back(0.1 * prism);
+    fractions.origins.push_back({.file = "share.csv", .line = static_cast<std::size_t>(prism) + 2});
   }
-  return shares;
+  return fractions;
 }
 
 }  // namespace
@@ -292,20 +292,21 @@ TEST(Physical, ALayerUnderVoltage) {
   const Model model = compile(spec);
   EXPECT_EQ(model.actuators[0].control, Control::load);
   EXPECT_EQ(model.elements.materials[0].permittivity, 3);
-  EXPECT_EQ(model.actuators[0].as<DeaDrive>()->shares, std::vector<double>(8, 1));
+  EXPECT_EQ(model.actuators[0].as<DeaDrive>()->fractions, std::vector<double>(8, 1));
   EXPECT_EQ(model.rest_actuation()[0], 0);
-  spec.actuators[0].as<DeaSpec>()->shares = shares_of({3, 1, 0, 2, 7, 6, 5, 4});
+  spec.actuators[0].as<DeaSpec>()->fractions = fractions_of({3, 1, 0, 2, 7, 6, 5, 4});
   const Model shared = compile(spec);
   const auto& dea = *shared.actuators[0].as<DeaDrive>();
-  for (std::size_t i = 0; i < 8; ++i) EXPECT_EQ(dea.shares[i], 0.1 * dea.prisms[i]);  // all of the mesh, in its order
+  for (std::size_t i = 0; i < 8; ++i)
+    EXPECT_EQ(dea.fractions[i], 0.1 * dea.prisms[i]);  // all of the mesh, in its order
   EXPECT_NE(fingerprint_of(model), fingerprint_of(shared));
   spec.materials[0].permittivity = 4;
   EXPECT_NE(fingerprint_of(shared), fingerprint_of(compile(spec)));
 }
 
 TEST(Physical, RefusalsOfVoltages) {
-  const auto shares = [](std::vector<Index> prisms) {
-    return [=](RobotSpec& s) { s.actuators[0].as<DeaSpec>()->shares = shares_of(prisms); };
+  const auto fractions = [](std::vector<Index> prisms) {
+    return [=](RobotSpec& s) { s.actuators[0].as<DeaSpec>()->fractions = fractions_of(prisms); };
   };
   expect_refused(
       charged_shell(),
@@ -319,20 +320,20 @@ TEST(Physical, RefusalsOfVoltages) {
         [](RobotSpec& s) {
           s.actuators[0].control = Control::ratio;
           s.actuators[0].low = s.actuators[0].rest = 1;
-          s.actuators[0].as<DeaSpec>()->shares = shares_of({0});
+          s.actuators[0].as<DeaSpec>()->fractions = fractions_of({0});
         },
-        "takes no shares of a voltage"},
+        "takes no fractions of a voltage"},
        {"target", [](RobotSpec& s) { s.formulation = Formulation::target_shape; },
         "is controlled by its load: that needs the physical formulation"},
-       {"some", shares({0, 1, 2, 3, 4, 5, 6}), "has no share of the voltage for prism 7 (from 0)"},
-       {"twice", shares({0, 1, 1}), "share.csv:3: prism 1 (from 0) is there twice"},
-       {"beyond", shares({8}), "share.csv:10: prism 8 (from 0) is none of the mesh's"},
+       {"some", fractions({0, 1, 2, 3, 4, 5, 6}), "has no fraction of the voltage for prism 7 (from 0)"},
+       {"twice", fractions({0, 1, 1}), "share.csv:3: prism 1 (from 0) is there twice"},
+       {"beyond", fractions({8}), "share.csv:10: prism 8 (from 0) is none of the mesh's"},
        {"sign",
         [](RobotSpec& s) {
-          s.actuators[0].as<DeaSpec>()->shares = shares_of({2});
-          s.actuators[0].as<DeaSpec>()->shares->values[0] = -0.5;
+          s.actuators[0].as<DeaSpec>()->fractions = fractions_of({2});
+          s.actuators[0].as<DeaSpec>()->fractions->values[0] = -0.5;
         },
-        "share.csv:4: prism 2 (from 0) has a share of the voltage of -0.5: 0 or more"}});
+        "share.csv:4: prism 2 (from 0) has a fraction of the voltage of -0.5: 0 or more"}});
 }
 
 TEST(Physical, TargetShapesKnowNoForces) {

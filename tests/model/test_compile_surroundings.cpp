@@ -36,7 +36,7 @@ Vec3 area_of(const Model& model, const std::vector<LoadedFace>& faces) {
   for (const LoadedFace& loaded : faces) {
     const Triangle& t = loaded.face.corners;
     const Vec3 a = vertex_at(model.rest, t[0]);
-    sum += 0.5 * loaded.share * (vertex_at(model.rest, t[1]) - a).cross(vertex_at(model.rest, t[2]) - a);
+    sum += 0.5 * loaded.fraction * (vertex_at(model.rest, t[1]) - a).cross(vertex_at(model.rest, t[2]) - a);
   }
   return sum;
 }

@@ -90,7 +90,7 @@ TEST(ContactModel, PartsAndTheirFriction) {
   EXPECT_TRUE(alone.pair(2, 1).touch);
 }
 
-/// Two beams, each with a floor below it that is told of the whole.
+/// Two beams, each with a floor below it; the contact of both is set on the whole.
 RobotSpec two_beams() {
   RobotSpec one = robot();
   one.contact.reset();
@@ -145,10 +145,9 @@ TEST(ContactModel, RobotsTouchEachOtherWhateverTheyDoToThemselves) {
   spec.contact->self = true;
   spec.regions.push_back({"upper", Halfspace{{0, 0, 6}, {0, 0, 1}}, line(3)});
   spec.contact->pairs = {{"upper", "ball", 0.8, line(7)}};
-  EXPECT_EQ(
-      refusal(spec),
-      "robot.yaml:7: region 'upper' is of robot 'left' and of robot 'right': what touches is of one of them; name "
-      "a region of each");
+  EXPECT_EQ(refusal(spec),
+            "robot.yaml:7: region 'upper' is of robot 'left' and of robot 'right': contacts are of one of them; name "
+            "a region of each");
 }
 
 TEST(ContactModel, FacesOfARegion) {

@@ -57,7 +57,7 @@ std::vector<Index> boundary_nodes(const Mesh& mesh, const Accept& accept) {
 }
 
 /// The least Jacobian of all elements over that of their corners, at the points of a lattice: by brute force.
-double least_on_lattice(const Mesh& mesh, int steps) {
+double min_on_lattice(const Mesh& mesh, int steps) {
   double least = HUGE_VAL;
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
     const TetrahedronNodes nodes = nodes_of(mesh.vertices, mesh.tetrahedra[t], mesh.edge_nodes[t]);
@@ -83,16 +83,16 @@ TEST(JacobianBound, IsBelowWhatSamplesFindAndExactOnStraightEdges) {
     nodes << 0, 0, 0, 1, 0, 0, 0, 1, 0, 0, 0, 1, Eigen::Matrix<double, 6, 3>::Zero();
     for (int e = 0; e < 6; ++e)
       nodes.row(e + 4) = 0.5 * (nodes.row(tetrahedron_edges[e][0]) + nodes.row(tetrahedron_edges[e][1]));
-    EXPECT_NEAR(least_jacobian_bound(nodes), 1, 1e-14);
+    EXPECT_NEAR(min_jacobian_bound(nodes), 1, 1e-14);
     for (int e = 4; e < 10; ++e) nodes.row(e) += 0.15 * Eigen::RowVector3d(real(random), real(random), real(random));
     Mesh mesh;
     mesh.vertices = nodes;
     mesh.tetrahedra = {{0, 1, 2, 3}};
     mesh.edge_nodes = {{4, 5, 6, 7, 8, 9}};
-    const double least = least_on_lattice(mesh, 16), bound = least_jacobian_bound(nodes);
+    const double least = min_on_lattice(mesh, 16), bound = min_jacobian_bound(nodes);
     EXPECT_LE(bound, least + 1e-14);
     EXPECT_GT(bound, least - 0.5);
-    EXPECT_LE(bound, least_jacobian(nodes) + 1e-14);
+    EXPECT_LE(bound, min_jacobian(nodes) + 1e-14);
   }
 }
 
@@ -122,7 +122,7 @@ TEST(CurvedEdges, ABallIsRound) {
       EXPECT_NEAR(measure_curved(ball.mesh).volume, exact, (cuts == 1 ? 3e-3 : 3e-4) * exact);
       EXPECT_LT(measure_curved(ball.straight).volume, (cuts == 1 ? 0.88 : 0.97) * exact);
       EXPECT_EQ(ball.done.held_back, 0u);
-      EXPECT_GT(least_on_lattice(ball.mesh, 6), 0.1);
+      EXPECT_GT(min_on_lattice(ball.mesh, 6), 0.1);
     }
   }
 }
@@ -187,7 +187,7 @@ TEST(CurvedEdges, WhatHasFlatSidesStaysAsItIs) {
   EXPECT_GT(curved_mesh(rod_mesh(6, 1, 4, 10, 40), smooth_curve(65)).done.moved, 0u);
 }
 
-/// What lies inside is curved where regions meet: a chamber in a rod, of elements of its own.
+/// Interfaces of regions are curved, too: a chamber in a rod, with elements of its own.
 TEST(CurvedEdges, RegionsInsideAreRoundToo) {
   Mesh mesh = rod_mesh(12, 2, 8, 10, 60);
   Region chamber;
@@ -221,7 +221,7 @@ TEST(CurvedEdges, TurnAndMoveWithTheMesh) {
 
 namespace {
 
-/// Curves so many random bodies; what holds of each is checked by brute force.
+/// Curves `count` random bodies; brute force checks the invariants of each.
 void check_random_bodies(unsigned first, int count) {
   std::size_t moved = 0, held = 0;
   for (int i = 0; i < count; ++i) {
@@ -229,7 +229,7 @@ void check_random_bodies(unsigned first, int count) {
     const CurvedMesh body = curved_mesh(RandomRound(seed).draw(), smooth_curve(seed % 2 == 0 ? 50 : 65));
     moved += body.done.moved;
     held += body.done.held_back;
-    ASSERT_GT(least_on_lattice(body.mesh, 6), 0.1 - 1e-9) << seed;
+    ASSERT_GT(min_on_lattice(body.mesh, 6), 0.1 - 1e-9) << seed;
     ASSERT_LE(largest_bulge(body.mesh), 0.25) << seed;
     const Index corners = RandomRound(seed).draw().vertices.rows();
     ASSERT_EQ(body.mesh.vertices.topRows(corners), body.straight.vertices.topRows(corners)) << seed;

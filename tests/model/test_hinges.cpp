@@ -11,7 +11,7 @@ namespace {
 using testing::block_mesh;
 using testing::physical_robot;
 
-/// Two cubes of 10 mm, apart but for so many shared vertices: of the second's face x = 10.
+/// Returns two cubes of 10 mm that have only the given vertices in common, on the second's face x = 10.
 RobotSpec two_cubes(const std::vector<std::pair<double, double>>& shared) {
   Mesh mesh = block_mesh({1, 1, 1}, {10, 10, 10});
   const Mesh other = block_mesh({1, 1, 1}, {10, 10, 10});

@@ -68,7 +68,7 @@ TEST(PrimitiveSurfaces, ASphereLiesBetweenTwo) {
   const Sphere sphere{{1, -2, 30}, 20};
   const auto& [surface, sagitta] = faceted(sphere, 0.05);
   EXPECT_LE(sagitta, 0.05);
-  EXPECT_GT(sagitta, 0.04);  // no finer than asked for
+  EXPECT_GT(sagitta, 0.04);  // no finer than requested
   const double inner = 20 - sagitta;
   EXPECT_GT(closed_volume(surface), 4 / 3.0 * pi * inner * inner * inner);
   EXPECT_LT(closed_volume(surface), 4 / 3.0 * pi * 8000);
@@ -90,8 +90,8 @@ TEST(PrimitiveSurfaces, ASphereLiesBetweenTwo) {
 
 TEST(PrimitiveSurfaces, AFineSphereStopsAtTheMost) {
   const auto& [surface, sagitta] = faceted(Sphere{{0, 0, 0}, 1}, 1e-9);
-  EXPECT_LE(surface.triangles.size(), most_facets);
-  EXPECT_GT(surface.triangles.size(), most_facets * 9 / 10);
+  EXPECT_LE(surface.triangles.size(), max_facets);
+  EXPECT_GT(surface.triangles.size(), max_facets * 9 / 10);
   EXPECT_GT(sagitta, 1e-9);
   EXPECT_LT(sagitta, 1e-3);
 }

@@ -49,7 +49,7 @@ TEST(QuadraticTetrahedron, IntegralsOfStraightAndCurvedElements) {
   TetrahedronNodes nodes = unit_tetrahedron();
   TetrahedronWeights integrals = shape_integrals(nodes);
   for (int i = 0; i < 10; ++i) EXPECT_NEAR(integrals[i], i < 4 ? -1 / 120.0 : 1 / 30.0, 1e-16);
-  EXPECT_NEAR(least_jacobian(nodes), 1, 1e-14);
+  EXPECT_NEAR(min_jacobian(nodes), 1, 1e-14);
   nodes.col(0).swap(nodes.col(1));
   EXPECT_NEAR(shape_integrals(nodes).sum(), -1 / 6.0, 1e-16);
   nodes.col(0).swap(nodes.col(1));
@@ -62,7 +62,7 @@ TEST(QuadraticTetrahedron, IntegralsOfStraightAndCurvedElements) {
   EXPECT_NEAR(integrals.sum(), power(0) + 2 * s * power(1), 1e-15);
   // integral of the image's x: (x + s x^2)(1 + 2 s x)
   EXPECT_NEAR(integrals.dot(nodes.col(0)), power(1) + 3 * s * power(2) + 2 * s * s * power(3), 1e-15);
-  EXPECT_NEAR(least_jacobian(nodes), 1, 1e-14);
+  EXPECT_NEAR(min_jacobian(nodes), 1, 1e-14);
 }
 
 TEST(QuadraticTetrahedron, TheRuleIsExactToDegreeFive) {

@@ -46,7 +46,7 @@ struct TurnedBody {
     return volume;
   }
 
-  /// finer  every element is cut into so many along and around
+  /// finer  number of elements along and around into which every element is cut
   [[nodiscard]] Mesh mesh(unsigned seed, int finer = 1) const;
 };
 

@@ -184,7 +184,7 @@ std::vector<std::string> resumed() {
   return options;
 }
 
-/// What ends a run that is on its way leaves no process behind, and the table is gone on with.
+/// An interrupted run leaves no process behind, and another run continues its table.
 void expect_resumed(int ranks, const std::function<void(const StartedRanks&)>& end) {
   static const std::string whole = [] {
     const RanksFolder alone(small_ranges());

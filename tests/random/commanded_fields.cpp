@@ -29,7 +29,7 @@ CommandedFields::CommandedFields(const Model& model, const State& state) {
     }
   }
   for (DipoleField& dipole : of_source) {
-    dipole.moment *= state.share;
+    dipole.moment *= state.load_factor;
     if (!dipole.moment.isZero(0)) dipoles.push_back(dipole);
   }
 }

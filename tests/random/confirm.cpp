@@ -19,17 +19,17 @@ std::string digits(double value) {
 }
 
 Points held_places(const Model& model, const State& state) {
-  Points places = model.rest + state.share * (model.held.at - model.rest);
+  Points places = model.rest + state.load_factor * (model.held.at - model.rest);
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const auto* command = model.actuators[a].as<TurnCommand>();
     if (!command) continue;
     const SupportTurn& turn = model.held.turns[command->turn];
-    const double angle = state.share * state.actuation[a] * std::acos(-1.0) / 180;
+    const double angle = state.load_factor * state.actuation[a] * std::acos(-1.0) / 180;
     for (const Index v : turn.vertices) {  // Rodrigues
       const Vec3 arm = model.rest.row(v).transpose() - turn.about;
       const Vec3 turned = std::cos(angle) * arm + std::sin(angle) * turn.axis.cross(arm) +
                           (1 - std::cos(angle)) * turn.axis.dot(arm) * turn.axis;
-      places.row(v) = (turn.about + turned + state.share * turn.displacement).transpose();
+      places.row(v) = (turn.about + turned + state.load_factor * turn.displacement).transpose();
     }
   }
   return places;
@@ -70,7 +70,7 @@ std::pair<Real, Real> quadratic_jacobian(const Points& p, const Tetrahedron& t, 
   return {columns.determinant(), largest * largest * largest};
 }
 
-/// -1, 0 (too near to say) or 1: the least sign at the corners and the four points of the energy's rule.
+/// Returns -1, 0 (undecided) or 1: the minimum sign at the corners and the four points of the energy's quadrature rule.
 int quadratic_orientation(const Points& p, const Tetrahedron& t, const EdgeNodes& edges) {
   const Real far = (5 - std::sqrt(5.0L)) / 20, near = 1 - 3 * far;
   double coordinates = 0;
@@ -118,7 +118,7 @@ void check_report(const Actuation& command, const Equilibrium& found, Confirmati
   if (!state.positions.allFinite()) out.faults.emplace_back("a coordinate is not finite");
   if (!state.multipliers.allFinite()) out.faults.emplace_back("a tension or pressure is not finite");
   for (const double value : {report.energy, report.step_mm, report.tolerance_mm, report.gradient_norm,
-                             report.estimated_error_mm, report.reached, state.share})
+                             report.estimated_error_mm, report.reached, state.load_factor})
     if (!std::isfinite(value)) {
       out.faults.emplace_back("a number of the report is not finite");
       break;
@@ -132,7 +132,7 @@ void check_report(const Actuation& command, const Equilibrium& found, Confirmati
     out.faults.emplace_back("the answer is for another command");
   if (report.status != Status::converged) return;
   if (report.reached != 1) out.faults.push_back("converged, but reached is " + digits(report.reached));
-  if (state.actuation.size() != command.size() || state.actuation != command || state.share != 1)
+  if (state.actuation.size() != command.size() || state.actuation != command || state.load_factor != 1)
     out.faults.emplace_back("converged, but its state is that of another command");
 }
 

@@ -6,8 +6,9 @@ namespace softkin::random_robots {
 
 namespace {
 
-/// A face of order 2 touches by four flat triangles, whose corners between stand by a third of the arc's height beyond
-/// the nodes: they are 4/3 of the node less 1/6 of either end, and hand what they bear to these in the same shares.
+/// A face of order 2 makes contact by four flat triangles, whose corners between stand by a third of the arc's height
+/// beyond the nodes: they are 4/3 of the node less 1/6 of either end, and distribute their force to these with the same
+/// weights.
 constexpr double to_node = 4.0 / 3, to_end = -1.0 / 6;
 
 }  // namespace

@@ -92,11 +92,11 @@ RealVec3 sheet_stress(const SheetLaw& law, const RealVec3& strain) {
 void add_membrane(const Layer& layer, const State& state, Forces& forces) {
   for (const LayerPlace& place : layer.places) {
     SheetGradient f = SheetGradient::Zero();
-    Real shares = 0;
+    Real fractions = 0;
     for (std::size_t i = 0; i < place.vertices.size(); ++i) {
       const RealVec3 x = state.positions.row(place.vertices[i]).transpose().cast<Real>();
       f += x * place.slopes[i].transpose().cast<Real>();
-      shares += x.norm() * static_cast<Real>(place.slopes[i].norm());
+      fractions += x.norm() * static_cast<Real>(place.slopes[i].norm());
     }
     const Plane c = f.transpose() * f;
     const RealVec3 s = sheet_stress(layer.law, {(c(0, 0) - 1) / 2, (c(1, 1) - 1) / 2, c(0, 1)});
@@ -107,7 +107,7 @@ void add_membrane(const Layer& layer, const State& state, Forces& forces) {
     for (std::size_t i = 0; i < place.vertices.size(); ++i) {
       const Eigen::Matrix<Real, 2, 1> slope = place.slopes[i].cast<Real>();
       forces.add(place.vertices[i], volume * (f * (stress * slope)),
-                 rounding_unit * volume * modulus * slope.norm() * (sums * shares + 1));
+                 rounding_unit * volume * modulus * slope.norm() * (sums * fractions + 1));
       forces.stiffness[place.vertices[i]] += volume * modulus * slope.squaredNorm();
     }
   }
@@ -115,17 +115,17 @@ void add_membrane(const Layer& layer, const State& state, Forces& forces) {
 
 using Corners = std::vector<RealVec3>;
 
-RealVec3 summed(const Corners& corners, const std::vector<Real>& shares) {
+RealVec3 summed(const Corners& corners, const std::vector<Real>& fractions) {
   RealVec3 sum = RealVec3::Zero();
-  for (std::size_t i = 0; i < corners.size(); ++i) sum += shares[i] * corners[i];
+  for (std::size_t i = 0; i < corners.size(); ++i) sum += fractions[i] * corners[i];
   return sum;
 }
 
 template <class Parts>
 std::vector<Real> column_of(const std::vector<Parts>& parts, int column) {
-  std::vector<Real> shares;
-  for (const Parts& part : parts) shares.push_back(static_cast<Real>(part[column]));
-  return shares;
+  std::vector<Real> fractions;
+  for (const Parts& part : parts) fractions.push_back(static_cast<Real>(part[column]));
+  return fractions;
 }
 
 Real energy_of(const LayerBend& bend, const Corners& x) {
@@ -147,7 +147,7 @@ Real energy_of(const LayerJoint& layer, const Corners& x) {
                       x.begin() + static_cast<std::ptrdiff_t>(first + layer.sides[s].vertices.size()));
     const auto at = [&](int column) { return summed(own, column_of(layer.sides[s].parts, column)); };
     above[s] = static_cast<Real>(joint.upwards[s]) * at(0).cross(at(1)).normalized();
-    moment += static_cast<Real>(joint.share[s]) * (above[s].dot(at(2)) - static_cast<Real>(joint.moment[s]));
+    moment += static_cast<Real>(joint.fraction[s]) * (above[s].dot(at(2)) - static_cast<Real>(joint.moment[s]));
     if (s == 0) edge = static_cast<Real>(joint.along[0]) * at(0) + static_cast<Real>(joint.along[1]) * at(1);
   }
   const Real jump = std::atan2(above[1].cross(above[0]).dot(edge.normalized()), above[0].dot(above[1])) -

@@ -14,7 +14,7 @@ void add_tractions(const Model& model, const State& state, Forces& forces) {
   for (std::size_t t = 0; t < model.loads.tractions.size(); ++t) {
     const FollowingTraction& traction = model.loads.tractions[t];
     if (!traction.deeper_MPa_mm.isZero(0)) continue;
-    Real pressure = static_cast<Real>(state.share) * static_cast<Real>(traction.pressure_MPa);
+    Real pressure = static_cast<Real>(state.load_factor) * static_cast<Real>(traction.pressure_MPa);
     for (std::size_t a = 0; a < model.actuators.size(); ++a)
       if (const auto* command = model.actuators[a].as<PressureCommand>();
           command && command->traction == static_cast<Index>(t))
@@ -36,8 +36,8 @@ void add_tractions(const Model& model, const State& state, Forces& forces) {
         const Eigen::JacobiSVD<Real3> parts(to * from.inverse(), Eigen::ComputeFullU | Eigen::ComputeFullV);
         const Real3 turn = parts.matrixU() * parts.matrixV().transpose();
         const RealVec3 force =
-            static_cast<Real>(loaded.share * point.weight) *
-            (static_cast<Real>(state.share) * normal.norm() * (turn * traction.traction_MPa.cast<Real>()) -
+            static_cast<Real>(loaded.fraction * point.weight) *
+            (static_cast<Real>(state.load_factor) * normal.norm() * (turn * traction.traction_MPa.cast<Real>()) -
              pressure * normal);
         for (std::size_t i = 0; i < nodes.size(); ++i)
           forces.add(nodes[i], -static_cast<Real>(point.shape[i]) * force, sums * rounding_unit * force.norm());
@@ -119,7 +119,7 @@ void add_liquid(const Model& model, const State& state, Forces& forces) {
                        std::vector<RealVec3>(nodes.size(), RealVec3::Zero())};
       face.add({0, 0}, {1, 0}, {0, 1}, halvings);
       for (std::size_t i = 0; i < nodes.size(); ++i) {
-        const RealVec3 force = static_cast<Real>(state.share * loaded.share) * face.force[i];
+        const RealVec3 force = static_cast<Real>(state.load_factor * loaded.fraction) * face.force[i];
         forces.add(nodes[i], force, sums * rounding_unit * force.norm());
       }
     }
@@ -130,10 +130,10 @@ void add_fibres(const Model& model, const State& state, Forces& forces) {
   for (const Fibre& fibre : model.reinforcement.fibres)
     for (const FibrePlace& place : fibre.places) {
       RealVec3 along = RealVec3::Zero();
-      Real shares = 0;
+      Real fractions = 0;
       for (std::size_t i = 0; i < place.vertices.size(); ++i) {
         along += static_cast<Real>(place.slopes[i]) * state.positions.row(place.vertices[i]).transpose().cast<Real>();
-        shares +=
+        fractions +=
             std::abs(static_cast<Real>(place.slopes[i])) * state.positions.row(place.vertices[i]).cast<Real>().norm();
       }
       const Real longer = along.norm() - 1, strain = fibre.tension_only ? std::max(Real(0), longer) : longer;
@@ -142,7 +142,7 @@ void add_fibres(const Model& model, const State& state, Forces& forces) {
       for (std::size_t i = 0; i < place.vertices.size(); ++i) {
         const Real slope = static_cast<Real>(place.slopes[i]);
         forces.add(place.vertices[i], slope * pull,
-                   rounding_unit * std::abs(slope) * length * stiffness * (sums * shares + 1));
+                   rounding_unit * std::abs(slope) * length * stiffness * (sums * fractions + 1));
         forces.stiffness[place.vertices[i]] += length * stiffness * slope * slope;
       }
     }

@@ -19,8 +19,8 @@ namespace {
 /// Of the largest force at a vertex; the solver's own criterion is a step.
 constexpr Real balanced = 1e-5L;
 /// Of what the solver's tolerance stands for: a robot that is only carried elsewhere has no force to compare with.
-constexpr Real share_of_tolerance = 1e-3L;
-/// Of the volume or length asked for.
+constexpr Real fraction_of_tolerance = 1e-3L;
+/// Tolerance relative to the requested volume or length.
 constexpr Real met = 1e-8L;
 
 RealPoints nodes_at(const Points& positions, const Index* nodes, int count) {
@@ -35,7 +35,7 @@ LayerDrive drive_of(const Model& model, const State& state, const ElementRole& r
   const Real command = state.actuation[role.actuator];
   const Actuator& dea = model.actuators[role.actuator];
   if (dea.control == Control::ratio) return {command, 0};
-  return {1 + static_cast<Real>(state.share) * (static_cast<Real>(dea.as<DeaDrive>()->prestretch) - 1),
+  return {1 + static_cast<Real>(state.load_factor) * (static_cast<Real>(dea.as<DeaDrive>()->prestretch) - 1),
           vacuum * static_cast<Real>(model.elements.materials[role.material].permittivity) * command * command};
 }
 
@@ -203,8 +203,8 @@ Measure length_of(const CableDrive& cable, const Points& positions) {
   return measure;
 }
 
-/// The same with every segment's slope times its tension over that at the motor, where it rubs: by what its eyelets
-/// remember. memory: of the first of them
+/// Replaces the gradient of a cable with friction: each segment's gradient is scaled by its tension over that at the
+/// motor, by the memory of its eyelets. memory: index of the first of them
 void rub(const CableDrive& cable, const Points& positions, const std::vector<double>& eyelets, std::size_t memory,
          double rest_length, Measure& measure) {
   const Real creep = 1e-4L * rest_length;
@@ -224,10 +224,10 @@ void rub(const CableDrive& cable, const Points& positions, const std::vector<dou
     }
     const Real slip = eyelets.empty() ? 0 : (eyelets[memory + i] - beyond[i]) / creep;
     logarithm -= limit * std::clamp<Real>(slip, -1, 1);
-    const Real share = std::exp(logarithm);
-    measure.slopes[i] -= share * along[i].normalized();
-    measure.slopes[i + 1] += share * along[i].normalized();
-    const Real blur = sums * rounding_unit * share * limit * (beyond[0] + positions.cwiseAbs().maxCoeff()) / creep;
+    const Real fraction = std::exp(logarithm);
+    measure.slopes[i] -= fraction * along[i].normalized();
+    measure.slopes[i + 1] += fraction * along[i].normalized();
+    const Real blur = sums * rounding_unit * fraction * limit * (beyond[0] + positions.cwiseAbs().maxCoeff()) / creep;
     measure.blurs[i] += blur;
     measure.blurs[i + 1] += blur;
   }
@@ -327,17 +327,17 @@ void check_measure(const Actuator& actuator, const Measure& now, const Measure& 
     return;
   }
   const Filling* filling = filling_of(actuator);
-  const Real asked = filling ? filled_volume(*filling, rest.value, command, multiplier) : command * rest.value;
-  const Real allowed = met * std::abs(asked) + sums * (now.rounding + rest.rounding);
+  const Real requested = filling ? filled_volume(*filling, rest.value, command, multiplier) : command * rest.value;
+  const Real allowed = met * std::abs(requested) + sums * (now.rounding + rest.rounding);
   const bool cable = actuator.is<CableDrive>();
   if (cable && multiplier < 0) out.faults.push_back(name + ": a tension of " + digits(multiplier) + " N");
   const bool slack = cable && multiplier == 0;
-  const Real miss = slack ? std::max<Real>(0, now.value - asked) : std::abs(now.value - asked);
-  if (!slack) out.constraint_error = std::max(out.constraint_error, static_cast<double>(miss / std::abs(asked)));
+  const Real miss = slack ? std::max<Real>(0, now.value - requested) : std::abs(now.value - requested);
+  if (!slack) out.constraint_error = std::max(out.constraint_error, static_cast<double>(miss / std::abs(requested)));
   if (!(miss <= allowed))
     out.faults.push_back(name + (slack ? ", slack," : "") + ": " + digits(static_cast<double>(now.value / rest.value)) +
                          " of its measure at rest instead of " + digits(command) + ", off by " +
-                         digits(static_cast<double>(miss / std::abs(asked))));
+                         digits(static_cast<double>(miss / std::abs(requested))));
 }
 
 /// Edges that the faces of a cavity do not pass once in each direction: 0 where it is a closed surface with one side.
@@ -354,7 +354,7 @@ int open_edges(const ChamberDrive& chamber) {
 
 void add_actuators(const Model& model, const Equilibrium& found, Forces& forces, Confirmation& out) {
   const State& state = found.state;
-  std::size_t memory = 0;  // of what rubs
+  std::size_t memory = 0;  // index of the next eyelet with friction
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const Actuator& actuator = model.actuators[a];
     const Index index = a;
@@ -376,7 +376,7 @@ void add_actuators(const Model& model, const Equilibrium& found, Forces& forces,
     Measure now = measure_of(actuator, state.positions);
     const Measure rest = measure_of(actuator, model.rest);
     check_measure(actuator, now, rest, state.actuation[index], multiplier, out);
-    if (rubs(actuator)) {
+    if (has_friction(actuator)) {
       const auto& cable = *actuator.as<CableDrive>();
       rub(cable, state.positions, state.eyelets, memory, static_cast<double>(rest.value), now);
       memory += cable.points.size() - 1;
@@ -491,7 +491,7 @@ struct Balance {
     const Real blur = sums * rounding;
     const Real of_tolerance = tolerance_mm * stiffness;
     const Real by_step = balanced * own_size + 2 * of_tolerance + blur;
-    const Real of_all = balanced * largest + share_of_tolerance * of_tolerance + blur;
+    const Real of_all = balanced * largest + fraction_of_tolerance * of_tolerance + blur;
     const Real over = residual / std::max<Real>(std::min(by_step, of_all), 1e-300L);
     if (blur < 1e-6L * largest && of_tolerance < largest) worst_ratio = std::max(worst_ratio, residual / largest);
     blurred = blurred || blur > 1e-3L * (largest + of_tolerance);
@@ -505,14 +505,13 @@ struct Balance {
   }
 };
 
-/// floor: near it, what pushes the region up and tilts it is not known
-/// What moments add up to on a rigid region.
+/// Returns the sum of the moments on a rigid region.
 RealVec3 moment_on(const Model& model, const RigidRegion& region, const State& state) {
   RealVec3 sum = RealVec3::Zero();
   for (std::size_t m = 0; m < model.loads.moments.size(); ++m) {
     if (!std::binary_search(region.vertices.begin(), region.vertices.end(), model.loads.moments[m].vertices[0]))
       continue;
-    sum += static_cast<Real>(state.share) * model.loads.moments[m].moment_Nmm.cast<Real>();
+    sum += static_cast<Real>(state.load_factor) * model.loads.moments[m].moment_Nmm.cast<Real>();
     for (std::size_t a = 0; a < model.actuators.size(); ++a)
       if (const auto* command = model.actuators[a].as<MomentCommand>();
           command && command->moment == static_cast<Index>(m))
@@ -521,6 +520,7 @@ RealVec3 moment_on(const Model& model, const RigidRegion& region, const State& s
   return sum;
 }
 
+// Forces and moments along z and about x and y are left out near the floor, whose contact force is not known.
 void enter_rigid(const Model& model, const RigidRegion& region, const State& state, const Forces& forces,
                  const ConfirmedFloor* floor, Balance& balance) {
   const Points& positions = state.positions;
@@ -566,7 +566,7 @@ void confirm_physical(const Model& model, const Equilibrium& found, const State&
   add_fibres(model, state, forces);
   add_layers(model, state, forces);
   for (Index v = 0; v < model.loads.dead.rows(); ++v)
-    forces.add(v, -static_cast<Real>(state.share) * model.loads.dead.row(v).transpose().cast<Real>(), 0);
+    forces.add(v, -static_cast<Real>(state.load_factor) * model.loads.dead.row(v).transpose().cast<Real>(), 0);
   if (!forces.sum.allFinite()) {
     out.faults.emplace_back("the law has no energy for this shape");
     return;

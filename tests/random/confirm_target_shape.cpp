@@ -16,8 +16,8 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 /// An SVD is as near as this to one with another best rotation [-].
 constexpr double tie = 1e-7;
 /// Steps over the tolerance that an answer may still have ahead, and units in the last place lost in the linear system.
-constexpr double most_steps = 5, lost = 64;
-constexpr double least_ratio = 0.01;  // of an actuation element
+constexpr double max_steps = 5, lost = 64;
+constexpr double min_ratio = 0.01;  // of an actuation element
 
 using Shape = Eigen::Matrix<double, Eigen::Dynamic, 3>;  // a point a row
 
@@ -132,30 +132,30 @@ struct Elements {
 
   void add_actuator(const Model& model, const Points& positions, const Actuator& actuator, double command,
                     const std::vector<std::vector<EmbeddedPoint>>& parts, const std::vector<double>& weights) {
-    double sum = 0, shares = 0, now = 0;
+    double sum = 0, fractions = 0, now = 0;
     // alike where the mesh must not matter; how many gaps a cable has does not depend on the mesh
     const bool alike = model.weights == ElementWeights::mesh_independent && !actuator.is<CableDrive>();
-    const auto share = [alike](double measure) { return alike ? 1 : measure; };
+    const auto fraction = [alike](double measure) { return alike ? 1 : measure; };
     std::vector<double> at_rest, ratios;
     for (const auto& nodes : parts) {
       at_rest.push_back(measure(actuator, shape_at(nodes, model.rest)));
       const double current = measure(actuator, shape_at(nodes, positions));
       ratios.push_back(current / at_rest.back());
       sum += at_rest.back();
-      shares += share(at_rest.back()) * at_rest.back();
+      fractions += fraction(at_rest.back()) * at_rest.back();
       now += current;
     }
     // a cable's pieces inside the body keep their length
-    const double asked = command * actuator.rest_measure - (actuator.rest_measure - sum);
+    const double requested = command * actuator.rest_measure - (actuator.rest_measure - sum);
     for (std::size_t i = 0; i < parts.size(); ++i) {
-      const double even = asked / sum;
+      const double even = requested / sum;
       const double free = actuator.distribution == Distribution::uniform ? even
-                          : actuator.distribution == Distribution::least_norm
-                              ? ratios[i] + share(at_rest[i]) * (asked - now) / shares
-                          : now > 0 ? ratios[i] * asked / now
+                          : actuator.distribution == Distribution::minimum_norm
+                              ? ratios[i] + fraction(at_rest[i]) * (requested - now) / fractions
+                          : now > 0 ? ratios[i] * requested / now
                                     : even;
       Element element{parts[i], centred(shape_at(parts[i], positions)),
-                      actuated(actuator, centred(shape_at(parts[i], model.rest)), std::max(least_ratio, free))};
+                      actuated(actuator, centred(shape_at(parts[i], model.rest)), std::max(min_ratio, free))};
       element.weight = weight_of(model, shape_at(parts[i], model.rest), actuator.weight * weights[i]);
       all.push_back(std::move(element));
     }
@@ -247,7 +247,7 @@ Eigen::MatrixXd moves_by_unknowns(const Model& model, const Points& positions) {
   return all;
 }
 
-/// The matrix of Eq. (10) of one coordinate, what pulls at the vertices, and how far rounding blurs that.
+/// The matrix of Eq. (10) for one coordinate, the forces on the vertices, and bounds of the rounding errors in them.
 struct Step {
   Eigen::MatrixXd matrix;
   Points pull, blur;
@@ -342,7 +342,7 @@ void confirm_target_shape(const Model& model, const Equilibrium& found, Confirma
   const double tolerance = found.report.tolerance_mm;
   out.blurred = hidden > 1e3 * tolerance;
   if (hidden < tolerance) out.step_ratio = moved / tolerance;
-  if (!step.undecided && !(moved <= most_steps * tolerance + hidden))
+  if (!step.undecided && !(moved <= max_steps * tolerance + hidden))
     out.faults.push_back("a step of Algorithm 1 still moves it by " + digits(moved) + " mm, tolerance " +
                          digits(tolerance) + " mm, rounding " + digits(hidden) + " mm");
 }

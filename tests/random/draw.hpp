@@ -20,7 +20,7 @@ class Draw {
   /// 0 <= result < count
   [[nodiscard]] int below(int count) { return static_cast<int>(engine_() % static_cast<std::uint64_t>(count)); }
   [[nodiscard]] int whole(int low, int high) { return low + below(high - low + 1); }
-  [[nodiscard]] bool chance(double share) { return unit() < share; }
+  [[nodiscard]] bool chance(double fraction) { return unit() < fraction; }
   template <class Value>
   [[nodiscard]] Value pick(std::initializer_list<Value> values) {
     return values.begin()[below(static_cast<int>(values.size()))];

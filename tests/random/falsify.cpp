@@ -45,7 +45,7 @@ std::vector<Lie> lies_about(const Model& model, const Equilibrium& truth) {
       lies.push_back({"another load", truth});
       lies.back().answer.state.multipliers[a] += 1e-6 * (1 + std::abs(truth.state.multipliers[a]));
     } else if (const Filling* filling = filling_of(model.actuators[a]);
-               filling && filling->gives_way() && !filling->liquid) {
+               filling && filling->yields() && !filling->liquid) {
       lies.push_back({"another pressure of a gas", truth});
       lies.back().answer.state.multipliers[a] += 1e-5 * (1e3 * filling->atmosphere_MPa + truth.state.multipliers[a]);
     } else if (model.actuators[a].is<CableDrive>() && model.formulation == Formulation::physical) {
@@ -61,7 +61,7 @@ std::vector<Lie> lies_about(const Model& model, const Equilibrium& truth) {
 }  // namespace
 
 int count_unnoticed_lies(std::uint64_t first, std::uint64_t count) {
-  int told = 0, unnoticed = 0;
+  int described = 0, unnoticed = 0;
   for (std::uint64_t seed = first; seed < first + count; ++seed) {
     const RandomCase robot = make_case(seed);
     if (!robot.sensible) continue;
@@ -73,7 +73,7 @@ int count_unnoticed_lies(std::uint64_t first, std::uint64_t count) {
       const Confirmation of_truth = confirm(model, robot.commands[0], truth, begun);
       if (truth.report.status != Status::converged || of_truth.blurred || !of_truth.faults.empty()) continue;
       for (const Lie& lie : lies_about(model, truth)) {
-        ++told;
+        ++described;
         if (!confirm(model, robot.commands[0], lie.answer, begun).faults.empty()) continue;
         ++unnoticed;
         std::printf("seed %llu: not noticed: %s\n", static_cast<unsigned long long>(seed), lie.name);
@@ -81,8 +81,8 @@ int count_unnoticed_lies(std::uint64_t first, std::uint64_t count) {
     } catch (const InvalidInput&) {  // nothing to lie about
     }
   }
-  std::printf("%d false answers, %d not noticed\n", told, unnoticed);
-  return told == 0 ? 1 : unnoticed;
+  std::printf("%d false answers, %d not noticed\n", described, unnoticed);
+  return described == 0 ? 1 : unnoticed;
 }
 
 }  // namespace softkin::random_robots

@@ -6,7 +6,7 @@
 
 namespace softkin::random_robots {
 
-/// A robot and what is asked of it, all of it a function of the seed.
+/// A robot and its commands, both functions of the seed.
 struct RandomCase {
   std::uint64_t seed = 0;
   bool sensible = true;               // built to be solved; else some of its features are odd
@@ -14,7 +14,7 @@ struct RandomCase {
   RobotSpec spec;                     // lengths in mm
   std::vector<Actuation> commands;    // one after another, each from the shape before
   StaticsOptions options;
-  bool forgets = false;     // what the shape before was an equilibrium of
+  bool forgets = false;     // the next solve starts from the positions of the last shape alone
   int interrupt_after = 0;  // calls of the progress callback; 0: never
 };
 

@@ -45,14 +45,14 @@ struct Options {
   int threads = 1;
   std::filesystem::path folder;
   bool effort = false;
-  int most = 0, most_of_99 = 0;  // iterations of a solve, and of 99 % of them; 0: as many as it takes
+  int most = 0, max_of_99 = 0;  // iterations of a solve, and of 99 % of them; 0: as many as it takes
 };
 
 Summary run_all(const Options& options) {
   Summary summary;
   std::mutex mutex;
   std::atomic<std::uint64_t> next{0};
-  auto told = std::chrono::steady_clock::now();
+  auto described = std::chrono::steady_clock::now();
   const auto work = [&] {
     for (std::uint64_t i; (i = next++) < options.count;) {
       current_seed = options.first + i;
@@ -61,8 +61,8 @@ Summary run_all(const Options& options) {
       summary.add(run);
       if (run.outcome == Outcome::failed)
         std::fprintf(stderr, "seed %llu failed: %s\n", static_cast<unsigned long long>(run.seed), run.message.c_str());
-      if (std::chrono::steady_clock::now() - told < std::chrono::seconds(20)) continue;
-      told = std::chrono::steady_clock::now();
+      if (std::chrono::steady_clock::now() - described < std::chrono::seconds(20)) continue;
+      described = std::chrono::steady_clock::now();
       std::fprintf(stderr, "%zu of %llu runs, %zu failed\n", summary.runs(),
                    static_cast<unsigned long long>(options.count), summary.failures().size());
     }
@@ -74,10 +74,10 @@ Summary run_all(const Options& options) {
   return summary;
 }
 
-bool takes_longer(const Summary& summary, double share, int most) {
-  const int took = summary.iterations_of(share);
+bool takes_longer(const Summary& summary, double fraction, int most) {
+  const int took = summary.iterations_of(fraction);
   if (most == 0 || took <= most) return false;
-  std::fprintf(stderr, "%g %% of the solves take up to %d iterations, more than %d\n", 100 * share, took, most);
+  std::fprintf(stderr, "%g %% of the solves take up to %d iterations, more than %d\n", 100 * fraction, took, most);
   return true;
 }
 
@@ -90,7 +90,7 @@ int run(const Options& options) {
     std::ofstream(options.folder / "summary.txt") << text;
     std::ofstream(options.folder / "failures.csv") << summary.failure_table();
   }
-  const bool most = takes_longer(summary, 0.99, options.most_of_99), all = takes_longer(summary, 1, options.most);
+  const bool most = takes_longer(summary, 0.99, options.max_of_99), all = takes_longer(summary, 1, options.most);
   return summary.failures().empty() && !most && !all ? 0 : 1;
 }
 
@@ -110,7 +110,7 @@ int main(int argc, char** argv) {
   app.add_option("--out", options.folder, "folder for summary.txt and failures.csv");
   app.add_flag("--stats", options.effort, "what solves took, and why steps of their ways were not taken");
   app.add_option("--most", options.most, "fail where a solve takes more iterations");
-  app.add_option("--most-of-99", options.most_of_99, "fail where more than 1 % of the solves take more iterations");
+  app.add_option("--most-of-99", options.max_of_99, "fail where more than 1 % of the solves take more iterations");
   const CLI::Option* one = app.add_option("--seed", seed, "one seed, told at length");
   bool falsify = false;
   app.add_flag("--falsify", falsify, "falsify answers: every false one must be noticed");

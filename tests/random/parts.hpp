@@ -75,7 +75,7 @@ void make_stiff(Making& m);
 void make_floor(Making& m);
 /// Some target shapes have weights that do not depend on the mesh.
 void make_weights(Making& m);
-/// Some supports turn, by angles that the commands say.
+/// Rotates some supports by commanded angles.
 void make_turns(Making& m);
 void make_tractions(Making& m);
 /// Moments on rigid ends; they and some pressures are commanded. After all that commands but loads.
@@ -87,7 +87,7 @@ void make_layers(Making& m);
 void make_mixed(Making& m);
 /// Some chambers that would be commanded by volume are sealed with gas or liquid; after all that changes the mesh.
 void make_sealed(Making& m);
-/// Some cables rub, in sheaths too.
+/// Gives some cables friction, also in sheaths.
 void make_friction(Making& m);
 
 }  // namespace softkin::random_robots

@@ -26,7 +26,7 @@ struct End {
 
 /// Is the robot's equilibrium a function of its loads? Friction and viscosity remember the path.
 bool depends_on_loads_alone(const RobotSpec& spec, const Model& model) {
-  if (model.contact.rubs()) return false;
+  if (model.contact.has_friction()) return false;
   for (const Actuator& actuator : model.actuators)
     if (const auto* cable = actuator.as<CableDrive>(); cable && (cable->friction > 0 || cable->sheath > 0))
       return false;
@@ -54,7 +54,7 @@ void add(Equilibrium found, End& end) {
   end.last = std::move(found);
 }
 
-std::string told(const char* run, const End& end) {
+std::string described(const char* run, const End& end) {
   const SolveReport& report = end.last.report;
   std::array<char, 400> text{};
   std::snprintf(text.data(), text.size(), "%s: %s at %.4g, %d iterations, snapped %g mm, %d unstable modes; %s", run,
@@ -89,7 +89,7 @@ End along_commands(const Statics& statics, const Actuation& command, const Stati
   return end;
 }
 
-/// Rows of the load factor of what acts without a command.
+/// Solves in equal steps of the load factor of loads without a command.
 End along_loads(const Model& model, const StaticsOptions& options, int rows) {
   End end;
   State state{model.rest, model.rest_actuation()};
@@ -125,7 +125,7 @@ PathRun compare(const RandomCase& robot, int rows, bool verbose) {
   const End path = commands ? along_commands(statics, command, options, rows) : along_loads(model, options, rows);
   run.path_converged = path.last.report.status == Status::converged;
   run.path_iterations = path.iterations;
-  run.text = told("one step", step) + " | " + told("path", path);
+  run.text = described("one step", step) + " | " + described("path", path);
   run.apart = (step.last.state.positions - path.last.state.positions).rowwise().norm().maxCoeff() / model.diagonal_mm;
   const auto reports = [](const End& end) { return end.snapped || end.last.report.status == Status::limit; };
   if (reports(step) || reports(path))

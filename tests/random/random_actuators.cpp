@@ -12,7 +12,7 @@ ActuatorSpec named(Making& m, DriveSpec drive, double low, double high) {
   spec.drive = std::move(drive);
   spec.low = low;
   spec.high = high;
-  spec.distribution = m.draw.chance(0.6) ? Distribution::least_norm : Distribution::uniform;
+  spec.distribution = m.draw.chance(0.6) ? Distribution::minimum_norm : Distribution::uniform;
   return spec;
 }
 

@@ -53,7 +53,7 @@ void make_magnetism(Making& m) {
   Draw draw(m.made.seed ^ own_draws);
   if (!draw.chance(m.physical ? 0.25 : 0.01)) return;
   const double remanence = draw.log_between(10, 1000);
-  // of a strain of about so much where the field is across the robot, which bends it by far more
+  // scaled to about this strain where the field is across the robot, which bends it by far more
   const double slender = std::min(1.0, std::min(m.size[1], m.size[2]) / m.size[0]);
   const double strain = m.is(Oddity::loads) ? draw.log_between(1e-4, 1e6) : draw.log_between(1e-6, 0.01);
   const double flux = strain * slender * slender * m.modulus / (inverse_permeability * remanence);

@@ -46,10 +46,10 @@ void add_regions(Making& m, bool closed) {
   }
 }
 
-void jitter(Making& m, double share) {
+void jitter(Making& m, double fraction) {
   Points& points = m.mesh().vertices;
   const Vec3 cell(m.size[0] / m.cells[0], m.size[1] / m.cells[1], m.size[2] / m.cells[2]);
-  for (Index v = 0; v < points.rows(); ++v) points.row(v) += share * m.draw.offset().cwiseProduct(cell).transpose();
+  for (Index v = 0; v < points.rows(); ++v) points.row(v) += fraction * m.draw.offset().cwiseProduct(cell).transpose();
 }
 
 }  // namespace
@@ -91,7 +91,7 @@ Index add_vertex(Mesh& mesh, const Vec3& place) {
   return static_cast<Index>(mesh.vertices.rows()) - 1;
 }
 
-/// Moves a vertex of an element to the plane of the others, but for a share of its height.
+/// Moves a vertex of an element towards the plane of the others, up to a fraction of its height.
 void flatten(Making& m) {
   if (m.mesh().tetrahedra.empty()) return;
   const Tetrahedron t = m.mesh().tetrahedra[m.draw.below(static_cast<int>(m.mesh().tetrahedra.size()))];
@@ -158,8 +158,8 @@ void bend_edges(Making& m) {
   const Index corners = mesh.vertices.rows();
   mesh = elevated(mesh);
   m.made.spec.mesh_options.quadratic = m.draw.chance(0.5);
-  const double share = m.draw.pick({0.02, 0.05, 0.2});
-  for (Index v = corners; v < mesh.vertices.rows(); ++v) mesh.vertices.row(v) += share * m.draw.offset().transpose();
+  const double fraction = m.draw.pick({0.02, 0.05, 0.2});
+  for (Index v = corners; v < mesh.vertices.rows(); ++v) mesh.vertices.row(v) += fraction * m.draw.offset().transpose();
 }
 
 }  // namespace
@@ -171,8 +171,8 @@ void spoil_mesh(Making& m) {
   if (m.is(Oddity::repeated)) repeat_elements(m);
   if (m.is(Oddity::cracked)) crack(m);
   if (m.is(Oddity::overlapping)) {
-    const double share = m.draw.between(0.3, 1);
-    add_block(m, m.size.cwiseProduct(0.3 * (Vec3::Ones() + m.draw.offset())), share * m.size, false);
+    const double fraction = m.draw.between(0.3, 1);
+    add_block(m, m.size.cwiseProduct(0.3 * (Vec3::Ones() + m.draw.offset())), fraction * m.size, false);
   }
   if (m.is(Oddity::loose)) {
     const bool joined = m.draw.chance(0.5);

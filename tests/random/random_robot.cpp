@@ -18,14 +18,14 @@ ElasticSpec random_elastic(Making& m, double e, double nu) {
     return spec;
   }
   const double half_shear = e / (4 * (1 + nu));
-  const double share = spec.law == Law::mooney_rivlin ? m.draw.between(0, 0.5) : 0;
+  const double fraction = spec.law == Law::mooney_rivlin ? m.draw.between(0, 0.5) : 0;
   if (spec.law == Law::gent) {
     spec.shear_modulus = 2 * half_shear;
     spec.jm = m.later.log_between(m.is(Oddity::materials) ? 0.1 : 5, 200);
   } else {
-    spec.c10 = (1 - share) * half_shear;
+    spec.c10 = (1 - fraction) * half_shear;
   }
-  if (spec.law == Law::mooney_rivlin) spec.c01 = share * half_shear;
+  if (spec.law == Law::mooney_rivlin) spec.c01 = fraction * half_shear;
   if (spec.law == Law::yeoh && m.draw.chance(0.7)) {
     spec.c20 = m.draw.between(m.is(Oddity::materials) ? -1 : -0.02, 0.1) * half_shear;
     spec.c30 = m.draw.between(0, 0.02) * half_shear;
@@ -159,7 +159,7 @@ double voltage_unit(Making& m) {
   return thickness * std::sqrt(m.modulus / vacuum);
 }
 
-/// Ranges of tensions, pressures and voltages, so far in units of the modulus.
+/// Scales the ranges of tensions, pressures and voltages, which were in units of the modulus.
 void scale_ranges(Making& m) {
   for (ActuatorSpec& actuator : m.made.spec.actuators) {
     if (actuator.control != Control::load) continue;
@@ -180,7 +180,7 @@ void make_loads(Making& m) {
   RobotSpec& spec = m.made.spec;
   const double density = 1e-9 * spec.materials[0].density;  // [kg/mm^3]
   if (m.draw.chance(odd ? 0.5 : 0.2) && (density > 0 || odd)) {
-    // of a strain of about so much, were it a column
+    // scaled to about this strain of a column
     const double strain = odd ? m.draw.log_between(1e-3, 1e9) : m.draw.log_between(1e-6, 1e-3);
     const double gravity = strain * m.modulus / (std::max(density, 1e-6) * m.longest());
     spec.loads.gravity = m.draw.chance(0.3) ? Vec3(0, 0, -9.81) : Vec3(gravity * m.draw.offset());

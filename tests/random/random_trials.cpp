@@ -128,15 +128,15 @@ void make_fibres(Making& m) {
     FibreSpec fibre;
     fibre.name = "fibre" + std::to_string(i);
     if (draw.chance(0.4))
-      fibre.way = Helix{.start = place(draw.between(0, 0.3), 0.5, 0.5),
-                        .axis = Vec3::UnitX(),
-                        .first = Vec3(0, draw.between(-1, 1), 1),
-                        .radius = draw.between(0.2, 0.5) * std::min(size[1], size[2]),
-                        .pitch = draw.between(0.05, 0.4) * size[0],
-                        .turns = draw.between(0.3, 2),
-                        .left_handed = draw.chance(0.5)};
+      fibre.path = Helix{.start = place(draw.between(0, 0.3), 0.5, 0.5),
+                         .axis = Vec3::UnitX(),
+                         .first = Vec3(0, draw.between(-1, 1), 1),
+                         .radius = draw.between(0.2, 0.5) * std::min(size[1], size[2]),
+                         .pitch = draw.between(0.05, 0.4) * size[0],
+                         .turns = draw.between(0.3, 2),
+                         .left_handed = draw.chance(0.5)};
     else
-      fibre.way = std::vector<Vec3>{anywhere(), anywhere()};
+      fibre.path = std::vector<Vec3>{anywhere(), anywhere()};
     if (draw.chance(0.9)) fibre.stiffness_N = draw.log_between(1e-3, 30) * m.modulus * size[1] * size[2];
     fibre.tension_only = draw.chance(0.4);
     m.made.spec.fibres.push_back(std::move(fibre));
@@ -160,8 +160,8 @@ void make_layers(Making& m) {
     layer.tension_only = draw.chance(0.3);
     layer.bending = m.made.spec.mesh_options.quadratic && draw.chance(0.6);
     if (layer.nu12 < -0.1 && !layer.bending) {  // drawn for another sheet: rubber in its place
-      const double share = layer.thickness_mm / (0.05 * across);
-      layer.rubber = SheetRubber{layer.e1 / 6 * (1 - share), layer.e1 / 6 * share, 0.05 * share * layer.e1, 0};
+      const double fraction = layer.thickness_mm / (0.05 * across);
+      layer.rubber = SheetRubber{layer.e1 / 6 * (1 - fraction), layer.e1 / 6 * fraction, 0.05 * fraction * layer.e1, 0};
     }
     m.made.spec.layers.push_back(std::make_shared<const LayerSpec>(layer));
   }
@@ -245,7 +245,7 @@ void make_floor(Making& m) {
   contact.obstacles.push_back(std::move(floor));
   spec.contact = std::move(contact);
   if (!draw.chance(0.7) || spec.materials.empty()) return;
-  // a column of it would be strained by about so much; a robot that is held at one end bends by far more
+  // scaled to about this strain of a column; a robot that is held at one end bends by far more
   const double strain = draw.log_between(1e-6, 1e-3), density = std::max(900.0, spec.materials[0].density);
   for (MaterialSpec& material : spec.materials) material.density = density;
   spec.loads.gravity = {0, 0, -strain * m.modulus / (1e-9 * density * m.longest())};

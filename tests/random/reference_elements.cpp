@@ -140,7 +140,7 @@ struct SignedValues {
       for (int j = 0; j < 3; ++j) turn(i, j) = i == j ? 0 : (seen(i, j) - seen(j, i)) / (values[i] + values[j]);
     return left * turn * right.transpose();
   }
-  /// Of the three ways to turn, the stiffness of the softest [-].
+  /// Returns the stiffness against rotation about the softest of the three axes [-].
   [[nodiscard]] Real least() const { return values[1] + values[2]; }
 };
 
@@ -388,22 +388,22 @@ PressurePulls pressure_pulls_of(const RealPoints& rest, const RealPoints& curren
     RealMat3 cofactor;
     for (int i = 0; i < 3; ++i)
       cofactor.row(i) = RealVec3(f.row((i + 1) % 3)).cross(RealVec3(f.row((i + 2) % 3))).transpose();
-    std::array<Real, 4> share;  // barycentric, of the shape functions of whatever order
+    std::array<Real, 4> fraction;  // barycentric, of the shape functions of whatever order
     for (std::size_t i = 0; i < 4; ++i) {
-      share[i] = point.shape[i];
+      fraction[i] = point.shape[i];
       for (std::size_t e = 0; nodes == 10 && e < 6; ++e)
         if (tetrahedron_edges[e][0] == static_cast<int>(i) || tetrahedron_edges[e][1] == static_cast<int>(i))
-          share[i] += point.shape[4 + e] / 2;
+          fraction[i] += point.shape[4 + e] / 2;
     }
     Real p = 0;
-    for (std::size_t i = 0; i < 4; ++i) p += share[i] * pressures[i];
+    for (std::size_t i = 0; i < 4; ++i) p += fraction[i] * pressures[i];
     const Real j = f.determinant(), all = slope.rowwise().norm().sum();
     whole += volume;
     for (std::size_t i = 0; i < 4; ++i) {
-      out.missed[i] += volume * share[i] * (j - 1 - p / bulk);
+      out.missed[i] += volume * fraction[i] * (j - 1 - p / bulk);
       out.volume[i] +=
-          volume * share[i] * (1 + std::abs(j) + std::abs(p / bulk) + f.norm() * f.norm() * all * size * ulp);
-      out.area[i] += volume * share[i] * cofactor.norm() * all;
+          volume * fraction[i] * (1 + std::abs(j) + std::abs(p / bulk) + f.norm() * f.norm() * all * size * ulp);
+      out.area[i] += volume * fraction[i] * cofactor.norm() * all;
     }
     for (Eigen::Index a = 0; a < count; ++a) {
       const Real own = volume * slope.row(a).norm() * std::abs(p);

@@ -87,7 +87,7 @@ void describe(const RandomCase& robot, const Model& model) {
   for (const std::string& note : model.notes) std::printf("  note: %s\n", note.c_str());
 }
 
-void tell(const Actuation& command, const Equilibrium& found, const Confirmation& confirmed) {
+void print_result(const Actuation& command, const Equilibrium& found, const Confirmation& confirmed) {
   const SolveReport& report = found.report;
   std::printf("command");
   for (const double value : command) std::printf(" %.12g", value);
@@ -109,7 +109,7 @@ void take(const Confirmation& from, const Equilibrium& found, RunResult& run) {
   run.blurred = run.blurred || from.blurred;
   run.undecided = run.undecided || from.undecided;
   run.inverted = run.inverted || from.inverted > 0;
-  run.unstable = run.unstable || found.report.remark.find("unstable") != std::string::npos;
+  run.unstable = run.unstable || found.report.physical.unstable_modes > 0;
 }
 
 Effort effort_of(const SolveReport& report, bool physical) {
@@ -124,7 +124,7 @@ Effort effort_of(const SolveReport& report, bool physical) {
   return effort;
 }
 
-void tell(const SolveReport& report) {
+void print_result(const SolveReport& report) {
   for (const TracedStep& step : report.trace)
     std::printf("  %s%s%.5g to %.5g, a step of %.3g: %d iterations, %d factorisations, %d projections%s%s\n",
                 step.along.c_str(), step.along.empty() ? "" : " ", step.from, step.to, step.length, step.iterations,
@@ -143,8 +143,8 @@ void solve_all(const RandomCase& robot, bool verbose, bool trace, RunResult& run
     if (found.report.solver == "newton") run.efforts.push_back(effort_of(found.report, run.physical));
     const Confirmation confirmed = confirm(model, command, found, begun);
     if (verbose) {
-      tell(found.report);
-      tell(command, found, confirmed);
+      print_result(found.report);
+      print_result(command, found, confirmed);
     }
     take(confirmed, found, run);
     run.outcome = outcome_of(found.report.status);

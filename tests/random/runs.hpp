@@ -13,7 +13,7 @@ enum class Outcome { converged, limit, not_converged, interrupted, refused, fail
 inline constexpr int outcomes = 6;
 [[nodiscard]] const char* name_of(Outcome outcome);
 
-/// What the solves of a run took together, but for those of Algorithm 1, and why steps of their ways were not taken.
+/// The work of the solves of a run, without those of Algorithm 1, and why steps of their paths were rejected.
 struct Effort {
   static constexpr int counts = 5;
   static constexpr std::array<const char*, counts> names{"iterations", "factorisations", "projections", "equilibria",
@@ -35,9 +35,9 @@ struct RunResult {
   double seconds = 0;
 };
 
-/// Solves the robot of a seed and confirms what comes. verbose: tells on the standard output what it does.
+/// Solves the robot of a seed and confirms the answers. verbose: prints progress on the standard output.
 ///
-/// trace  the ways too, for what they took
+/// trace  traces the paths, too, to count the work
 [[nodiscard]] RunResult run_seed(std::uint64_t seed, bool verbose, bool trace = false);
 
 /// Falsifies confirmed answers of sensible robots and returns how many of them would be confirmed still; > 0 where
@@ -51,10 +51,10 @@ class Summary {
   [[nodiscard]] std::string text() const;
   [[nodiscard]] const std::vector<RunResult>& failures() const { return failures_; }
   [[nodiscard]] std::size_t runs() const { return runs_; }
-  /// Quantiles of what solves took, the seeds that took most, and why steps were not taken.
+  /// Quantiles of the work of solves, the seeds with the most work, and why steps were rejected.
   [[nodiscard]] std::string effort_text() const;
-  /// Iterations that a share of all solves does not exceed.
-  [[nodiscard]] int iterations_of(double share) const;
+  /// Iterations that a given fraction of all solves does not exceed.
+  [[nodiscard]] int iterations_of(double fraction) const;
   /// seed, formulation, features and faults of every failure, as CSV
   [[nodiscard]] std::string failure_table() const;
 
@@ -75,7 +75,7 @@ class Summary {
   Extreme residual_, constraint_, step_, seconds_;
   double total_seconds_ = 0;
   std::vector<RunResult> failures_;
-  static constexpr int long_way = 150;                                              // iterations
+  static constexpr int long_path = 150;                                             // iterations
   std::map<std::string, std::vector<std::uint64_t>> long_ways_;                     // by how they ended: the seeds
   std::array<std::vector<std::pair<int, std::uint64_t>>, Effort::counts> efforts_;  // with their seeds
   std::map<std::string, std::pair<std::size_t, std::uint64_t>> rejections_;         // reason: how many, a seed

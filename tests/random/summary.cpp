@@ -59,7 +59,7 @@ void Summary::add(const RunResult& run) {
   inverted_ += run.inverted;
   for (const Effort& effort : run.efforts) {
     for (std::size_t i = 0; i < effort.of.size(); ++i) efforts_[i].emplace_back(effort.of[i], run.seed);
-    if (effort.of[0] > long_way) long_ways_[kind_of(effort.end)].push_back(run.seed);
+    if (effort.of[0] > long_path) long_ways_[kind_of(effort.end)].push_back(run.seed);
     for (const auto& [why, times] : effort.rejections)
       rejections_.try_emplace(why, 0, run.seed).first->second.first += times;
   }
@@ -107,18 +107,18 @@ std::string Summary::text() const {
 namespace {
 
 /// Of values in ascending order.
-std::pair<int, std::uint64_t> quantile(const std::vector<std::pair<int, std::uint64_t>>& sorted, double share) {
+std::pair<int, std::uint64_t> quantile(const std::vector<std::pair<int, std::uint64_t>>& sorted, double fraction) {
   if (sorted.empty()) return {};
-  const double place = std::ceil(share * static_cast<double>(sorted.size())) - 1;
+  const double place = std::ceil(fraction * static_cast<double>(sorted.size())) - 1;
   return sorted[std::max(0.0, place)];
 }
 
 }  // namespace
 
-int Summary::iterations_of(double share) const {
+int Summary::iterations_of(double fraction) const {
   auto sorted = efforts_[0];
   std::sort(sorted.begin(), sorted.end());
-  return quantile(sorted, share).first;
+  return quantile(sorted, fraction).first;
 }
 
 std::string Summary::effort_text() const {
@@ -129,14 +129,14 @@ std::string Summary::effort_text() const {
     auto sorted = efforts_[i];
     std::sort(sorted.begin(), sorted.end());
     text += line("%-14s", Effort::names[i]);
-    for (const double share : {0.5, 0.9, 0.99, 1.0}) text += line(" %8d", quantile(sorted, share).first);
+    for (const double fraction : {0.5, 0.9, 0.99, 1.0}) text += line(" %8d", quantile(sorted, fraction).first);
     text += " ";
     for (std::size_t k = 0; k < std::min(shown, sorted.size()); ++k)
       text += " " + std::to_string(sorted[sorted.size() - 1 - k].second);
     text += "\n";
   }
   for (const auto& [end, seeds] : long_ways_) {
-    text += line("%6zu solves of more than %d iterations: %s (seeds", seeds.size(), long_way, end.c_str());
+    text += line("%6zu solves of more than %d iterations: %s (seeds", seeds.size(), long_path, end.c_str());
     for (std::size_t i = 0; i < std::min(shown, seeds.size()); ++i) text += " " + std::to_string(seeds[i]);
     text += ")\n";
   }

@@ -13,11 +13,11 @@ namespace softkin::runs::testing {
 
 using Function = std::function<Eigen::VectorXd(const Eigen::VectorXd& commands)>;
 
-/// The sum of so many terms nearest to a function of commands inside a box.
+/// Returns the polynomial of `count` terms that is nearest to a function of commands inside a box.
 inline maps::Polynomials fitted(const Eigen::VectorXd& low, const Eigen::VectorXd& high, Index count,
                                 const Function& function) {
   const Index d = low.size();
-  const maps::Terms terms = maps::least_terms(Eigen::VectorXd::Ones(d), d == 0 ? 1 : count);
+  const maps::Terms terms = maps::min_terms(Eigen::VectorXd::Ones(d), d == 0 ? 1 : count);
   const Index points = 3 * terms.rows();
   std::mt19937 generator(3);
   std::uniform_real_distribution<double> angle(0, std::numbers::pi);
@@ -132,7 +132,7 @@ struct TwoCables {
 
 /// A chamber and two cables, the second of which may be tied at a length; with a shape of 5 vertices and 3 modes.
 ///
-/// askew  ratios of slack cables are so much too large: near the kink neither taut nor slack is right
+/// askew  error by which ratios of slack cables are too large: near the kink neither taut nor slack is right
 inline MapData cable_map(bool tied = false, double askew = 0) {
   MapData data =
       outline(tied ? "tied" : "finger \"map_1\" */ \xc3\xbc", {{"air", "", 0, 0, 2}, {"tendon1", "", 1, 0.6, 1.1}});
@@ -183,7 +183,7 @@ inline MapData cable_map(bool tied = false, double askew = 0) {
   return data;
 }
 
-/// Where the kink is neither taut nor slack cables are right, but for the accuracy.
+/// Near the kink, neither taut nor slack cables are right, except within the accuracy.
 inline MapData askew_map() {
   constexpr double askew = 0.02;
   MapData data = cable_map(false, askew);
@@ -195,7 +195,7 @@ inline MapData askew_map() {
   return data;
 }
 
-/// Of taut cables alone, as where the ranges end before cables go slack but for an error.
+/// Has pieces of taut cables alone, as where the ranges end before cables go slack up to an error.
 inline MapData ending_map() {
   MapData data = cable_map();
   data.name = "ends";

@@ -63,7 +63,7 @@ inline Model leaning_model(double height) {
       std::to_string(height) + "], normal: [0, 0, 1]}}]\n");
 }
 
-/// A way through the ranges that does not come back to where it was.
+/// Returns a path through the ranges that does not return to its start.
 inline std::vector<ActuationStep> steps_of(const Model& model, std::size_t count) {
   std::vector<ActuationStep> steps;
   for (std::size_t i = 0; i < count; ++i) {

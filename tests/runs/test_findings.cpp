@@ -5,12 +5,12 @@
 
 #include "small_runs.hpp"
 
-/// What a shape tells of an input that was not meant.
+/// Findings that a shape yields about unintended input.
 
 namespace softkin::runs {
 namespace {
 
-/// A block of so many MPa that is driven by a pressure [kPa].
+/// A block with a Young's modulus [MPa] that is driven by a pressure [kPa].
 Model pressed_block(const std::string& modulus) {
   return testing::block_model(
       "softkin: 1\nmesh: {file: block.msh}\n"
@@ -44,10 +44,10 @@ TEST(Findings, NothingMovesWhereTheModulusIsInPascal) {
   const auto* motionless = find<finding::Motionless>(of_unmoved);
   ASSERT_NE(motionless, nullptr);
   EXPECT_EQ(motionless->largest_mm, unmoved.largest_displacement_mm);
-  // linear: a millionth of what moves at a millionth of the modulus, but for the large strains there
+  // linear: a millionth of the displacement at a millionth of the modulus, except for the large strains there
   EXPECT_NEAR(unmoved.largest_displacement_mm / (1e-6 * moved.largest_displacement_mm), 1, 0.3);
   EXPECT_EQ(find<finding::Motionless>(of_moved), nullptr);
-  EXPECT_EQ(find<finding::Motionless>(of_rest), nullptr);  // nothing was asked for
+  EXPECT_EQ(find<finding::Motionless>(of_rest), nullptr);  // nothing was commanded
   const auto doubted = [](const Model& model) {
     return std::any_of(model.warnings.begin(), model.warnings.end(), [](const std::string& warning) {
       return warning.find("taken as Pa it would be 0.6 MPa") != std::string::npos;

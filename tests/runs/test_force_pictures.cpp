@@ -18,27 +18,28 @@ Model touched_model() {
       "markers: [{name: tip, region: tip}]\n");
 }
 
-/// Both forces, told with these deviations; the shape is that at rest, turned by a quarter about z.
+/// Returns an estimate of both forces with these deviations; the shape is that at rest, rotated by a quarter turn about
+/// z.
 Estimate made_up(const Model& model, const Vec3& force, const Eigen::VectorXd& deviations) {
-  Estimate told;
-  told.actuation = Actuation::Zero(model.actuators.size());
+  Estimate reported;
+  reported.actuation = Actuation::Zero(model.actuators.size());
   for (std::size_t a = 0; a < model.actuators.size(); ++a) {
     const Index at = a;
-    told.actuation[at] = a < 3 ? force[at] : 0;
-    told.numbers.push_back({model.actuators[a].name, "N", told.actuation[at], deviations[at], 0, 1, 0, at});
+    reported.actuation[at] = a < 3 ? force[at] : 0;
+    reported.numbers.push_back({model.actuators[a].name, "N", reported.actuation[at], deviations[at], 0, 1, 0, at});
   }
-  const Index numbers = told.numbers.size();
-  told.covariance = Eigen::MatrixXd::Zero(numbers + 2, numbers + 2);
-  for (Index n = 0; n < numbers; ++n) told.covariance(n, n) = deviations[n] * deviations[n];
-  told.state.positions = model.rest;
+  const Index numbers = reported.numbers.size();
+  reported.covariance = Eigen::MatrixXd::Zero(numbers + 2, numbers + 2);
+  for (Index n = 0; n < numbers; ++n) reported.covariance(n, n) = deviations[n] * deviations[n];
+  reported.state.positions = model.rest;
   for (Index v = 0; v < model.rest.rows(); ++v) {
-    told.state.positions(v, 0) = -model.rest(v, 1);
-    told.state.positions(v, 1) = model.rest(v, 0);
+    reported.state.positions(v, 0) = -model.rest(v, 1);
+    reported.state.positions(v, 1) = model.rest(v, 0);
   }
-  ToldPlace place{"push", Vec3(12, 6, 5), Vec3(-6, 12, 5)};
+  EstimatedPlace place{"push", Vec3(12, 6, 5), Vec3(-6, 12, 5)};
   place.covariance.diagonal() << 0, 4, 1;
-  told.places.push_back(place);
-  return told;
+  reported.places.push_back(place);
+  return reported;
 }
 
 TEST(ForcePictures, ConeAndEllipseHoldNinetyPercent) {
@@ -72,7 +73,7 @@ TEST(ForcePictures, ConeAndEllipseHoldNinetyPercent) {
   EXPECT_NEAR(std::abs(pull.across[1][0]), ellipse_90 * 0.3, 1e-12);
 }
 
-/// Along z the force is known: what is told across it is one number.
+/// The force is known along z: a single number is estimated across it.
 TEST(ForcePictures, OneNumberAcrossHasAnInterval) {
   const Model model = touched_model();
   Eigen::VectorXd deviations(5);

@@ -81,7 +81,7 @@ Found next_found(ProgramOutput& answers, Index inputs) {
   return found;
 }
 
-/// What is told of ik is so: where its commands lead, and how far from the target that is.
+/// Checks the result of ik: its commands yield its outputs, and their distance from the target is the reported error.
 void expect_true(const Exported& map, Found found, const Eigen::Vector3d& target) {
   Eigen::VectorXd values(map.map.outputs());
   for (Index i = 0; i < map.map.inputs(); ++i) {  // bounds in float may be just outside
@@ -111,7 +111,7 @@ double nearest_of_grid(const KinematicMap& map, const Eigen::Vector3d& target) {
   return nearest;
 }
 
-/// Its boxes or pieces do not fit together, so that a way to the target may end between them.
+/// Returns if the map's boxes or pieces do not fit together, so that a path to the target may end between them.
 bool jumps(const Exported& map) {
   const std::string& name = map.data.name;
   return name.starts_with("2 boxes") || name.starts_with("askew") || name.starts_with("ends");
@@ -172,7 +172,7 @@ void compare_estimate(const Exported& map, const Eigen::VectorXd& commands, cons
   const Index inputs = map.map.inputs(), outputs = map.map.outputs();
   const int code = static_cast<int>(answers.next());
   const double chi_square = answers.next();
-  const Eigen::VectorXd told = answers.next(inputs), covariance = answers.next(inputs * inputs);
+  const Eigen::VectorXd reported = answers.next(inputs), covariance = answers.next(inputs * inputs);
   Eigen::VectorXd begin = commands, readings = values;
   std::vector<MapUnknown> unknowns;
   for (Index i = 1; i < inputs; ++i) {
@@ -190,8 +190,8 @@ void compare_estimate(const Exported& map, const Eigen::VectorXd& commands, cons
   for (std::size_t u = 0; u < unknowns.size(); ++u) {
     const Index i = unknowns[u].input;
     const double deviation = std::sqrt(own->covariance(u, u));
-    EXPECT_NEAR(told[i], own->commands[i], (map.floats ? 0.05 : 0.003) * deviation) << map.data.name;
-    // in float normal equations round what readings tell hardly
+    EXPECT_NEAR(reported[i], own->commands[i], (map.floats ? 0.05 : 0.003) * deviation) << map.data.name;
+    // in float, normal equations round poorly determined directions
     EXPECT_NEAR(std::sqrt(covariance[i * inputs + i]), deviation, (map.floats ? 0.5 : 0.003) * deviation);
   }
   EXPECT_NEAR(chi_square, own->chi_square, map.floats ? 0.05 : 0.003);

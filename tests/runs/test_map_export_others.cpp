@@ -16,7 +16,7 @@
 namespace softkin::runs {
 namespace {
 
-using Told = nlohmann::json;
+using Reported = nlohmann::json;
 
 #define SKIP_WITHOUT_MODULES()                   \
   if (!page_is_there()) GTEST_SKIP() << no_page; \
@@ -34,23 +34,23 @@ std::string commands_text(const std::vector<Eigen::VectorXd>& rows, const std::s
   return text + "]";
 }
 
-Told told_by(const std::string& program, const std::filesystem::path& exported, const std::string& commands,
-             const softkin::testing::TemporaryFolder& folder) {
+Reported reported_by(const std::string& program, const std::filesystem::path& exported, const std::string& commands,
+                     const softkin::testing::TemporaryFolder& folder) {
   using softkin::testing::shell_quoted;
   const std::string file = folder.write("commands.json", commands);
   const auto run =
       softkin::testing::run_shell(program + " " + shell_quoted(exported.string()) + " " + shell_quoted(file) + " 2>&1");
   EXPECT_EQ(run.exit_code, 0) << run.output;
-  return run.exit_code == 0 ? Told::parse(run.output) : Told();
+  return run.exit_code == 0 ? Reported::parse(run.output) : Reported();
 }
 
-void expect_close(const Told& found, const Eigen::Ref<const Eigen::VectorXd>& wanted, double tolerance) {
+void expect_close(const Reported& found, const Eigen::Ref<const Eigen::VectorXd>& wanted, double tolerance) {
   ASSERT_EQ(found.size(), static_cast<std::size_t>(wanted.size()));
   for (Index i = 0; i < std::ssize(wanted); ++i)
     EXPECT_NEAR(found[i].get<double>(), wanted[i], tolerance * std::max(1.0, std::abs(wanted[i])));
 }
 
-void expect_shape(const Told& found, const KinematicMap& map, const Eigen::VectorXd& commands,
+void expect_shape(const Reported& found, const KinematicMap& map, const Eigen::VectorXd& commands,
                   const KinematicMap::Place& place) {
   if (!map.data().shape) return;
   const Points points = map.shape(commands.data(), place);
@@ -59,9 +59,9 @@ void expect_shape(const Told& found, const KinematicMap& map, const Eigen::Vecto
     for (Index k = 0; k < 3; ++k) EXPECT_NEAR(found[3 * v + k].get<double>(), points(v, k), 1e-4) << "vertex " << v;
 }
 
-/// How many of the commands are inside; calls compare with what the map says of those.
+/// Returns how many of the commands are inside; calls compare with the map's own results for those.
 template <class Compare>
-int compare_all(const KinematicMap& map, const std::vector<Eigen::VectorXd>& commands, const Told& answers,
+int compare_all(const KinematicMap& map, const std::vector<Eigen::VectorXd>& commands, const Reported& answers,
                 const Compare& compare) {
   int inside = 0;
   Eigen::VectorXd values(map.outputs());
@@ -82,8 +82,8 @@ int compare_all(const KinematicMap& map, const std::vector<Eigen::VectorXd>& com
   return inside;
 }
 
-/// What ik tells is so, and the answers are as near as they can be: those to its own outputs there.
-void expect_ik(const KinematicMap& map, const Told& found, const Eigen::Vector3d& target, int& reached) {
+/// Checks that ik reports its true error, and that it reaches targets that are the map's own outputs.
+void expect_ik(const KinematicMap& map, const Reported& found, const Eigen::Vector3d& target, int& reached) {
   if (found.is_null()) return;  // it starts outside
   const auto commands = found["commands"].get<std::vector<double>>();
   Eigen::VectorXd values(map.outputs());
@@ -110,23 +110,25 @@ void compare_module(const MapData& data) {
   const KinematicMap map(data);
   const softkin::testing::TemporaryFolder folder;
   const std::vector<Eigen::VectorXd> commands = testing::commands_of(map, false, 80);
-  const Told told = told_by("node '" SOFTKIN_SOURCE_DIR "/tests/runs/exported_map.mjs'",
-                            folder.write("map.mjs", map_js_module(data)), commands_text(commands, "null"), folder);
+  const Reported reported =
+      reported_by("node '" SOFTKIN_SOURCE_DIR "/tests/runs/exported_map.mjs'",
+                  folder.write("map.mjs", map_js_module(data)), commands_text(commands, "null"), folder);
   int reached = 0, reached_far = 0;
-  const int inside =
-      compare_all(map, commands, told["answers"], [&](const Told& answer, const auto& values, const auto& slopes) {
-        for (Index q = 0; q < map.outputs(); ++q) expect_close(answer["jacobian"][q], slopes.col(q), 1e-9);
-        expect_ik(map, answer["near"], values.template head<3>(), reached);
-        expect_ik(map, answer["far"], 4 * values.template head<3>(), reached_far);
-      });
+  const int inside = compare_all(map, commands, reported["answers"],
+                                 [&](const Reported& answer, const auto& values, const auto& slopes) {
+                                   for (Index q = 0; q < map.outputs(); ++q)
+                                     expect_close(answer["jacobian"][q], slopes.col(q), 1e-9);
+                                   expect_ik(map, answer["near"], values.template head<3>(), reached);
+                                   expect_ik(map, answer["far"], 4 * values.template head<3>(), reached_far);
+                                 });
   EXPECT_GE(reached, data.name == "2 boxes" ? 0 : inside * 97 / 100);
   EXPECT_LT(reached_far, inside);
-  EXPECT_EQ(told["check"], "");
-  EXPECT_EQ(told["name"], data.name);
-  EXPECT_EQ(told["outputs"][0]["largestError"], data.check.largest[0]);
-  EXPECT_EQ(told["inputs"][0]["high"], data.inputs[0].high);
-  EXPECT_EQ(told["checked"]["points"], 200);
-  EXPECT_EQ(told["exported"].get<std::set<std::string>>(), exported_names(map_js_types(data)));
+  EXPECT_EQ(reported["check"], "");
+  EXPECT_EQ(reported["name"], data.name);
+  EXPECT_EQ(reported["outputs"][0]["largestError"], data.check.largest[0]);
+  EXPECT_EQ(reported["inputs"][0]["high"], data.inputs[0].high);
+  EXPECT_EQ(reported["checked"]["points"], 200);
+  EXPECT_EQ(reported["exported"].get<std::set<std::string>>(), exported_names(map_js_types(data)));
 }
 
 TEST(MapExportJs, AnswersAsTheMapDoes) {
@@ -141,9 +143,9 @@ TEST(MapExportJs, ItsCheckNoticesAnotherCoefficient) {
   const std::string before = "\"coefficients\":\"";
   const std::size_t at = module.find(before) + before.size() + 9;  // in the first number's last bytes but one
   module[at] = module[at] == 'A' ? 'B' : 'A';
-  const Told told = told_by("node '" SOFTKIN_SOURCE_DIR "/tests/runs/exported_map.mjs'",
-                            folder.write("map.mjs", module), "[[1, 2, 3]]", folder);
-  EXPECT_NE(told["check"], "");
+  const Reported reported = reported_by("node '" SOFTKIN_SOURCE_DIR "/tests/runs/exported_map.mjs'",
+                                        folder.write("map.mjs", module), "[[1, 2, 3]]", folder);
+  EXPECT_NE(reported["check"], "");
 }
 
 TEST(MapExportNumpy, AnswersAsTheMapDoes) {
@@ -154,13 +156,14 @@ TEST(MapExportNumpy, AnswersAsTheMapDoes) {
     const KinematicMap map(data);
     const softkin::testing::TemporaryFolder folder;
     const std::vector<Eigen::VectorXd> commands = testing::commands_of(map, false);
-    const Told told = told_by(test_python + " '" SOFTKIN_SOURCE_DIR "/tests/runs/exported_map.py'",
-                              folder.write("map.npz", map_npz(data)), commands_text(commands, "NaN"), folder);
-    compare_all(map, commands, told["answers"], [](const auto&...) {});
-    EXPECT_EQ(told["names"]["robot"], (std::vector<std::string>{data.name, data.robot}));
-    EXPECT_EQ(told["names"]["inputs"][0], data.inputs[0].name);
-    EXPECT_EQ(told["names"]["output_units"][0], "mm");
-    EXPECT_EQ(told["checked"], (std::vector<int>{200, 0}));
+    const Reported reported =
+        reported_by(test_python + " '" SOFTKIN_SOURCE_DIR "/tests/runs/exported_map.py'",
+                    folder.write("map.npz", map_npz(data)), commands_text(commands, "NaN"), folder);
+    compare_all(map, commands, reported["answers"], [](const auto&...) {});
+    EXPECT_EQ(reported["names"]["robot"], (std::vector<std::string>{data.name, data.robot}));
+    EXPECT_EQ(reported["names"]["inputs"][0], data.inputs[0].name);
+    EXPECT_EQ(reported["names"]["output_units"][0], "mm");
+    EXPECT_EQ(reported["checked"], (std::vector<int>{200, 0}));
   }
 }
 

@@ -189,14 +189,14 @@ TEST(Page, UniformFieldsTellTheirDirections) {
       "  - {name: magnet, kind: magnetic, dipole: {position: [0, 0, -40], moment: [0, 0, [-1, 1]]}}\n"
       "  - {name: tendon, kind: cable, points: [[0, 6, 12], [12, 6, 12]], control: tension, range: [0, 5]}\n");
   const PageJson page = page_of(model, PageDocument(model, ""));
-  std::map<std::string, PageJson> told;
-  for (const PageJson& actuator : page.at("actuators")) told[actuator.at("name")] = actuator;
-  EXPECT_EQ(told.at("slanted").at("flux_density"), PageJson::parse("[0.6, 0.0, 0.8]"));
-  EXPECT_EQ(told.at("slanted").at("kind"), "magnetic");
-  EXPECT_EQ(told.at("slanted").at("unit"), "mT");
-  EXPECT_EQ(told.at("field_x").at("flux_density"), PageJson::parse("[1.0, 0.0, 0.0]"));
-  EXPECT_EQ(told.at("field_z").at("flux_density"), PageJson::parse("[0.0, 0.0, 1.0]"));
-  for (const char* other : {"coil", "magnet_mz", "tendon"}) EXPECT_FALSE(told.at(other).contains("flux_density"));
+  std::map<std::string, PageJson> reported;
+  for (const PageJson& actuator : page.at("actuators")) reported[actuator.at("name")] = actuator;
+  EXPECT_EQ(reported.at("slanted").at("flux_density"), PageJson::parse("[0.6, 0.0, 0.8]"));
+  EXPECT_EQ(reported.at("slanted").at("kind"), "magnetic");
+  EXPECT_EQ(reported.at("slanted").at("unit"), "mT");
+  EXPECT_EQ(reported.at("field_x").at("flux_density"), PageJson::parse("[1.0, 0.0, 0.0]"));
+  EXPECT_EQ(reported.at("field_z").at("flux_density"), PageJson::parse("[0.0, 0.0, 1.0]"));
+  for (const char* other : {"coil", "magnet_mz", "tendon"}) EXPECT_FALSE(reported.at(other).contains("flux_density"));
 }
 
 /// By a search over all elements for each vertex.
@@ -265,10 +265,10 @@ TEST(Page, MapBendsTheVerticesOfThePage) {
   const MapData data = map_of_vertices(model);
   const KinematicMap map(data);
   PageDocument document(model, "softkin fk");
-  const PageJson told = page_of(model, document, &data).at("map");
-  EXPECT_EQ(told.at("inputs").size(), 3u);
-  EXPECT_EQ(told.at("markers"), PageJson::parse("[\"tip\"]"));
-  const PageJson& shape = told.at("shapeTables");
+  const PageJson reported = page_of(model, document, &data).at("map");
+  EXPECT_EQ(reported.at("inputs").size(), 3u);
+  EXPECT_EQ(reported.at("markers"), PageJson::parse("[\"tip\"]"));
+  const PageJson& shape = reported.at("shapeTables");
   const auto mean = unpacked<float>(shape.at("mean").get<std::string>());
   const auto modes = unpacked<std::int16_t>(shape.at("modes").get<std::string>());
   const auto units = shape.at("units").get<std::vector<double>>();
@@ -281,7 +281,7 @@ TEST(Page, MapBendsTheVerticesOfThePage) {
     const auto place = map.evaluate(commands.data(), outputs.data());
     ASSERT_TRUE(place);
     const Points wanted = map.shape(commands.data(), *place);
-    // the amplitudes that small_maps.hpp made the map of; bits: the piece's taut cables
+    // the amplitudes from which small_maps.hpp made the map; bits: the piece's taut cables
     const auto& taut = data.pieces[place->piece].taut;
     const double bits = (taut[0] ? 1 : 0) + (taut[1] ? 2 : 0);
     Eigen::Vector3d amounts = commands;

@@ -15,13 +15,13 @@ namespace {
 void expect_same(const StepRecord& a, const StepRecord& b) {
   EXPECT_EQ(a.actuation, b.actuation);
   EXPECT_EQ(a.status, b.status);
-  EXPECT_EQ(a.reached_share, b.reached_share);
+  EXPECT_EQ(a.reached_fraction, b.reached_fraction);
   EXPECT_EQ(a.remark, b.remark);
   EXPECT_EQ(a.shape_actuation.has_value(), b.shape_actuation.has_value());
   if (a.shape_actuation && b.shape_actuation) {
     EXPECT_EQ(*a.shape_actuation, *b.shape_actuation);
   }
-  EXPECT_EQ(a.shape_load_share, b.shape_load_share);
+  EXPECT_EQ(a.shape_load_fraction, b.shape_load_fraction);
   EXPECT_EQ(a.markers, b.markers);
   ASSERT_EQ(a.marker_turns.size(), b.marker_turns.size());
   for (std::size_t m = 0; m < a.marker_turns.size(); ++m) {
@@ -195,7 +195,7 @@ TEST_F(Steps, OfMagnetsAreReadBack) {
   expect_damage_refused(job.codec(), last, {"/magnetic", "/magnetic/moment_N_mm", "/magnetic/center_mm"});
 }
 
-/// Friction goes on from where it was.
+/// Friction continues from its last state.
 TEST_F(Steps, OfWhatRubsKeepWhereItSticks) {
   const Model model = testing::block_model(
       "softkin: 1\nmesh: {file: block.msh}\nmaterials: [{youngs_modulus: 1, poisson_ratio: 0.3}]\n"
@@ -276,7 +276,7 @@ TEST_F(Steps, ThatDidNotConvergeKeepWhatIsNotKnown) {
   StepRecord record = job.make(0, {}).record;
   const double unknown = std::numeric_limits<double>::quiet_NaN();
   record.status = Status::not_converged;
-  record.reached_share.reset();
+  record.reached_fraction.reset();
   record.shape_actuation.reset();
   record.time_s.reset();
   record.gradient_norm = record.energy = unknown;
@@ -309,7 +309,7 @@ TEST_F(Steps, OfAFollowedPathAreReadBack) {
   for (const WaypointRecord& record : records) {
     EXPECT_TRUE(record.is_reached());
     const WaypointRecord read = read_back(job.codec(), record);
-    EXPECT_EQ(read.asked.targets, record.asked.targets);
+    EXPECT_EQ(read.requested.targets, record.requested.targets);
     EXPECT_EQ(read.end, record.end);
     EXPECT_EQ(read.error_mm, record.error_mm);
     EXPECT_EQ(read.equilibria, record.equilibria);

@@ -38,7 +38,7 @@ void expect_same_files(const fs::path& folder, const std::map<std::string, std::
   }
 }
 
-/// Runs the jobs that make() gives: undisturbed, then so that a new one goes on after every `pause` records.
+/// Runs the jobs of make(): undisturbed, then interrupted after every `pause` records and continued by a new one.
 template <class Record>
 void expect_resumable(const Model& model, const std::string& head, std::size_t pause,
                       const std::function<std::unique_ptr<Job<Record>>()>& make) {
@@ -88,7 +88,7 @@ TEST(Run, OfAFollowedPathGoesOnBitByBit) {
   const Statics statics(model);
   TrajectoryOptions options;
   options.inverse.statics = testing::one_thread();
-  // goes on from before the fresh start and from after it, once killed and once interrupted
+  // continues from before the fresh start and from after it, once killed and once interrupted
   constexpr std::size_t pause = beyond_a_fresh_start / 2 - 1;
   expect_resumable<WaypointRecord>(model, follow_head(model, "block.yaml", options), pause, [&] {
     statics.forget();
@@ -131,7 +131,7 @@ class PathRun : public ::testing::Test {
  protected:
   PathRun() : model_(testing::bending_model()), statics_(model_), steps_(testing::steps_of(model_, 6)) {}
 
-  /// Makes so many records.
+  /// Makes a number of records.
   void make(std::size_t count, bool finish, const std::string& head = "") {
     PathJob job = path_job();
     runs::Run<StepRecord> run = path_run(job, head);
@@ -155,7 +155,7 @@ class PathRun : public ::testing::Test {
             head.empty() ? report_head(model_, "block.yaml", testing::one_thread()) : head,
             {}};
   }
-  /// What resume says, and how many records it finds.
+  /// Returns the remark of resume and the number of records that it finds.
   [[nodiscard]] std::pair<std::string, std::size_t> resumed() const {
     PathJob job = path_job();
     runs::Run<StepRecord> run = path_run(job);
@@ -209,19 +209,19 @@ TEST_F(PathRun, RefusesRecordsThatAreNotItsOwn) {
     EXPECT_EQ(softkin::testing::read_text(folder_ / "r.json.run"), softkin::testing::replaced(journal, part, by));
     return why;
   };
-  const auto expect_told = [](const std::string& text, const std::string& part) {
+  const auto expect_reported = [](const std::string& text, const std::string& part) {
     EXPECT_NE(text.find("cannot go on from this report: " + part), std::string::npos) << text;
   };
-  expect_told(damaged("\"status\"", "\"state\""), "it is not a report that this command wrote");
-  expect_told(damaged("{\"softkin\"", "\"softkin\""), "it is not a report that this command wrote");
-  expect_told(damaged("\"robot_fingerprint\":\"", "\"robot_fingerprint\":\"0"), "it is of another robot");
-  expect_told(damaged("\"max_iterations\":500", "\"max_iterations\":7"), "it was made with other solver options");
+  expect_reported(damaged("\"status\"", "\"state\""), "it is not a report that this command wrote");
+  expect_reported(damaged("{\"softkin\"", "\"softkin\""), "it is not a report that this command wrote");
+  expect_reported(damaged("\"robot_fingerprint\":\"", "\"robot_fingerprint\":\"0"), "it is of another robot");
+  expect_reported(damaged("\"max_iterations\":500", "\"max_iterations\":7"), "it was made with other solver options");
   const std::string deep = std::string(300000, '[') + std::string(300000, ']');
-  expect_told(damaged("\"robot_fingerprint\":\"", "\"robot_fingerprint\":" + deep + ",\"x\":\""),
-              "it is not a report that this command wrote");
+  expect_reported(damaged("\"robot_fingerprint\":\"", "\"robot_fingerprint\":" + deep + ",\"x\":\""),
+                  "it is not a report that this command wrote");
   steps_[1].actuation[0] += 1e-3;
   folder_.write("r.json.run", journal);
-  expect_told(refusal(), "step 1 was solved for air = ");
+  expect_reported(refusal(), "step 1 was solved for air = ");
   EXPECT_EQ(softkin::testing::read_text(folder_ / "r.json.run"), journal);
 }
 
@@ -237,7 +237,8 @@ TEST_F(PathRun, InterruptedWhileItRepeatsKeepsWhatIsThere) {
   EXPECT_EQ(run.done(), 4u);
 }
 
-/// The shape on the way to the next record is beside the series, and what is finished is as if it had not been.
+/// A stopped run writes the shape on the path to the next record next to the series; a finished run leaves no trace of
+/// it.
 TEST_F(PathRun, StoppedLeavesTheLastShapeOnItsWay) {
   PathJob job = path_job();
   runs::Run<StepRecord> run = path_run(job);

@@ -52,14 +52,14 @@ TEST(ShapeFiles, ObstaclesAreTrianglesOfTheirName) {
   }
 }
 
-/// Bit by bit, with what rubs and what the material remembers.
+/// A state is restored bit by bit, with anchors of friction and the history of the material.
 TEST(ShapeFiles, AStateIsReadAsItWasWritten) {
   const Model model = block_model(surrounded_scene("", 1));
   const TemporaryFolder folder;
   State state{model.rest};
   state.positions(3, 1) += 1.0 / 3;
   state.actuation = state.multipliers = Eigen::VectorXd::Constant(model.actuators.size(), 0.1);
-  state.share = 1.0 / 7;
+  state.load_factor = 1.0 / 7;
   state.anchors = {{4, 1, 2, Vec3(0.2, 0.3, 0.5), 1e-3}, {5, 0, 7, Vec3(1, 0, 0), 0}};
   state.history = std::make_shared<const ViscousHistory>(ViscousHistory{{1, 1.1, 0.9, 0.01, 0, 1.0 / 3}});
   state.elapsed_s = 0.25;
@@ -68,7 +68,7 @@ TEST(ShapeFiles, AStateIsReadAsItWasWritten) {
   EXPECT_EQ(read.positions, state.positions);
   EXPECT_EQ(read.actuation, state.actuation);
   EXPECT_EQ(read.multipliers, state.multipliers);
-  EXPECT_EQ(read.share, state.share);
+  EXPECT_EQ(read.load_factor, state.load_factor);
   EXPECT_EQ(read.elapsed_s, state.elapsed_s);
   EXPECT_EQ(read.history->strains, state.history->strains);
   ASSERT_EQ(read.anchors.size(), 2u);
@@ -80,9 +80,9 @@ TEST(ShapeFiles, AStateIsReadAsItWasWritten) {
     EXPECT_EQ(read.anchors[i].slipped_mm, state.anchors[i].slipped_mm);
   }
   EXPECT_EQ(read_vtu(folder / "a.vtu").tetrahedra.size(), model.elements.tetrahedra.size());
-  state.share = -1;  // of nothing known
+  state.load_factor = -1;  // of nothing known
   write_shape(folder / "b.vtu", model, state, deformation_of(model, state.positions), false);
-  EXPECT_LT(read_state(folder / "b.vtu", model).share, 0);
+  EXPECT_LT(read_state(folder / "b.vtu", model).load_factor, 0);
   Model other = model;
   other.rest(2, 0) += 0.1;
   EXPECT_THROW((void)read_state(folder / "a.vtu", other), InvalidInput);

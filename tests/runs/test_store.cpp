@@ -186,7 +186,7 @@ TEST(Store, IsLockedAgainstAnotherProcess) {
   EXPECT_EQ(other(true), 0);
 }
 
-/// Files of this process may not grow beyond so many bytes.
+/// Limits the size of files of this process [bytes].
 class SmallDisk {
  public:
   explicit SmallDisk(rlim_t bytes) {

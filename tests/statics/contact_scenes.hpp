@@ -111,7 +111,7 @@ inline double push_of_gap(double z) {
   return reactions(model, found.state.positions, statics.measured(found.state))[support].force;
 }
 
-/// Of what touches in a shape, in its nodes [N].
+/// Returns the gradient of the contact potential of a shape, in its nodes [N].
 [[nodiscard]] inline Points contact_gradient(const Model& model, const Points& at) {
   const physical::Contacts contacts(model);
   const auto scratch = contacts.make_scratch();
@@ -122,7 +122,7 @@ inline double push_of_gap(double z) {
   return gradient;
 }
 
-/// A block over a floor, held at its top and moved down and sideways with the share of the way.
+/// A block over a floor, held at its top, which moves down and sideways with the load factor.
 inline RobotSpec block_on_rough_floor(double friction, const Vec3& move, int cells = 3, bool quadratic = false) {
   RobotSpec spec = physical_robot(block_mesh({cells, cells, cells}, {10, 10, 10}));
   spec.mesh_options.quadratic = quadratic;

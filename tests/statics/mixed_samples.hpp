@@ -51,7 +51,7 @@ inline RobotSpec blown_ball(int cuts, int layers, double kilopascals, double nu,
 inline RobotSpec cook_membrane(int cells, double shear_MPa, double nu, bool quadratic) {
   Mesh mesh = block_mesh({cells, cells, 1}, {48, 1, 48.0 / cells});
   for (Index v = 0; v < mesh.vertices.rows(); ++v) {
-    const double share = mesh.vertices(v, 0) / 48, low = 44 * share, high = 44 + 16 * share;
+    const double fraction = mesh.vertices(v, 0) / 48, low = 44 * fraction, high = 44 + 16 * fraction;
     mesh.vertices(v, 1) = low + mesh.vertices(v, 1) * (high - low);
   }
   RobotSpec spec = mixed(physical_robot(std::move(mesh)), nu, quadratic);

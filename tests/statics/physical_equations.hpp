@@ -4,7 +4,7 @@
 
 namespace softkin::testing {
 
-/// The equations of a robot with memory to solve them; a shape, and what is asked of it.
+/// The equations of a robot with the memory to solve them; a shape and its load state.
 struct PhysicalEquations {
   explicit PhysicalEquations(Model robot) : model(std::move(robot)), system(model), work(system), team(1) {}
 
@@ -12,7 +12,7 @@ struct PhysicalEquations {
   physical::System system;
   physical::Workspace work;
   Team team;
-  physical::Demand demand;
+  physical::LoadState load_state;
   physical::Iterate at;
   std::vector<bool> active;
   physical::Balance balance;  // of the last evaluation

@@ -123,8 +123,8 @@ inline StaticsOptions tight(double tolerance_mm = 1e-9) {
 }
 
 /// From rest, converged.
-inline Equilibrium settled(const Statics& statics, const Actuation& actuation,
-                           const StaticsOptions& options = tight()) {
+inline Equilibrium solve_converged(const Statics& statics, const Actuation& actuation,
+                                   const StaticsOptions& options = tight()) {
   Equilibrium found = statics.solve(actuation, statics.rest(), options);
   EXPECT_EQ(found.report.status, Status::converged) << found.report.remark << " at " << found.report.reached;
   EXPECT_TRUE(found.state.positions.allFinite());

@@ -22,16 +22,17 @@ struct PressedDrop {
   std::size_t tetrahedra = 0;
 };
 
-/// The robot of a drop, its top displaced by a share of its way, below a contact distance of a fifth of its gap and at
-/// most 0.04 of the diagonal. A slack cable, whose tension is 0, makes the states of one share starts of another.
-[[nodiscard]] inline RobotSpec drop_robot(const Drop& drop, double share) {
+/// Returns the robot of a drop whose top moves by a fraction of its displacement. The contact distance is a fifth of
+/// the gap and at most 0.04 of the diagonal. A slack cable, whose tension is 0, lets the states of one fraction start
+/// those of another.
+[[nodiscard]] inline RobotSpec drop_robot(const Drop& drop, double fraction) {
   RobotSpec spec = drop.robot;
   const Points& at = spec.mesh.vertices;
   const double diagonal = (at.colwise().maxCoeff() - at.colwise().minCoeff()).norm();
   ContactSpec contact;
   contact.distance_mm = std::min(0.2 * drop.gap_mm, 0.04 * diagonal);
   spec.contact = contact;
-  spec.fixed.back().displacement *= share;
+  spec.fixed.back().displacement *= fraction;
   ActuatorSpec cable;
   cable.name = "slack";
   cable.drive = CableSpec{};
@@ -46,7 +47,7 @@ struct PressedDrop {
 
 /// Presses a drop in equal steps, each from the shape of the one before, and looks at every shape that comes back.
 ///
-/// cable  has the robot its slack cable; without one no start tells of which share it is
+/// cable  gives the robot its slack cable; without one the start does not contain the fraction it belongs to
 [[nodiscard]] inline PressedDrop press_drop(std::uint64_t seed, int steps, bool cable = true) {
   const Drop drop = random_drop(seed);
   PressedDrop out;
@@ -64,13 +65,13 @@ struct PressedDrop {
       if (step == 1)
         state = statics.rest();
       else
-        state.share *= static_cast<double>(step - 1) / step;
+        state.load_factor *= static_cast<double>(step - 1) / step;
       const Equilibrium found = statics.solve(Actuation::Zero(cable ? 1 : 0), state, options);
       Points room;
       const Points& points = physical::ContactPoints(model).of(found.state.positions, room);
       out.shapes.push_back({found.report, crossings(points, model.contact.triangles).size()});
       state = found.state;
-      if (state.share < 0) break;
+      if (state.load_factor < 0) break;
     }
   } catch (const InvalidInput& error) {
     out.refusal = error.what();

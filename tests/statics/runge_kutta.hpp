@@ -16,7 +16,7 @@ void integrate(std::vector<double>& flowed, double from, double to, double time,
     return result;
   };
   for (int i = 0; i < steps; ++i) {
-    const auto at = [&](double share) { return from + (to - from) * (i + share) / steps; };
+    const auto at = [&](double fraction) { return from + (to - from) * (i + fraction) / steps; };
     const std::vector<double> a = rate(at(0), flowed), b = rate(at(0.5), moved(a, h / 2)),
                               c = rate(at(0.5), moved(b, h / 2)), d = rate(at(1), moved(c, h));
     for (std::size_t k = 0; k < flowed.size(); ++k) flowed[k] += h / 6 * (a[k] + 2 * b[k] + 2 * c[k] + d[k]);

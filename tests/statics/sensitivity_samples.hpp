@@ -55,7 +55,7 @@ struct Steps {
   }
 };
 
-/// The difference that there is: one-sided at a command from which only one direction has the same cables taut.
+/// Returns the difference, one-sided at a command from which only one direction has the same active cables.
 inline Difference difference_by(const Model& model, const Statics& statics, const State& at, Index actuator,
                                 double step) {
   const Actuator& a = model.actuators[actuator];
@@ -90,7 +90,7 @@ inline void expect_differences_at(const RobotSpec& spec, const Actuation& actuat
                                   const Steps& steps = {}) {
   const Model model = compile(spec);
   const Statics statics(model);
-  expect_differences(model, statics, settled(statics, actuation), tolerance, steps);
+  expect_differences(model, statics, solve_converged(statics, actuation), tolerance, steps);
 }
 
 /// A slender finger of quadratic elements with a stiff sole; inflated it curls down.

@@ -26,7 +26,7 @@ Equilibrium released(const Statics& statics) {
 TEST(Bodies, AreHeldUntilReleased) {
   const Model model = compile(body_on_floor({10, 10, 10}, 0.5));
   const Statics statics(model);
-  const Equilibrium held = settled(statics, values({1, 0, 0, 0})), free = released(statics);
+  const Equilibrium held = solve_converged(statics, values({1, 0, 0, 0})), free = released(statics);
   ASSERT_EQ(held.report.status, Status::converged) << held.report.remark;
   ASSERT_EQ(free.report.status, Status::converged) << free.report.remark;
   const Index first = model.bodies[0].vertices.front();
@@ -53,11 +53,11 @@ TEST(Bodies, StickOnASlopeOrSlide) {
   EXPECT_NE(slides.report.remark.find("slips"), std::string::npos) << slides.report.remark;
 }
 
-/// Pulled along the floor a body gives way where friction ends, or where it tips over its edge.
+/// A body that is pulled along the floor slips at the friction limit, or tips over its edge.
 TEST(Bodies, PulledTheySlideOrTip) {
   struct Case {
     Vec3 size;
-    double friction, share;  // of the weight
+    double friction, fraction;  // of the weight
   };
   for (const Case& each : {Case{{10, 10, 10}, 0.3, 0.3}, Case{{10, 10, 40}, 1.0, 0.25}}) {
     const Model model = compile(body_on_floor(each.size, each.friction));
@@ -67,7 +67,7 @@ TEST(Bodies, PulledTheySlideOrTip) {
     const double pull = weight(each.size);
     const Equilibrium pulled = statics.solve(values({0, pull, 0, 0}), free.state, tight(1e-8));
     EXPECT_EQ(pulled.report.status, Status::limit);
-    EXPECT_NEAR(pulled.state.actuation[1] / pull, each.share, 0.01 * each.share) << pulled.report.remark;
+    EXPECT_NEAR(pulled.state.actuation[1] / pull, each.fraction, 0.01 * each.fraction) << pulled.report.remark;
   }
 }
 
@@ -90,20 +90,20 @@ RobotSpec pushed_beam(const Vec3& rest) {
 TEST(Bodies, ObstaclesMove) {
   const Model model = compile(pushed_beam({0, 0, 0}));
   const Statics statics(model);
-  const Equilibrium low = settled(statics, values({1.5}), tight(1e-10));
+  const Equilibrium low = solve_converged(statics, values({1.5}), tight(1e-10));
   const Equilibrium moved = statics.solve(values({2.5}), low.state, tight(1e-10));
   ASSERT_EQ(moved.report.status, Status::converged) << moved.report.remark;
   EXPECT_GT((moved.state.positions - model.rest).topRows(model.robot_vertices()).col(2).maxCoeff(), 1);
   // over a lower one of the same place: from a start that has moved less
   const Model other = compile(pushed_beam({0, 0, -1}));
   const Statics below(other);
-  const Equilibrium same = settled(below, values({3.5}), tight(1e-10));
+  const Equilibrium same = solve_converged(below, values({3.5}), tight(1e-10));
   EXPECT_LT(distance(moved.state.positions.topRows(model.robot_vertices()),
                      same.state.positions.topRows(model.robot_vertices())),
             1e-7);
 }
 
-/// What lies on the other side already would be kept there.
+/// A part that starts on the other side of an obstacle would stay there.
 TEST(Bodies, AStartThatPassesThroughAnObstacleIsRefused) {
   const Model model = compile(pushed_beam({0, 0, 0}));
   const Statics statics(model);
@@ -128,7 +128,7 @@ TEST(Bodies, AStartThatPassesThroughAnObstacleIsRefused) {
 TEST(Bodies, JacobianByMotions) {
   const Model model = compile(pushed_beam({0, 0, 0}));
   const Statics statics(model);
-  const Equilibrium at = settled(statics, values({2.0}), tight(1e-11));
+  const Equilibrium at = solve_converged(statics, values({2.0}), tight(1e-11));
   const Sensitivity slopes = statics.sensitivity(at.state);
   ASSERT_TRUE(slopes.regular);
   constexpr double step = 1e-4;
@@ -144,7 +144,7 @@ TEST(Bodies, JacobianByForcesAndHolds) {
   const Model model = compile(spec);
   const Statics statics(model);
   const Actuation actuation = values({0.2, 2e-3, 1e-3, -4e-3});
-  const Equilibrium at = settled(statics, actuation, tight(1e-11));
+  const Equilibrium at = solve_converged(statics, actuation, tight(1e-11));
   const Sensitivity slopes = statics.sensitivity(at.state);
   ASSERT_TRUE(slopes.regular);
   for (Index a = 0; a < 4; ++a) {

@@ -58,7 +58,7 @@ TEST(ContactCrossings, RandomDropsInSteps) {
       EXPECT_EQ(shape.crossings, 0u) << "seed " << seed;
 }
 
-/// A start that does not tell where its supports are: they come from there to their places.
+/// A start may not contain the places of its supports: they then move from where they are to their targets.
 TEST(ContactCrossings, RandomDropsFromShapesOfNoKnownShare) {
   for (const std::uint64_t seed : {73, 97, 101, 120, 121, 122})
     for (const PressedDrop::Shape& shape : press_drop(seed, 3, false).shapes)

@@ -2,7 +2,7 @@
 
 #include "statics/physical_samples.hpp"
 
-/// What touches, and how hard.
+/// Contacts and their forces.
 
 namespace softkin {
 
@@ -49,7 +49,7 @@ struct Touched {
 Touched touched(const RobotSpec& spec) {
   Touched out{compile(spec), {}, {}, {}, {}};
   const Statics statics(out.model);
-  out.found = settled(statics, out.model.rest_actuation());
+  out.found = solve_converged(statics, out.model.rest_actuation());
   out.deformation = statics.measured(out.found.state);
   EXPECT_TRUE(out.deformation.contacts.has_value());
   out.contacts = out.deformation.contacts.value_or(ContactForces{});
@@ -125,7 +125,7 @@ TEST(ContactForces, AreInBalanceWithSupportsAndWeight) {
   }
   EXPECT_LT(force.norm(), 1e-9 * size);
   EXPECT_LT(moment.norm(), 1e-9 * size * shape.model.diagonal_mm);
-  // pressure that a vertex bears for its share of the surface makes up the forces: no peak, nothing lost
+  // pressures of vertices times their tributary areas add up to the forces: no peak, nothing lost
   double greatest = 0, sum = 0;
   for (const PairForces& pair : shape.contacts.pairs) {
     sum += pair.normal_N;
@@ -203,10 +203,10 @@ TEST(ContactForces, OfAPartWithItselfCountOnce) {
   EXPECT_EQ(pair.force, Vec3::Zero().eval());
   EXPECT_EQ(pair.moment, Vec3::Zero().eval());
   const double load = shape.supports[0].force.norm();
-  EXPECT_NEAR(pair.normal_N, load, 0.01 * load);  // some of it along slanted ways at the rim
+  EXPECT_NEAR(pair.normal_N, load, 0.01 * load);  // some of it acts at an angle at the rim
   EXPECT_GT(pair.area_mm2, 200);
   EXPECT_LT(pair.area_mm2, 420);
-  // both sides bear it
+  // both sides carry it
   double low = 0, high = 0;
   for (Index v = 0; v < shape.model.rest.rows(); ++v)
     (shape.model.rest(v, 2) < 8.2 ? low : high) += shape.contacts.pressure_kPa[v];
@@ -223,7 +223,7 @@ TEST(ContactForces, NothingWhereNothingTouches) {
   without.contact.reset();
   const Model model = compile(without);
   const Statics statics(model);
-  EXPECT_FALSE(statics.measured(settled(statics, model.rest_actuation()).state).contacts.has_value());
+  EXPECT_FALSE(statics.measured(solve_converged(statics, model.rest_actuation()).state).contacts.has_value());
 }
 
 }  // namespace softkin

@@ -72,7 +72,7 @@ TEST(ContactPoints, WiderReachIsOfDifferentSolidsAlone) {
     const Model model = compile(spec);
     const physical::Contacts contacts(model);
     const auto scratch = contacts.make_scratch();
-    scratch->firmness.reach = 2 * 10 / *spec.contact->distance_mm;  // all of the block
+    scratch->stiffness_scale.reach = 2 * 10 / *spec.contact->distance_mm;  // all of the block
     Team alone(1);
     contact::Candidates pairs;
     contacts.find_pairs(model.rest, *scratch, alone, pairs);
@@ -86,13 +86,13 @@ TEST(ContactPoints, WiderReachIsOfDifferentSolidsAlone) {
   }
 }
 
-/// A block that is pushed onto another one again and again, here and there: what is remembered of the ways before
-/// changes neither how far it may go nor what is near there.
+/// A block is pushed onto another one repeatedly and in random directions. The memory of earlier motions changes
+/// neither the longest admissible step nor the contact energy.
 TEST(ContactPoints, WaysBeforeChangeNothing) {
   for (const bool quadratic : {false, true}) {
     NearBlocks blocks(quadratic);
     Points at = blocks.model.rest;
-    int cut = 0, short_ways = 0;
+    int cut = 0, short_motions = 0;
     for (int i = 0; i < 150; ++i) {
       const double length = std::pow(10.0, -2 + 0.7 * (i % 6));  // [mm]
       const Points chance = noise(3, 1, 100 + i);
@@ -103,17 +103,17 @@ TEST(ContactPoints, WaysBeforeChangeNothing) {
                        0.02 * length * (at.row(v) - at.row(0)).cross(chance.row(1));
       to += noise(to.rows(), 0.02 * length, 300 + i);
       const auto fresh = blocks.contacts.make_scratch();
-      const double share = blocks.contacts.longest_step(at, to, *blocks.scratch, blocks.alone);
-      EXPECT_NEAR(share, blocks.contacts.longest_step(at, to, *fresh, blocks.alone), 0.01 * share) << i;
-      cut += share < 1;
-      short_ways += share == 1;
-      at += (i % 2 ? 0.95 : 0.5) * share * (to - at);
+      const double fraction = blocks.contacts.longest_step(at, to, *blocks.scratch, blocks.alone);
+      EXPECT_NEAR(fraction, blocks.contacts.longest_step(at, to, *fresh, blocks.alone), 0.01 * fraction) << i;
+      cut += fraction < 1;
+      short_motions += fraction == 1;
+      at += (i % 2 ? 0.95 : 0.5) * fraction * (to - at);
       const auto another = blocks.contacts.make_scratch();
       blocks.contacts.find(at, *another, blocks.alone);
       EXPECT_EQ(blocks.energy(at), blocks.contacts.energy(at, *another)) << i;
     }
     EXPECT_GT(cut, 10);
-    EXPECT_GT(short_ways, 50);
+    EXPECT_GT(short_motions, 50);
   }
 }
 

@@ -28,7 +28,7 @@ std::vector<Corners> sheet(int cells, Index first, std::mt19937& engine) {
   return triangles;
 }
 
-/// Its vertices: in a square from 0 to cells, moved by chance by so much, in the plane and out of it.
+/// Returns its vertices: in a square from 0 to cells, with random perturbations in the plane and out of it.
 Points places(int cells, double sideways, double height, double bumps, std::mt19937& engine) {
   std::uniform_real_distribution<double> any(-1, 1);
   Points points((cells + 1) * (cells + 1), 3);

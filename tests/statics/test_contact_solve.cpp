@@ -76,7 +76,7 @@ TEST(ContactSolve, AFloorBearsWhatPressesOnIt) {
     spec.loads.forces = {{"weight", {std::string("z_low"), {}}, {0, 0, -load}}};
     const Model model = compile(spec);
     const Statics statics(model);
-    const Equilibrium found = settled(statics, {});
+    const Equilibrium found = solve_converged(statics, {});
     const std::vector<Index> bottom = bottom_of(model, block.gap);
     const Eigen::VectorXd push = push_of_floor(model, found.state.positions, bottom);
     const double held = -reaction_of(model, statics, found, 0).z();
@@ -89,7 +89,7 @@ TEST(ContactSolve, AFloorBearsWhatPressesOnIt) {
 double unevenness_on_floor(double distance, bool quadratic) {
   const Model model = compile(BlockOnFloor{distance, 0.5 * distance, 1, quadratic}.robot());
   const Statics statics(model);
-  const std::vector<double> stresses = statics.measured(settled(statics, {}).state).stress.von_mises;
+  const std::vector<double> stresses = statics.measured(solve_converged(statics, {}).state).stress.von_mises;
   const auto [least, most] = std::minmax_element(stresses.begin(), stresses.end());
   std::printf("floor, %s, distance %g: stress %.6f to %.6f MPa\n", quadratic ? "quadratic" : "linear", distance, *least,
               *most);
@@ -126,7 +126,7 @@ TEST(ContactSolve, TurnsWithEverythingAround) {
   const auto solved = [](const Mat3& turn, const Vec3& shift) {
     const Model model = compile(turned_block(turn, shift));
     const Statics statics(model);
-    return Points(settled(statics, {}, tight(1e-10)).state.positions.topRows(model.robot_vertices()));
+    return Points(solve_converged(statics, {}, tight(1e-10)).state.positions.topRows(model.robot_vertices()));
   };
   const Points straight = solved(Mat3::Identity(), Vec3::Zero());
   for (const Vec3& axis : {Vec3(1, 2, 3), Vec3(0, 1, 0), Vec3(-3, 1, 0.2)}) {
@@ -142,16 +142,16 @@ TEST(ContactSolve, TurnsWithEverythingAround) {
 
 /// A ball on a plane.
 TEST(ContactSolve, Hertz) {
-  for (const double share : {0.01, 0.02}) {
-    const PressedBalls balls{.approach = share * PressedBalls::radius, .distance = 0.02};
+  for (const double fraction : {0.01, 0.02}) {
+    const PressedBalls balls{.approach = fraction * PressedBalls::radius, .distance = 0.02};
     StaticsOptions options;
     options.threads = 1;
     const BallContact found = pressed(balls, options);
     ASSERT_EQ(found.found.report.status, Status::converged);
     const HertzRatios ratios = beside_hertz(balls, found);
-    EXPECT_NEAR(ratios.force_of_ball, 1, 0.04) << share;
-    EXPECT_NEAR(ratios.force_of_radius, 1, 0.05) << share;
-    EXPECT_NEAR(ratios.radius, 1, 0.05) << share;
+    EXPECT_NEAR(ratios.force_of_ball, 1, 0.04) << fraction;
+    EXPECT_NEAR(ratios.force_of_radius, 1, 0.05) << fraction;
+    EXPECT_NEAR(ratios.radius, 1, 0.05) << fraction;
     std::printf("Hertz, approach %.4f: F/F(d) %.4f, F/F(d') %.4f, F/F(a) %.4f, a/a(d) %.4f, %.1f s\n",
                 found.approach / PressedBalls::radius, ratios.force, ratios.force_of_ball, ratios.force_of_radius,
                 ratios.radius, found.found.report.seconds);
@@ -184,13 +184,13 @@ TEST(ContactSolve, SolvesBeforeChangeNoBit) {
   const auto pulled = [](double top, double bottom) { return Actuation(Eigen::Vector2d(top, bottom)); };
   const Statics used(model);
   State start = used.rest();
-  for (const Actuation& asked : {pulled(0.97, 1), pulled(1, 0.99), pulled(0.96, 1), pulled(1, 0.96)}) {
+  for (const Actuation& requested : {pulled(0.97, 1), pulled(1, 0.99), pulled(0.96, 1), pulled(1, 0.96)}) {
     const Statics fresh(model);
-    const Equilibrium expected = fresh.solve(asked, start, options);
+    const Equilibrium expected = fresh.solve(requested, start, options);
     ASSERT_EQ(expected.report.status, Status::converged) << expected.report.remark;
     const double low = expected.state.positions.col(2).minCoeff(), high = expected.state.positions.col(2).maxCoeff();
     EXPECT_LT(std::min(low + gap, 10 + gap - high), distance) << "it touches";
-    const Equilibrium found = used.solve(asked, start, options);
+    const Equilibrium found = used.solve(requested, start, options);
     EXPECT_EQ(found.report.iterations, expected.report.iterations);
     EXPECT_EQ(found.report.factorisations, expected.report.factorisations);
     EXPECT_EQ(found.state.positions, expected.state.positions);

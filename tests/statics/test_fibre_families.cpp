@@ -91,7 +91,7 @@ void expect_closed_form(const Stretched& s) {
   for (const bool quadratic : {false, true}) {
     const Model model = compile(robot_of(s, quadratic));
     const Statics statics(model);
-    const Equilibrium found = settled(statics, model.rest_actuation(), tight(1e-10));
+    const Equilibrium found = solve_converged(statics, model.rest_actuation(), tight(1e-10));
     const ElementDeformation measured = statics.measured(found.state);
     const auto borne = reactions(model, found.state.positions, measured);
     EXPECT_NEAR(borne[3].force.x(), pull, 1e-6 * std::abs(pull)) << s.along << quadratic;
@@ -163,7 +163,7 @@ TEST(FibreFamilies, AffineShapesHaveTheEnergyOfTheLaw) {
       physical::Term::Sum sum{gradient};
       for (std::size_t t = 0; t < sample.system.terms().size(); ++t)
         if (dynamic_cast<const physical::FibreFamilies*>(sample.system.terms()[t]) != nullptr)
-          sample.system.terms()[t]->evaluate(at, sample.demand, *sample.work.terms[t], sum, sample.team);
+          sample.system.terms()[t]->evaluate(at, sample.load_state, *sample.work.terms[t], sum, sample.team);
       EXPECT_FALSE(sum.forbidden);
       return sum.energy;
     };
@@ -212,7 +212,7 @@ TEST(FibreFamilies, RingsHoldATube) {
     spec.fixed.push_back({{Selector(other), {}}, {false, true, false}});
     spec.loads.tractions = {{"air", {Selector(inside), {}}, true, {0, 0, 0}, 30}};
     const Model model = compile(spec);
-    const Points shape = settled(Statics(model), model.rest_actuation()).state.positions;
+    const Points shape = solve_converged(Statics(model), model.rest_actuation()).state.positions;
     return shape.rightCols(2).rowwise().norm().maxCoeff();
   };
   const double rings = radius(0), along = radius(90);
@@ -227,7 +227,7 @@ TEST(FibreFamilies, DerivativesOfShapes) {
     spec.materials[0].families = std::make_shared<const FamiliesSpec>(oblique);
     const Model model = compile(spec);
     const Statics statics(model);
-    const Equilibrium found = settled(statics, values({0.9, 1.4}), tight(1e-11));
+    const Equilibrium found = solve_converged(statics, values({0.9, 1.4}), tight(1e-11));
     const Sensitivity exact = statics.sensitivity(found.state);
     const Difference expected = central(statics, found.state, 0, 1e-4);
     EXPECT_LT(off_by(exact.positions[0], expected.positions), 1e-5);

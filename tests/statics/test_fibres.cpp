@@ -13,10 +13,10 @@ namespace {
 
 using namespace testing;
 
-FibreSpec thread(const std::string& name, std::vector<Vec3> way, double stiffness_N, bool tension_only = false) {
+FibreSpec thread(const std::string& name, std::vector<Vec3> path, double stiffness_N, bool tension_only = false) {
   FibreSpec fibre;
   fibre.name = name;
-  fibre.way = std::move(way);
+  fibre.path = std::move(path);
   fibre.stiffness_N = stiffness_N;
   fibre.tension_only = tension_only;
   return fibre;
@@ -43,7 +43,7 @@ struct Pulled {
 Pulled pulled(const RobotSpec& spec) {
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, model.rest_actuation());
+  const Equilibrium found = solve_converged(statics, model.rest_actuation());
   const ElementDeformation measured = statics.measured(found.state);
   return {reactions(model, found.state.positions, measured).back().force.x(),
           measured.fibres.empty() ? FibreForces{} : measured.fibres.front(), found};
@@ -94,13 +94,13 @@ RobotSpec wound(const WoundTube& tube) {
   for (int t = 0; t < 2 * tube.threads; ++t) {
     const double begin = 2 * std::numbers::pi * (t / 2) / tube.threads;
     FibreSpec fibre = thread("thread" + std::to_string(t), {}, tube.stiffness_N);
-    fibre.way = Helix{.start = Vec3::Zero(),
-                      .axis = Vec3::UnitX(),
-                      .first = Vec3(0, std::cos(begin), std::sin(begin)),
-                      .radius = tube.outer,
-                      .pitch = 2 * std::numbers::pi * tube.outer / std::tan(tube.angle()),
-                      .turns = tube.length * std::tan(tube.angle()) / (2 * std::numbers::pi * tube.outer),
-                      .left_handed = t % 2 == 1};
+    fibre.path = Helix{.start = Vec3::Zero(),
+                       .axis = Vec3::UnitX(),
+                       .first = Vec3(0, std::cos(begin), std::sin(begin)),
+                       .radius = tube.outer,
+                       .pitch = 2 * std::numbers::pi * tube.outer / std::tan(tube.angle()),
+                       .turns = tube.length * std::tan(tube.angle()) / (2 * std::numbers::pi * tube.outer),
+                       .left_handed = t % 2 == 1};
     spec.fibres.push_back(fibre);
   }
   return spec;
@@ -195,7 +195,7 @@ class SpreadTube {
 TubeShape solved(const RobotSpec& spec, const WoundTube& tube) {
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, model.rest_actuation());
+  const Equilibrium found = solve_converged(statics, model.rest_actuation());
   const auto radius = [&](double at_rest) {
     double sum = 0, count = 0;
     for (Index v = 0; v < found.state.positions.rows(); ++v) {
@@ -230,7 +230,7 @@ TEST(Fibres, AddTheirTensionAlongThePull) {
         EXPECT_LT(distance(with.found.state.positions, without.found.state.positions), 1e-6);
         EXPECT_NEAR(with.fibre.mean_N, 30 * tension, 1e-7);
         EXPECT_NEAR(with.fibre.largest_N, 30 * tension, 1e-7);
-        EXPECT_NEAR(with.fibre.least_N, 30 * tension, 1e-7);
+        EXPECT_NEAR(with.fibre.min_N, 30 * tension, 1e-7);
         EXPECT_NEAR(with.fibre.stretch, stretch, 1e-9);
         EXPECT_EQ(with.fibre.slack, tension_only && stretch < 1 ? 1 : 0);
         EXPECT_NEAR(with.fibre.where.y(), 3.1, 1e-6);
@@ -244,7 +244,7 @@ TEST(Fibres, ThoseThatDoNotStretchHold) {
   spec.loads.forces = {{"pull", {std::string("x_high"), {}}, {2, 0, 0}}};
   spec.markers.push_back({"end", {std::string("x_high"), {}}});
   const Model free = compile(spec);
-  EXPECT_GT(marker_at(free, settled(Statics(free), free.rest_actuation())).x(), 20.35);
+  EXPECT_GT(marker_at(free, solve_converged(Statics(free), free.rest_actuation())).x(), 20.35);
   for (const double z : {0.0, 10.0})
     for (const double y : {0.0, 10.0}) {
       FibreSpec fibre = thread("f" + std::to_string(spec.fibres.size()), {{0, y, z}, {20, y, z}}, 1);
@@ -253,7 +253,7 @@ TEST(Fibres, ThoseThatDoNotStretchHold) {
     }
   const Model held = compile(spec);
   const Statics statics(held);
-  const Equilibrium found = settled(statics, held.rest_actuation());
+  const Equilibrium found = solve_converged(statics, held.rest_actuation());
   for (const FibreForces& fibre : statics.measured(found.state).fibres) {
     EXPECT_NEAR(fibre.stretch, 1, 1e-5);
     EXPECT_GT(fibre.mean_N, 0.1);
@@ -266,12 +266,12 @@ TEST(Fibres, TurnWithTheRobot) {
   spec.mesh_options.quadratic = true;
   spec.fixed[0].rotation = RotationSpec{{0, 1, 0}, 0, Vec3(0, 0, 0)};
   FibreSpec fibre = thread("wound", {}, 20, true);
-  fibre.way = Helix{{2, 4, 4}, {1, 0, 0}, {0, 1, 0}, 3, 9, 4};
+  fibre.path = Helix{{2, 4, 4}, {1, 0, 0}, {0, 1, 0}, 3, 9, 4};
   spec.fibres = {fibre};
   spec.loads.tractions = {{"wind", {std::string("x_high"), {}}, true, {1.5, 0.4, -1}, 0}};
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium straight = settled(statics, values({0})), turned = settled(statics, values({130}));
+  const Equilibrium straight = solve_converged(statics, values({0})), turned = solve_converged(statics, values({130}));
   EXPECT_GT(distance(straight.state.positions, model.rest), 3);
   const Mat3 rotation = Eigen::AngleAxisd(130 * std::numbers::pi / 180, Vec3(0, 1, 0)).toRotationMatrix();
   EXPECT_LT(distance(straight.state.positions * rotation.transpose(), turned.state.positions), 1e-6);
@@ -319,7 +319,7 @@ TEST(Fibres, CarryNothingAtRest) {
   for (FibreSpec& fibre : spec.fibres) fibre.stiffness_N = 1e4;
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, model.rest_actuation());
+  const Equilibrium found = solve_converged(statics, model.rest_actuation());
   EXPECT_LT(distance(found.state.positions, model.rest), 1e-12);
   for (const FibreForces& fibre : statics.measured(found.state).fibres) EXPECT_LT(std::abs(fibre.largest_N), 1e-9);
 }
@@ -328,11 +328,11 @@ TEST(Fibres, CarryNothingAtRest) {
 TEST(Fibres, DerivativesOfShapes) {
   RobotSpec spec = bending_finger();
   FibreSpec wound = thread("wound", {}, 20);
-  wound.way = Helix{{6, 6, 8}, {1, 0, 0}, {0, 1, 0}, 5, 8, 6};
+  wound.path = Helix{{6, 6, 8}, {1, 0, 0}, {0, 1, 0}, 5, 8, 6};
   spec.fibres = {wound, thread("floor", {{0, 6, 1}, {60, 6, 1}}, 100, true)};
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, values({1.4}));
+  const Equilibrium found = solve_converged(statics, values({1.4}));
   EXPECT_GT(statics.measured(found.state).fibres[1].largest_N, 0.05);
   const Sensitivity exact = statics.sensitivity(found.state);
   const Difference expected = central(statics, found.state, 0, 5e-4);

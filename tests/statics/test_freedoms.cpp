@@ -261,15 +261,15 @@ TEST(Freedoms, ReducedMatrixIsTheSlopeOfTheReducedGradient) {
 TEST(Freedoms, HoldProjects) {
   const FreedomSample sample(held_robot());
   const Model& model = sample.model;
-  for (const double share : {0.0, 0.4, 1.0}) {
+  for (const double fraction : {0.0, 0.4, 1.0}) {
     Points positions = model.rest + noise(model.rest.rows(), 2, 3);
     const Points before = positions;
-    sample.freedoms->hold(share, positions);
+    sample.freedoms->hold(fraction, positions);
     for (Index v = 0; v < positions.rows(); ++v)
       for (int axis = 0; axis < 3; ++axis)
         if (model.held.fixed[v][axis]) {
-          EXPECT_NEAR(positions(v, axis), model.rest(v, axis) + share * (model.held.at(v, axis) - model.rest(v, axis)),
-                      1e-11);
+          EXPECT_NEAR(positions(v, axis),
+                      model.rest(v, axis) + fraction * (model.held.at(v, axis) - model.rest(v, axis)), 1e-11);
         }
     for (const RigidRegion& region : model.rigid)
       for (const Index a : region.vertices)
@@ -277,7 +277,7 @@ TEST(Freedoms, HoldProjects) {
           ASSERT_NEAR((positions.row(a) - positions.row(b)).norm(), (model.rest.row(a) - model.rest.row(b)).norm(),
                       1e-11);
     Points again = positions;
-    sample.freedoms->hold(share, again);
+    sample.freedoms->hold(fraction, again);
     EXPECT_LT((again - positions).norm(), 1e-10);
     // a region that nothing holds takes the pose that fits best: no small turn or shift fits better
     const RigidRegion& free = model.rigid[0];

@@ -23,7 +23,7 @@ Vec3 reaction(const Model& model, const Statics& statics, const State& at) {
   return sum;
 }
 
-/// In so many steps of as long a way each; without a remark.
+/// Moves a robot in equal steps and returns the last equilibrium; checks that it converges.
 Equilibrium moved(const Model& model, const Statics& statics, int steps) {
   Equilibrium last;
   last.state = statics.rest();
@@ -70,7 +70,7 @@ TEST(Friction, WhatSticksStays) {
   EXPECT_GT(std::abs(before.x()), 0.01 * std::abs(before.z()));
 }
 
-/// What begins to touch on the way sticks where it does so, however long the step: as if the way began there.
+/// A contact that begins within a step sticks where it begins, however long the step: as if the path began there.
 TEST(Friction, WhatComesToTouchSticksWhereItDoes) {
   const auto reaction_over = [](double gap, const Vec3& move) {
     RobotSpec spec = block_on_rough_floor(2, move);
@@ -97,7 +97,7 @@ void expect_derivatives(const Model& model) {
   const physical::System system(model);
   physical::Workspace work(system);
   Team team(1);
-  const physical::Demand demand{model.rest_actuation(), 1};
+  const physical::LoadState load_state{model.rest_actuation(), 1};
   physical::Iterate at = system.iterate(found);
   at.multipliers = Eigen::VectorXd::Zero(0);
   physical::Balance balance;
@@ -112,25 +112,25 @@ void expect_derivatives(const Model& model) {
     system.freedoms().move(move, 1, from.positions);
     physical::hold_friction(system, from, work, team);
     ASSERT_FALSE(work.contacts->holds.empty());
-    system.evaluate(from, demand, none, work, balance, team);
+    system.evaluate(from, load_state, none, work, balance, team);
     ASSERT_FALSE(balance.forbidden);
     const Eigen::VectorXd force = balance.force;
-    system.assemble(from, demand, balance, physical::System::Stiffness::exact, work, team);
+    system.assemble(from, load_state, balance, physical::System::Stiffness::exact, work, team);
     system.gather(from, balance, work, team);
-    Eigen::VectorXd way(size);
-    for (Index i = 0; i < size; ++i) way[i] = normal(engine);
+    Eigen::VectorXd path(size);
+    for (Index i = 0; i < size; ++i) path[i] = normal(engine);
     Eigen::MatrixXd product(size, 1);
-    system.multiply(from, way, work, product, team);
+    system.multiply(from, path, work, product, team);
     const double step = 1e-7;
     const auto beside = [&](double scale, bool held) {
       physical::Iterate there = from;
-      system.freedoms().move(way, scale, there.positions);
+      system.freedoms().move(path, scale, there.positions);
       physical::hold_friction(system, held ? from : there, work, team);
-      system.evaluate(there, demand, none, work, balance, team);
+      system.evaluate(there, load_state, none, work, balance, team);
       return std::pair(balance.energy, Eigen::VectorXd(balance.force));
     };
-    EXPECT_NEAR(force.dot(way), (beside(step, true).first - beside(-step, true).first) / (2 * step),
-                1e-6 * force.norm() * way.norm());
+    EXPECT_NEAR(force.dot(path), (beside(step, true).first - beside(-step, true).first) / (2 * step),
+                1e-6 * force.norm() * path.norm());
     // with the normal forces of each shape
     const Eigen::VectorXd force_high = beside(step, false).second, force_low = beside(-step, false).second;
     EXPECT_LT((product.col(0) - (force_high - force_low) / (2 * step)).norm(), 1e-4 * product.norm()) << shake;
@@ -158,12 +158,13 @@ RobotSpec leaning_beam(double friction) {
 
 }  // namespace
 
-/// Against differences of equilibria: of smooth contact both ways, of one that slips the way on which it does.
+/// Compares with differences of equilibria: in both directions without friction, in the direction of slip with
+/// friction.
 TEST(Friction, JacobianOfWhatLeansOnAFloor) {
   for (const double friction : {0.0, 0.3}) {
     const Model model = compile(leaning_beam(friction));
     const Statics statics(model);
-    Equilibrium at = settled(statics, values({1.1, 0.9}));
+    Equilibrium at = solve_converged(statics, values({1.1, 0.9}));
     for (const double length : {0.88, 0.86}) at = statics.solve(values({1.1, length}), at.state, tight(1e-10));
     ASSERT_EQ(at.report.status, Status::converged);
     EXPECT_LT(marker_at(model, at).z(), 5);  // of the middle of the end
@@ -181,9 +182,9 @@ TEST(Friction, JacobianOfWhatLeansOnAFloor) {
 
 namespace {
 
-constexpr double drum = 40, ends = 10;  // radius and length of what lies straight on either side [mm]
+constexpr double drum = 40, ends = 10;  // radius, and length of the straight part on either side [mm]
 
-/// A strip of 4 x 0.5 mm, without stress, around a quarter of a drum; pulled at its high end by so much.
+/// A strip of 4 x 0.5 mm, without stress, around a quarter of a drum, with a force at its high end.
 RobotSpec strip_over_drum(double friction, double pull) {
   constexpr double gap = 0.06, arc = M_PI / 2;
   const double radius = drum + gap, length = 2 * ends + arc * radius;

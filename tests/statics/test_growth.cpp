@@ -19,7 +19,7 @@ ActuatorSpec growth(const std::string& region, double low, double high, std::opt
   return actuator("growth", GrowthSpec{{part}}, low, high, true);
 }
 
-/// Held at three corners, so that it may change its shape in any way.
+/// A block that is held at three corners, so that its shape can change freely.
 RobotSpec swelling_block(Mesh mesh, const Vec3& size) {
   RobotSpec spec = physical_robot(std::move(mesh));
   const auto corner = [&](double x, double y) {
@@ -38,7 +38,7 @@ RobotSpec swelling_block(Mesh mesh, const Vec3& size) {
 void expect_unstressed(const RobotSpec& spec, double command, const Mat3& grown, const std::string& what) {
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, values({command}), tight(1e-12));
+  const Equilibrium found = solve_converged(statics, values({command}), tight(1e-12));
   const Points expected = model.rest * grown.transpose();
   EXPECT_GT(distance(expected, model.rest), 0.05) << what;
   double worst = 0;
@@ -56,7 +56,7 @@ Mat3 along(const Vec3& direction, double stretch, double across) {
   return across * Mat3::Identity() + (stretch - across) * d * d.transpose();
 }
 
-/// A strip of two layers, the lower one of a share of its thickness, that is held at one end.
+/// A strip that is held at one end, of two layers; `lower` is the lower one's fraction of the thickness.
 struct Strip {
   double length = 40, thickness = 1, width = 0.5, lower = 0.4;
   double lower_modulus = 4, upper_modulus = 1, nu = 0;
@@ -133,7 +133,7 @@ TEST(Growth, MixedAndViscousBodiesSwellWithoutStress) {
   const Statics statics(model);
   StaticsOptions options = tight(1e-12);
   options.elapsed_s = 0;  // at once
-  const Equilibrium found = settled(statics, values({1.3}), options);
+  const Equilibrium found = solve_converged(statics, values({1.3}), options);
   EXPECT_GT(distance(found.state.positions, model.rest), 0.5);
   for (const double each : statics.measured(found.state).stress.von_mises) EXPECT_LT(each, 1e-9);
 }
@@ -145,7 +145,7 @@ TEST(Growth, BilayersCurlAsTimoshenkoSays) {
         Strip{.lower_modulus = 1, .nu = 0.5, .mixed = true, .direction = Vec3::Zero()}}) {
     const Model model = compile(bilayer(strip));
     const Statics statics(model);
-    const Equilibrium found = settled(statics, values({1 + strain}));
+    const Equilibrium found = solve_converged(statics, values({1 + strain}));
     const double expected = timoshenko(strip, strain);
     EXPECT_NEAR(curvature(strip, model, found.state.positions), expected, 0.01 * expected) << strip.nu << strip.mixed;
   }
@@ -167,7 +167,7 @@ TEST(Growth, DerivativesOfShapes) {
       spec.actuators.push_back(warm);
       const Model model = compile(spec);
       const Statics statics(model);
-      const Equilibrium found = settled(statics, values({1.05, 34}), tight(1e-11));
+      const Equilibrium found = solve_converged(statics, values({1.05, 34}), tight(1e-11));
       EXPECT_GT(distance(found.state.positions, model.rest), 0.1);
       const Sensitivity exact = statics.sensitivity(found.state);
       ASSERT_TRUE(exact.regular);
@@ -178,14 +178,14 @@ TEST(Growth, DerivativesOfShapes) {
     }
 }
 
-/// Where no command says otherwise, and from a start that knows none.
+/// The growth is that of the reference without a command and from a start without commands.
 TEST(Growth, RestsAtItsReference) {
   RobotSpec spec = bilayer({.length = 10});
   spec.actuators[0].low = 1.05;
   const Model model = compile(spec);
   EXPECT_EQ(model.rest_actuation()[0], 1.05);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, model.rest_actuation());
+  const Equilibrium found = solve_converged(statics, model.rest_actuation());
   EXPECT_GT(distance(found.state.positions, model.rest), 0.1);
   EXPECT_EQ(found.state.multipliers[0], 0);
 }

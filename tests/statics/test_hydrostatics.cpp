@@ -40,12 +40,12 @@ double wet_volume(const std::array<Vec3, 4>& corners, double level, int depth) {
   std::vector<int> below, above;
   for (int i = 0; i < 4; ++i) (corners[i].z() < level ? below : above).push_back(i);
   const auto cap = [&](int tip, const std::vector<int>& others) {
-    double share = 1;
+    double fraction = 1;
     for (const int other : others) {
       const double z = corners[tip].z();
-      share *= (level - z) / (corners[other].z() - z);
+      fraction *= (level - z) / (corners[other].z() - z);
     }
-    return share * volume;
+    return fraction * volume;
   };
   if (below.size() == 1) return cap(below[0], above);
   if (above.size() == 1) return volume - cap(above[0], below);
@@ -112,7 +112,7 @@ double whole_volume(const Model& model, const Points& positions) {
   return enclosed_volume(positions, faces);
 }
 
-/// What supports bear in all [N].
+/// Returns the sum of the support reactions [N].
 Vec3 borne(const Model& model, const Statics& statics, const Equilibrium& found) {
   Vec3 sum = Vec3::Zero();
   for (const auto& reaction : reactions(model, found.state.positions, statics.measured(found.state)))
@@ -120,11 +120,11 @@ Vec3 borne(const Model& model, const Statics& statics, const Equilibrium& found)
   return sum;
 }
 
-/// Weight less what supports bear [N].
+/// Returns the weight less the support reactions [N].
 Vec3 buoyancy(const RobotSpec& spec, Points* shape = nullptr) {
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, model.rest_actuation(), tight(1e-11));
+  const Equilibrium found = solve_converged(statics, model.rest_actuation(), tight(1e-11));
   EXPECT_GT(distance(found.state.positions, model.rest), 1);  // it bends
   if (shape) *shape = found.state.positions;
   const Vec3 weight = model.loads.dead.colwise().sum().transpose();
@@ -157,9 +157,9 @@ TEST(Hydrostatics, LiftsPrisms) {
   spec.materials[0].elastic = elastic(Law::neo_hookean, 0.02, 0);
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, model.rest_actuation(), tight(1e-11));
+  const Equilibrium found = solve_converged(statics, model.rest_actuation(), tight(1e-11));
   const Vec3 lift = -(borne(model, statics, found) + Vec3(model.loads.dead.colwise().sum().transpose()));
-  // volume of what its faces bound, quads cut both ways
+  // the volume within its faces, averaged over both diagonals of the quads
   std::vector<CavityFace> faces;
   const Boundary boundary = boundary_of(model.elements.tetrahedra, model.elements.prisms);
   for (const Triangle& t : boundary.triangles) faces.insert(faces.end(), 2, CavityFace{t});
@@ -194,12 +194,12 @@ TEST(Hydrostatics, WhatIsAsHeavyAsTheLiquidDoesNotSag) {
     spec.loads.gravity = {0, 5, -8};
     spec.loads.liquid_around->surface = {0, -100, 60};
     const Model model = compile(spec);
-    const Equilibrium found = settled(Statics(model), model.rest_actuation());
+    const Equilibrium found = solve_converged(Statics(model), model.rest_actuation());
     // pressures of order 1 are smoothed
     EXPECT_LT(distance(found.state.positions, model.rest), quadratic ? 1e-5 : 0.1);
     spec.loads.liquid_around.reset();
     const Model in_air = compile(spec);
-    EXPECT_GT(distance(settled(Statics(in_air), in_air.rest_actuation()).state.positions, in_air.rest), 1);
+    EXPECT_GT(distance(solve_converged(Statics(in_air), in_air.rest_actuation()).state.positions, in_air.rest), 1);
   }
 }
 
@@ -213,7 +213,7 @@ TEST(Hydrostatics, PressesChambersIn) {
   const Model model = compile(spec);
   EXPECT_EQ(model.loads.tractions.at(0).faces.size(), 6u * 18u);  // of the outside alone
   const Statics statics(model);
-  const Equilibrium found = settled(statics, values({1}));
+  const Equilibrium found = solve_converged(statics, values({1}));
   const double depth_mm = 2000 - 15;
   EXPECT_NEAR(found.state.multipliers[0], 1e-3 * standard_gravity * depth_mm, 0.02 * 19.5);
 }
@@ -226,7 +226,7 @@ TEST(Hydrostatics, DerivativesOfShapes) {
     spec.actuators = {by_load(cable("top", along(7)))};
     const Model model = compile(spec);
     const Statics statics(model);
-    const Equilibrium found = settled(statics, values({0.02}), tight(1e-11));
+    const Equilibrium found = solve_converged(statics, values({0.02}), tight(1e-11));
     const Sensitivity exact = statics.sensitivity(found.state);
     const Difference expected = central(statics, found.state, 0, 1e-4);
     EXPECT_LT(off_by(exact.positions[0], expected.positions), quadratic ? 1e-4 : 1e-6);

@@ -35,7 +35,7 @@ double deflection(RobotSpec spec, double force_N) {
   spec.markers = {{"tip", {std::string("x_high"), {}}}};
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, model.rest_actuation());
+  const Equilibrium found = solve_converged(statics, model.rest_actuation());
   return model.markers[0].point.at(found.state.positions).z() - model.markers[0].point.at(model.rest).z();
 }
 
@@ -51,7 +51,7 @@ Shaped energy_of_layers(PhysicalEquations& at, const Points& positions) {
   physical::Iterate there = at.at;
   there.positions = positions;
   const auto scratch = layers.new_scratch();
-  layers.evaluate(there, at.demand, *scratch, sum, at.team);
+  layers.evaluate(there, at.load_state, *scratch, sum, at.team);
   return {sum.energy, gradient.norm()};
 }
 
@@ -86,7 +86,7 @@ struct WeighedPlate {
     spec.markers = {{"middle", {Vec3(all / 2, all / 2, 2 * cell), {}}}};
     const Model model = compile(spec);
     const Statics statics(model);
-    const Equilibrium found = settled(statics, model.rest_actuation());
+    const Equilibrium found = solve_converged(statics, model.rest_actuation());
     return 2 * cell - model.markers[0].point.at(found.state.positions).z();
   }
 };
@@ -197,7 +197,7 @@ TEST(Layers, WrinkleWhereTheyWouldBePressed) {
                   {{std::string("z_low"), {}}, {false, false, true}}};
     const Model model = compile(spec);
     const Statics statics(model);
-    const Equilibrium found = settled(statics, model.rest_actuation());
+    const Equilibrium found = solve_converged(statics, model.rest_actuation());
     const ElementDeformation measured = statics.measured(found.state);
     const double force = reactions(model, found.state.positions, measured)[1].force.x();
     const double e11 = longer + longer * longer / 2, e22 = -narrower + narrower * narrower / 2;
@@ -224,8 +224,8 @@ TEST(Layers, OfASurfaceThatElementsCarryAreThoseOfTheirFaces) {
   layer.where = surface;
   lay(carried, layer);
   const Model by_faces = compile(spec), by_surface = compile(carried);
-  const Equilibrium one = settled(Statics(by_faces), by_faces.rest_actuation());
-  const Equilibrium other = settled(Statics(by_surface), by_surface.rest_actuation());
+  const Equilibrium one = solve_converged(Statics(by_faces), by_faces.rest_actuation());
+  const Equilibrium other = solve_converged(Statics(by_surface), by_surface.rest_actuation());
   EXPECT_LT(distance(one.state.positions, other.state.positions), 1e-8);
   EXPECT_GT(distance(one.state.positions, by_faces.rest), 0.2);
 }

@@ -29,7 +29,7 @@ StaticsOptions to_stable() {
   return options;
 }
 
-/// A robot under a multiple of a load, which a command or the description says.
+/// A robot under a multiple of a load, which is commanded or in its description.
 struct LoadedRobot {
   RobotSpec spec;
   Actuation command;
@@ -43,9 +43,9 @@ Equilibrium solve_loaded(const Loading& loading, double factor, const StaticsOpt
   return statics.solve(robot.command, statics.rest(), options);
 }
 
-/// The limit load does not depend on how much is requested, and neither does what is said of it.
+/// Checks that neither the limit load nor its report depends on how much is requested.
 ///
-/// snap_mm  what --stable reports at least; 0: it is not asked
+/// snap_mm  lower bound of the snap-through that --stable reports; 0: --stable is not used
 void expect_one_limit(const Loading& loading, double beyond, double snap_mm) {
   const Equilibrium near = solve_loaded(loading, beyond);
   ASSERT_EQ(near.report.status, Status::limit);
@@ -61,7 +61,7 @@ void expect_one_limit(const Loading& loading, double beyond, double snap_mm) {
     EXPECT_NEAR(times * far.report.reached, 1, 0.02) << times;
     if (snap_mm == 0) continue;
     const Equilibrium through = solve_loaded(loading, times * limit, to_stable());
-    // far beyond all that is borne there may be none, or none that is found
+    // far beyond the limit load there may be no such shape, or none that is found
     if (times < 20) EXPECT_EQ(through.report.status, Status::converged) << times << ": " << through.report.remark;
     if (through.report.status != Status::converged) continue;
     EXPECT_GT(through.report.physical.snapped_mm, snap_mm) << times;

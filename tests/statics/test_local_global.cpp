@@ -74,9 +74,9 @@ TEST(LocalGlobal, SameShapeFromRestAndFromARandomStart) {
 }
 
 TEST(LocalGlobal, AndersonReachesTheSameShapeInFewerIterations) {
-  for (const bool least_norm : {false, true})
+  for (const bool minimum_norm : {false, true})
     for (const double ratio : {1.0, 0.3}) {
-      const Model model = compile(mixed_robot(least_norm, ratio));
+      const Model model = compile(mixed_robot(minimum_norm, ratio));
       const Statics statics(model);
       const Actuation actuation = (Actuation(3) << 1.1, 1.5, 0.9).finished();
       const Equilibrium plain = statics.solve(actuation, statics.rest(), to_the_end(0));
@@ -116,8 +116,8 @@ TEST(LocalGlobal, StopsAsPublishedWhereMarkersHardlyMove) {
   single.anderson = 0;
   single.max_iterations = 1;
   std::vector<int> counts;
-  for (const Actuation& asked : {testing::values({1, 1.01, 1}), testing::values({1.9, 2.9, 0.55})}) {
-    const Equilibrium stopped = statics.solve(asked, statics.rest(), published);
+  for (const Actuation& requested : {testing::values({1, 1.01, 1}), testing::values({1.9, 2.9, 0.55})}) {
+    const Equilibrium stopped = statics.solve(requested, statics.rest(), published);
     EXPECT_EQ(stopped.report.status, Status::converged);
     EXPECT_EQ(stopped.report.tolerance_mm, 0.032);
     State shape = statics.rest();
@@ -125,7 +125,7 @@ TEST(LocalGlobal, StopsAsPublishedWhereMarkersHardlyMove) {
     double moved = 1;
     while (iterations < 10 || moved >= 0.032) {
       const Points before = shape.positions;
-      shape.positions = statics.solve(asked, shape, single).state.positions;
+      shape.positions = statics.solve(requested, shape, single).state.positions;
       ++iterations;
       moved = 0;
       for (const Marker& marker : model.markers)
@@ -282,8 +282,8 @@ TEST(LocalGlobal, UniformRatiosAreKeptAndLeastNormMeetsTheSum) {
                 {{VertexList{{3}}, {}}, {false, true, true}},
                 {{VertexList{{12}}, {}}, {false, false, true}}};
   ActuatorSpec air = testing::actuator("air", PneumaticSpec{.region = "body"}, 0.5, 3, true);
-  for (const bool least_norm : {true, false}) {
-    air.distribution = shared(least_norm);
+  for (const bool minimum_norm : {true, false}) {
+    air.distribution = shared(minimum_norm);
     spec.actuators = {air};
     const Model model = compile(spec);
     const Statics statics(model);
@@ -291,7 +291,7 @@ TEST(LocalGlobal, UniformRatiosAreKeptAndLeastNormMeetsTheSum) {
     EXPECT_EQ(found.report.status, Status::converged);
     EXPECT_NEAR(achieved_ratio(model, model.actuators[0], found.state.positions), 1.7, 1e-8);
     // uniform scaling about the held corner
-    if (!least_norm) {
+    if (!minimum_norm) {
       EXPECT_LT(largest_move(found.state.positions, std::cbrt(1.7) * model.rest), 1e-7);
     }
   }

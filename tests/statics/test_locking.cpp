@@ -45,7 +45,7 @@ double give(RobotSpec spec, bool quadratic) {
   spec.mesh_options.quadratic = quadratic;
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, values({}), {});
+  const Equilibrium found = solve_converged(statics, values({}), {});
   return (marker_at(model, found) - model.markers[0].point.at(model.rest)).norm();
 }
 
@@ -100,8 +100,8 @@ TEST(Locking, IsToldWhereWallsAreThinInElements) {
   EXPECT_EQ(warning(fine), "");
 }
 
-/// How many elements thick the only warning says that walls are.
-double told_thickness(const RobotSpec& spec) {
+/// Returns the thickness of walls, in elements, that the only warning reports.
+double reported_thickness(const RobotSpec& spec) {
   const std::vector<std::string> warnings = compile(spec).warnings;
   EXPECT_EQ(warnings.size(), 1u);
   return warnings.empty() ? 0 : std::stod(warnings[0].substr(warnings[0].find("about ") + 6));
@@ -113,9 +113,9 @@ TEST(Locking, CountsWhatBends) {
   add_volume_region(mesh, "notch", [](const Vec3& p) { return p.x() > 10 && p.x() < 14 && p.z() > 2; });
   RobotSpec spec = physical_robot(std::move(mesh));
   spec.voids.push_back({std::string("notch"), {}});
-  EXPECT_LT(told_thickness(spec), 1.5);
+  EXPECT_LT(reported_thickness(spec), 1.5);
   spec.rigid.push_back({{Box{{10, 0, 0}, {14, 8, 2}}, {}}, "hinge"});
-  EXPECT_GT(told_thickness(spec), 3);
+  EXPECT_GT(reported_thickness(spec), 3);
 }
 
 }  // namespace

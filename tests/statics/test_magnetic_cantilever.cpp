@@ -37,7 +37,7 @@ struct Tip {
 /// of fourth order; all over the length.
 ///
 /// load     12 b_r B L^2 / (mu_0 E t^2)
-/// strain   b_r B / (mu_0 E), by which the field stretches what lies along it: s = 1 + strain cos(apart)
+/// strain   b_r B / (mu_0 E), by which the field stretches material along it: s = 1 + strain cos(apart)
 /// opening  from the remanence at rest to the field
 Tip elastica(double load, double strain, double opening = M_PI / 2) {
   constexpr int steps = 2000;
@@ -75,7 +75,7 @@ double across(const Model& model, const Equilibrium& found) {
   return (marker_at(model, found).z() - 0.5 * strip_thickness) / strip_length;
 }
 
-/// Shapes on the way through some flux densities.
+/// Solves along a path of flux densities and visits each shape.
 template <class Look>
 void along_fluxes(const RobotSpec& spec, const std::vector<double>& fluxes, const Look& look) {
   const Model model = compile(spec);
@@ -124,7 +124,7 @@ TEST(MagneticCantilever, BendsAsMeasured) {
   }
 }
 
-/// The same beam in a field against it. Where a beam bends far and stretches little both forms say the same.
+/// The same beam in a field against it. Where a beam bends much and stretches little, both formulations agree.
 TEST(MagneticCantilever, IsReversedAsMeasured) {
   const std::vector<double> fluxes{9.98, 14.99, 25.08, 40.2}, measured{0.77, 0.669, 0.530, 0.419};
   std::vector<double> turning;

@@ -18,7 +18,7 @@ struct FieldSample {
     add_field(spec, std::move(source), commands);
     model = compile(spec);
     fields = std::make_unique<physical::Fields>(model);
-    demand = {Actuation::Zero(commands.size()), 1};
+    load_state = {Actuation::Zero(commands.size()), 1};
   }
 
   /// In one lane of many, all at the same place; none where the field is not known there.
@@ -30,7 +30,7 @@ struct FieldSample {
       places.z[l] = place[2];
     }
     energy::FluxPoint found;
-    if (!fields->flux(fields->setting(demand), places, energy::lanes, true, found)) return {};
+    if (!fields->flux(fields->setting(load_state), places, energy::lanes, true, found)) return {};
     const int lane = energy::lanes - 1;
     const auto row = [&](const energy::Pack3& v) { return Vec3(v.x[lane], v.y[lane], v.z[lane]); };
     physical::Flux flux;
@@ -50,7 +50,7 @@ struct FieldSample {
 
   Model model;
   std::unique_ptr<physical::Fields> fields;
-  physical::Demand demand;
+  physical::LoadState load_state;
 };
 
 /// mu_0 / (4 pi) times the sum over short pieces of the wire [mT].
@@ -99,7 +99,7 @@ const std::vector<Vec3> probed{{0, 0, 0.5},  {0, 0, 0},  {1e-7, 0, 3}, {3, -2, 5
 TEST(MagneticFields, LoopsAreThoseOfBiotAndSavart) {
   const CoilField coil = two_loops({1, 2, 3});
   FieldSample sample({"coil", coil}, {FieldCommand::current});
-  sample.demand.actuation[0] = 2.5;
+  sample.load_state.actuation[0] = 2.5;
   for (const Vec3& place : probed) {
     Vec3 expected = Vec3::Zero();
     for (const CoilLoop& loop : coil.loops) expected += biot_savart(loop, 2.5, place);
@@ -113,7 +113,7 @@ TEST(MagneticFields, LoopsAreThoseOfBiotAndSavart) {
 TEST(MagneticFields, ALoopIsSmoothOnItsAxisAndWhereSeriesBegin) {
   const CoilField coil{{{Vec3(0, 0, 0), Vec3(0, 0, 1), 10, 1}}};
   FieldSample sample({"coil", coil}, {FieldCommand::current});
-  sample.demand.actuation[0] = 1;
+  sample.load_state.actuation[0] = 1;
   EXPECT_NEAR(sample.at({0, 0, 0}).value.z(), 0.2 * M_PI / 10, 1e-14);  // mu_0 I / (2 a)
   EXPECT_NEAR(sample.at({0, 0, 10}).value.z(), 0.2 * M_PI / 10 / std::pow(2, 1.5), 1e-14);
   // in the plane 4 a^2 rho^2 / (a^2 + rho^2)^2 is a quarter here
@@ -129,9 +129,9 @@ TEST(MagneticFields, ADipoleIsASmallLoop) {
   const CoilLoop loop{Vec3(3, 4, 5), Vec3(1, -1, 2).normalized(), 0.01, 1000};
   const double current = 7, moment = loop.turns * current * M_PI * 1e-10;  // [A m^2]: radius 1e-5 m
   FieldSample small({"coil", CoilField{{loop}}}, {FieldCommand::current});
-  small.demand.actuation[0] = current;
+  small.load_state.actuation[0] = current;
   FieldSample dipole({"magnet", DipoleField{loop.center, moment * loop.axis}}, {FieldCommand::moment_x});
-  dipole.demand.actuation[0] = moment * loop.axis.x();
+  dipole.load_state.actuation[0] = moment * loop.axis.x();
   for (const Vec3& place : probed) {
     const Vec3 expected = small.at(place).value;
     EXPECT_LT((dipole.at(place).value - expected).norm(), 1e-4 * expected.norm());
@@ -147,7 +147,7 @@ TEST(MagneticFields, AGridIsInterpolatedToFourthOrder) {
   };
   const Vec3 low(-1, -2, 0), high(3, 2, 2);
   FieldSample exact({"grid", sampled(cubic, low, high, {5, 6, 4})}, {FieldCommand::current});
-  exact.demand.actuation[0] = 1;
+  exact.load_state.actuation[0] = 1;
   for (const Vec3& place : {Vec3(-1, -2, 0), Vec3(0.3, 0.7, 1.9), Vec3(3, 2, 2), Vec3(2.9, -1.4, 0.1)}) {
     EXPECT_LT((exact.at(place).value - cubic(place)).norm(), 1e-11) << place.transpose();
     if (place.x() > 0 && place.x() < 3) expect_derivatives(exact, place, 1);
@@ -157,7 +157,7 @@ TEST(MagneticFields, AGridIsInterpolatedToFourthOrder) {
   std::vector<double> errors;
   for (const Index n : {9, 17}) {
     FieldSample grid({"grid", sampled(wave, low, high, {n, n, n})}, {FieldCommand::current});
-    grid.demand.actuation[0] = 1;
+    grid.load_state.actuation[0] = 1;
     double most = 0;
     for (int i = 0; i < 50; ++i) {
       const Vec3 place =

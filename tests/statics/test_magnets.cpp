@@ -42,10 +42,10 @@ struct MagneticSample {
     body.add_cliques(cliques);
     magnets = std::make_unique<physical::Magnets>(model, body.element_slots());
     positions = model.rest + noise(model.rest.rows(), 0.3, 3);
-    demand.actuation = model.rest_actuation();
+    load_state.actuation = model.rest_actuation();
   }
 
-  [[nodiscard]] Points gradient(const physical::Demand& at, const Points& shape, double* energy = nullptr) {
+  [[nodiscard]] Points gradient(const physical::LoadState& at, const Points& shape, double* energy = nullptr) {
     Points sum = Points::Zero(shape.rows(), 3);
     physical::Term::Sum all{sum};
     magnets->evaluate({shape, {}}, at, none, all, team);
@@ -53,17 +53,17 @@ struct MagneticSample {
     if (energy) *energy = all.energy;
     return sum;
   }
-  [[nodiscard]] Points gradient(const Points& shape) { return gradient(demand, shape); }
+  [[nodiscard]] Points gradient(const Points& shape) { return gradient(load_state, shape); }
   [[nodiscard]] double energy(const Points& shape) {
     double value = 0;
-    (void)gradient(demand, shape, &value);
+    (void)gradient(load_state, shape, &value);
     return value;
   }
   [[nodiscard]] Points stiffness_times(const Points& vectors, bool projected) {
     const linear::BlockPattern pattern(model.rest.rows(), cliques);
     LargeVector<double> slots(9 * static_cast<std::size_t>(cliques.slots.back())), blocks;
     std::fill(slots.begin(), slots.end(), 0.0);
-    magnets->stiffness({positions, {}}, demand, projected, none, slots, team);
+    magnets->stiffness({positions, {}}, load_state, projected, none, slots, team);
     pattern.gather(slots, blocks, team);
     Points product;
     pattern.multiply(blocks, vectors, product, team);
@@ -77,7 +77,7 @@ struct MagneticSample {
   std::unique_ptr<physical::Magnets> magnets;
   physical::Term::Scratch none;
   Points positions;
-  physical::Demand demand;
+  physical::LoadState load_state;
 };
 
 /// Commands that let one kind of field act.
@@ -114,7 +114,7 @@ TEST(Magnets, ForcesAreMinusTheGradientOfTheEnergy) {
     for (const ElementKind elements : {ElementKind::linear, ElementKind::quadratic, ElementKind::prisms})
       for (const char* of : {"uniform", "coil", "grid", "magnet"}) {
         MagneticSample sample(in_all_fields(elements, magnetisation));
-        sample.demand.actuation = commands(sample.model, of, 2);
+        sample.load_state.actuation = commands(sample.model, of, 2);
         const Points exact = sample.gradient(sample.positions);
         const Points slope =
             difference([&](const Points& shape) { return sample.energy(shape); }, sample.positions, 1e-3);
@@ -128,25 +128,26 @@ TEST(Magnets, StiffnessIsTheSlopeOfTheForces) {
     for (const ElementKind elements : {ElementKind::linear, ElementKind::quadratic, ElementKind::prisms})
       for (const char* of : {"uniform", "coil", "grid", "magnet"}) {
         MagneticSample sample(in_all_fields(elements, magnetisation));
-        sample.demand.actuation = commands(sample.model, of, 2);
+        sample.load_state.actuation = commands(sample.model, of, 2);
         const Points along = noise(sample.model.rest.rows(), 1, 7);
         const Points exact = sample.stiffness_times(along, false);
         const Points slope =
             change_along([&](const Points& shape) { return sample.gradient(shape); }, sample.positions, along, 1e-4);
-        // a uniform field pulls at what stretches with dead forces
+        // forces of a uniform field on remanence that stretches with the material do not depend on the shape
         const bool dead = magnetisation == Magnetisation::stretches && std::string(of) == "uniform";
         EXPECT_EQ(exact.norm() < 1e-7, dead) << of;
         EXPECT_LT((slope - exact).norm(), dead ? 1e-9 : 2e-6 * exact.norm()) << of << static_cast<int>(elements);
       }
 }
 
-/// Made positive it is no smaller than the exact one along any direction, and not negative, whatever way the field is.
+/// The projected stiffness is no smaller than the exact one along any direction, and not negative, for all field
+/// directions.
 TEST(Magnets, ProjectedStiffnessIsPositive) {
   for (const Magnetisation magnetisation : both_magnetisations)
     for (const char* of : {"magnet", "uniform"})
       for (const double value : {2.0, -2.0}) {
         MagneticSample sample(in_all_fields(ElementKind::quadratic, magnetisation));
-        sample.demand.actuation = commands(sample.model, of, value);
+        sample.load_state.actuation = commands(sample.model, of, value);
         for (unsigned seed = 1; seed < 10; ++seed) {
           const Points along = noise(sample.model.rest.rows(), 1, seed);
           const double exact = along.cwiseProduct(sample.stiffness_times(along, false)).sum();
@@ -158,7 +159,7 @@ TEST(Magnets, ProjectedStiffnessIsPositive) {
 
 TEST(Magnets, AUniformFieldPullsAtWhatStretchesWithDeadForces) {
   MagneticSample sample(in_all_fields(ElementKind::quadratic, Magnetisation::stretches));
-  sample.demand = {commands(sample.model, "uniform", 30), 0};
+  sample.load_state = {commands(sample.model, "uniform", 30), 0};
   EXPECT_TRUE(sample.stiffness_times(sample.positions, false).isZero(0));
   EXPECT_EQ(sample.gradient(sample.positions), sample.gradient(sample.model.rest));
 }
@@ -172,13 +173,13 @@ TEST(Magnets, MomentsTurnAndStretchWithTheBody) {
   for (const Magnetisation magnetisation : both_magnetisations)
     for (const ElementKind elements : {ElementKind::linear, ElementKind::quadratic, ElementKind::prisms}) {
       MagneticSample sample(in_all_fields(elements, magnetisation));
-      sample.demand = {commands(sample.model, "uniform", 30), 0};
+      sample.load_state = {commands(sample.model, "uniform", 30), 0};
       const Points shape = sample.model.rest * deformation.transpose();
-      const Vec3 field = sample.demand.actuation.head<3>();
+      const Vec3 field = sample.load_state.actuation.head<3>();
       const Mat3& carrier = magnetisation == Magnetisation::turns ? turn : deformation;
       const Vec3 moment = carrier * (inverse_permeability * 20 * 8 * 6 * Vec3(120, -40, 70));
       EXPECT_NEAR(sample.energy(shape), -moment.dot(field), 1e-12 * moment.norm() * field.norm());
-      const MagneticLoad load = sample.magnets->load(sample.demand, shape, sample.team);
+      const MagneticLoad load = sample.magnets->load(sample.load_state, shape, sample.team);
       EXPECT_LT(load.force.norm(), 1e-14);
       EXPECT_LT((load.moment - moment.cross(field)).norm(), 1e-12 * load.moment.norm());
       EXPECT_LT((load.center - deformation * Vec3(10, 4, 3)).norm(), 1e-12);
@@ -188,7 +189,7 @@ TEST(Magnets, MomentsTurnAndStretchWithTheBody) {
 /// Where two stretches of one size are mirrored the rotation is not unique; nothing is infinite or no number.
 TEST(Magnets, TurnedInsideOutTheyAreFinite) {
   MagneticSample sample(in_all_fields(ElementKind::linear, Magnetisation::turns));
-  sample.demand.actuation = commands(sample.model, "uniform", 2);
+  sample.load_state.actuation = commands(sample.model, "uniform", 2);
   for (const Vec3& scale : {Vec3(1, 1, -1), Vec3(1, 0, 0), Vec3(0, 0, 0), Vec3(-1, -2, -3)}) {
     sample.positions = sample.model.rest * scale.asDiagonal();
     EXPECT_TRUE(sample.gradient(sample.positions).allFinite()) << scale;
@@ -197,16 +198,16 @@ TEST(Magnets, TurnedInsideOutTheyAreFinite) {
   }
 }
 
-/// By every command there is, a field's share included.
+/// Compares derivatives by every command, including those that scale a field.
 TEST(Magnets, CommandForcesAreTheSlopesByTheCommands) {
   for (const Magnetisation magnetisation : both_magnetisations) {
     MagneticSample sample(in_all_fields(ElementKind::quadratic, magnetisation));
-    sample.demand = {commands(sample.model, "magnet", 0.2), 0.7};
-    sample.demand.actuation += commands(sample.model, "coil", 1.5) - sample.model.rest_actuation();
+    sample.load_state = {commands(sample.model, "magnet", 0.2), 0.7};
+    sample.load_state.actuation += commands(sample.model, "coil", 1.5) - sample.model.rest_actuation();
     for (Index a = 0; a < std::ssize(sample.model.actuators); ++a) {
       Points exact = Points::Zero(sample.positions.rows(), 3);
-      sample.magnets->add_derivative(a, sample.demand, sample.positions, sample.none, exact, sample.team);
-      physical::Demand high = sample.demand, low = sample.demand;
+      sample.magnets->add_derivative(a, sample.load_state, sample.positions, sample.none, exact, sample.team);
+      physical::LoadState high = sample.load_state, low = sample.load_state;
       high.actuation[a] += 1e-3;
       low.actuation[a] -= 1e-3;
       const Points slope = (sample.gradient(high, sample.positions) - sample.gradient(low, sample.positions)) / 2e-3;
@@ -223,7 +224,7 @@ TEST(Magnets, TheirEnergyTurnsAndMovesWithTheField) {
     add_field(spec, {"coil", two_loops({5, 0, 20})}, {FieldCommand::current});
     const Mat3 turn = Eigen::AngleAxisd(1.1, Vec3(1, -2, 0.5).normalized()).toRotationMatrix();
     MagneticSample one(spec), other(turned(spec, turn));
-    one.demand.actuation = other.demand.actuation = values({20, 3});
+    one.load_state.actuation = other.load_state.actuation = values({20, 3});
     const Points shape = one.positions * turn.transpose();
     EXPECT_NEAR(one.energy(one.positions), other.energy(shape), 1e-12 * std::abs(one.energy(one.positions)));
     EXPECT_LT((one.gradient(one.positions) * turn.transpose() - other.gradient(shape)).norm(),
@@ -248,9 +249,9 @@ TEST(MagneticRobots, TurningRobotAndFieldTurnsTheAnswer) {
     const Model first = compile(spec), second = compile(other);
     const Statics one(first), two(second);
     const Actuation actuation = values({12, 0.5});
-    const Points shape = settled(one, actuation, tight(1e-11)).state.positions;
+    const Points shape = solve_converged(one, actuation, tight(1e-11)).state.positions;
     EXPECT_GT(distance(shape, first.rest), 3);
-    EXPECT_LT(distance(shape * turn.transpose(), settled(two, actuation, tight(1e-11)).state.positions), 1e-9);
+    EXPECT_LT(distance(shape * turn.transpose(), solve_converged(two, actuation, tight(1e-11)).state.positions), 1e-9);
   }
 }
 
@@ -276,7 +277,7 @@ TEST(MagneticRobots, AMagnetThatIsFreeToTurnSettlesAlongTheField) {
     const Statics statics(model);
     double last = 1;
     for (const double flux : {2.0, 20.0, 200.0}) {
-      const Equilibrium found = settled(statics, values({flux}));
+      const Equilibrium found = solve_converged(statics, values({flux}));
       const Vec3 lies = (marker_at(model, found, 1) - marker_at(model, found, 0)).normalized();
       const double apart = std::acos(std::min(1.0, lies.dot(direction)));
       EXPECT_LT(apart, 0.35 * last) << flux;
@@ -297,7 +298,7 @@ TEST(MagneticRobots, SensitivitiesAreTheSlopesOfSolves) {
     const Model model = compile(spec);
     const Statics statics(model);
     const Actuation actuation = values({5, -8, 10, 0.6, -28, 0.4});
-    const Equilibrium found = settled(statics, actuation, tight(1e-12));
+    const Equilibrium found = solve_converged(statics, actuation, tight(1e-12));
     EXPECT_GT(distance(found.state.positions, model.rest), 0.3);
     const Sensitivity exact = statics.sensitivity(found.state);
     ASSERT_TRUE(exact.regular);
@@ -315,7 +316,7 @@ TEST(MagneticRobots, SensitivitiesAreTheSlopesOfSolves) {
   }
 }
 
-/// A permanent magnet that is there from the start acts from the start; what leaves its grid is told.
+/// A permanent magnet that is present from the start acts from the start; a robot that leaves its grid is reported.
 TEST(MagneticRobots, AWayEndsWhereTheGridDoes) {
   RobotSpec spec = physical_robot(block_mesh({8, 1, 1}, {24, 4, 2}));
   spec.materials[0].elastic->youngs_modulus = 0.05;
@@ -331,8 +332,8 @@ TEST(MagneticRobots, AWayEndsWhereTheGridDoes) {
   EXPECT_LT(found.state.positions.col(2).maxCoeff(), 7);
 }
 
-/// A strip that the field bends onto a floor: it stays above, and floor and base bear each other, since a uniform field
-/// pulls at nothing.
+/// A field bends a strip onto a floor: the strip stays above it, and the forces of floor and base add up to zero, since
+/// a uniform field has no resultant force.
 TEST(MagneticRobots, AFieldPressesARobotOntoAFloor) {
   RobotSpec spec = physical_robot(block_mesh({12, 2, 1}, {24, 4, 1}));
   spec.mesh_options.quadratic = true;
@@ -341,14 +342,14 @@ TEST(MagneticRobots, AFieldPressesARobotOntoAFloor) {
   add_field(spec, {"field", UniformField{{0, 0, -1}}}, {FieldCommand::flux_density});
   const Model free = compile(spec);
   constexpr double deep = -4;
-  EXPECT_LT(settled(Statics(free), values({8})).state.positions.col(2).minCoeff(), 2 * deep);
+  EXPECT_LT(solve_converged(Statics(free), values({8})).state.positions.col(2).minCoeff(), 2 * deep);
   ContactSpec contact;
   contact.distance_mm = 0.05;
   contact.obstacles = {{"floor", Halfspace{{0, 0, deep}, {0, 0, 1}}, std::nullopt, {}}};
   spec.contact = contact;
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, values({8}));
+  const Equilibrium found = solve_converged(statics, values({8}));
   const double lowest = found.state.positions.topRows(free.rest.rows()).col(2).minCoeff();
   EXPECT_GT(lowest, deep);
   EXPECT_LT(lowest, deep + 0.05);

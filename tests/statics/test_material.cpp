@@ -105,7 +105,7 @@ TEST(Material, MeshIndependentWeightsGiveOneModulusToEveryMesh) {
 
 /// Two bars in a row, joined by a rigid plate: the one that is held of coarse cells, the other of fine ones. Of one
 /// stiffness, each takes half of the elongation; a softer one with E_B / E_A = 3 R / (2 + R) takes 1 / (1 + E_B / E_A).
-double share_of_second_bar(double shape_ratio, ElementWeights weights) {
+double fraction_of_second_bar(double shape_ratio, ElementWeights weights) {
   constexpr double length = 40, width = 10, elongation = 0.04;
   Mesh mesh = testing::block_mesh({8, 2, 2}, {length, width, width}, testing::Split::five);
   Mesh second = testing::block_mesh({16, 4, 4}, {length, width, width}, testing::Split::five);
@@ -130,11 +130,11 @@ double share_of_second_bar(double shape_ratio, ElementWeights weights) {
 }
 
 TEST(Material, BarsInARowShareAnElongationByTheirModuliOnAnyMesh) {
-  EXPECT_NEAR(share_of_second_bar(1, ElementWeights::mesh_independent), 0.5, 0.005);
-  EXPECT_NEAR(share_of_second_bar(1, ElementWeights::printed), 0.8, 0.005);  // four times as soft
+  EXPECT_NEAR(fraction_of_second_bar(1, ElementWeights::mesh_independent), 0.5, 0.005);
+  EXPECT_NEAR(fraction_of_second_bar(1, ElementWeights::printed), 0.8, 0.005);  // four times as soft
   const double ratio = 3 * 0.25 / 2.25;
-  EXPECT_NEAR(share_of_second_bar(0.25, ElementWeights::mesh_independent), 1 / (1 + ratio), 0.015);
-  EXPECT_NEAR(share_of_second_bar(0.25, ElementWeights::printed), 1 / (1 + ratio / 4), 0.015);
+  EXPECT_NEAR(fraction_of_second_bar(0.25, ElementWeights::mesh_independent), 1 / (1 + ratio), 0.015);
+  EXPECT_NEAR(fraction_of_second_bar(0.25, ElementWeights::printed), 1 / (1 + ratio / 4), 0.015);
 }
 
 /// Of elements that are all of one size, the weights are the same but for a factor.
@@ -180,10 +180,10 @@ TEST(Material, NewtonAndAlgorithmOneAgreeForMeshIndependentWeights) {
   const Statics statics(model);
   StaticsOptions options;
   options.step_tolerance_mm = 1e-9;
-  const Actuation asked = testing::values({1.1, 1.3, 0.9});
-  const Equilibrium newton = statics.solve(asked, statics.rest(), options);
+  const Actuation requested = testing::values({1.1, 1.3, 0.9});
+  const Equilibrium newton = statics.solve(requested, statics.rest(), options);
   options.solver = Solver::local_global;
-  const Equilibrium slow = statics.solve(asked, statics.rest(), options);
+  const Equilibrium slow = statics.solve(requested, statics.rest(), options);
   EXPECT_EQ(newton.report.status, Status::converged);
   EXPECT_EQ(slow.report.status, Status::converged);
   EXPECT_LT((newton.state.positions - slow.state.positions).cwiseAbs().maxCoeff(), 1e-6);
@@ -192,7 +192,7 @@ TEST(Material, NewtonAndAlgorithmOneAgreeForMeshIndependentWeights) {
   for (Index a = 0; a < 3; ++a) {
     constexpr double step = 1e-4;
     const auto at = [&](double change) {
-      Actuation moved = asked;
+      Actuation moved = requested;
       moved[a] += change;
       return statics.solve(moved, newton.state, options).state.positions;
     };

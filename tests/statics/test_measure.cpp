@@ -149,7 +149,8 @@ Model half_a_membrane() {
   return model;
 }
 
-/// A wall that is stretched by half in its plane and becomes much thinner: both are told, whichever is larger.
+/// A wall that is stretched by half in its plane and becomes much thinner: both strains are reported, whichever is
+/// larger.
 TEST(Measure, LeastAndGreatestStrainAreOfAllDirections) {
   for (const bool order_2 : {false, true}) {
     RobotSpec spec = testing::physical_robot(testing::block_mesh({2, 2, 1}, {8, 8, 1}));
@@ -160,7 +161,7 @@ TEST(Measure, LeastAndGreatestStrainAreOfAllDirections) {
     EXPECT_NEAR(found.greatest, 0.5, 1e-12);
     EXPECT_NEAR(found.least, -0.557, 1e-12);
     EXPECT_NEAR(found.percentile_95, 0.557, 1e-12);
-    EXPECT_EQ(found.shares.size(), 1u) << "the histogram counts an element by its largest magnitude";
+    EXPECT_EQ(found.fractions.size(), 1u) << "the histogram counts an element by its largest magnitude";
     if (!order_2) continue;
     positions.col(0) += 0.1 * model.rest.col(0).cwiseAbs2();  // stretched most at the far end, by the derivative there
     found = strain_histogram(model, deformation_of(model, positions));
@@ -186,15 +187,15 @@ TEST(Measure, TheStrainOfADeaIsNotThatOfTheBody) {
   const StrainHistogram found = strain_histogram(model, deformation_of(model, positions));
   EXPECT_GT(found.greatest, 0.1);
   EXPECT_LT(found.greatest, 0.6) << "the dea counts";
-  EXPECT_EQ(found.shares.size(), 1u) << "there is one element";
-  EXPECT_NEAR(std::accumulate(found.shares.begin(), found.shares.end(), 0.0), 1, 1e-12);
+  EXPECT_EQ(found.fractions.size(), 1u) << "there is one element";
+  EXPECT_NEAR(std::accumulate(found.fractions.begin(), found.fractions.end(), 0.0), 1, 1e-12);
   ASSERT_EQ(found.beyond.size(), 1u);
-  EXPECT_EQ(found.beyond[0].share, 1);
+  EXPECT_EQ(found.beyond[0].fraction, 1);
 
   Model all_dea = model;
   all_dea.elements.prism_roles[1].actuator = 0;
   const StrainHistogram none = strain_histogram(all_dea, deformation_of(all_dea, positions));
-  EXPECT_TRUE(none.shares.empty());
+  EXPECT_TRUE(none.fractions.empty());
   EXPECT_TRUE(none.beyond.empty());
 }
 

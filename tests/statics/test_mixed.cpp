@@ -17,21 +17,21 @@ namespace {
 
 using namespace testing;
 
-/// A block of elements with pressures in a shape out of balance, under pressures out of balance.
+/// A block of elements with pressures; neither shape nor pressures are in equilibrium.
 struct MixedSample : PhysicalEquations {
   explicit MixedSample(const RobotSpec& spec) : PhysicalEquations(compile(spec)) {
     const Index count = system.model().rest.rows();
-    demand = {model.rest_actuation(), 1};
+    load_state = {model.rest_actuation(), 1};
     active.assign(system.actuators(), false);
     at.positions = system.model().rest + noise(count, 0.3, 1);
     at.positions.col(0).tail(system.pressures()->count()) = noise(count, 4, 3).col(0).tail(system.pressures()->count());
     at.multipliers = Eigen::VectorXd::Zero(system.actuators());
-    system.placement().hold(demand, at.positions);
+    system.placement().hold(load_state, at.positions);
   }
   Points gradient(const Points& shape) {
     physical::Iterate there = at;
     there.positions = shape;
-    system.evaluate(there, demand, active, work, balance, team);
+    system.evaluate(there, load_state, active, work, balance, team);
     return work.gradient;
   }
   /// What is stationary.
@@ -75,8 +75,8 @@ TEST(MixedElements, StiffnessIsTheDerivativeOfTheGradient) {
       Points along = noise(sample.at.positions.rows(), 1, 7);
       along.bottomRightCorner(pressures, 2).setZero();
       (void)sample.gradient(sample.at.positions);
-      sample.system.assemble(sample.at, sample.demand, sample.balance, physical::System::Stiffness::exact, sample.work,
-                             sample.team);
+      sample.system.assemble(sample.at, sample.load_state, sample.balance, physical::System::Stiffness::exact,
+                             sample.work, sample.team);
       Points exact;
       sample.work.stiffness.layout->pattern.gather(sample.work.stiffness.slots, sample.work.stiffness.blocks,
                                                    sample.team);
@@ -99,12 +99,12 @@ TEST(MixedElements, NegativePivotsAreThoseOfTheShape) {
       sample.at.positions = sample.system.model().rest;
       sample.at.positions.col(0).tail(pressures).setConstant(load / sample.system.pressures()->unit);
       (void)sample.gradient(sample.at.positions);
-      const int counted = sample.system.factorise(sample.at, sample.demand, sample.active, sample.balance, {},
+      const int counted = sample.system.factorise(sample.at, sample.load_state, sample.active, sample.balance, {},
                                                   sample.work, sample.team);
       const Index size = sample.system.freedoms().size();
       Eigen::MatrixXd whole(size, size);
-      sample.system.assemble(sample.at, sample.demand, sample.balance, physical::System::Stiffness::exact, sample.work,
-                             sample.team);
+      sample.system.assemble(sample.at, sample.load_state, sample.balance, physical::System::Stiffness::exact,
+                             sample.work, sample.team);
       sample.system.gather(sample.at, sample.balance, sample.work, sample.team);
       sample.system.multiply(sample.at, Eigen::MatrixXd::Identity(size, size), sample.work, whole, sample.team);
       std::vector<bool> scalar(size);
@@ -135,10 +135,10 @@ double inf_sup(int cells, bool quadratic, bool smoothed) {
   physical::Workspace work(system);
   Team team(1);
   physical::Balance balance;
-  const physical::Demand demand{model.rest_actuation(), 1};
+  const physical::LoadState load_state{model.rest_actuation(), 1};
   const physical::Iterate at{system.model().rest, {}};
-  system.evaluate(at, demand, {}, work, balance, team);
-  system.assemble(at, demand, balance, physical::System::Stiffness::exact, work, team);
+  system.evaluate(at, load_state, {}, work, balance, team);
+  system.assemble(at, load_state, balance, physical::System::Stiffness::exact, work, team);
   system.gather(at, balance, work, team);
   const Index size = system.freedoms().size();
   Eigen::MatrixXd whole(size, size);
@@ -195,7 +195,7 @@ TEST(MixedElements, AgreeWithPlainOnesInAStretchedBar) {
       spec.materials[0].mixed = false;
       const Model plain = compile(spec);
       const Statics statics(model), plain_statics(plain);
-      const Equilibrium found = settled(statics, {}), other = settled(plain_statics, {});
+      const Equilibrium found = solve_converged(statics, {}), other = solve_converged(plain_statics, {});
       EXPECT_LT(distance(found.state.positions, other.state.positions), 1e-8);
       EXPECT_NEAR(found.report.energy, other.report.energy, 1e-9 * std::abs(other.report.energy));
       const ElementDeformation here = statics.measured(found.state), there = plain_statics.measured(other.state);
@@ -218,7 +218,7 @@ TEST(MixedElements, BallIsBlownAsGreenAndZernaSay) {
       const int cuts = quadratic ? 2 : stretch < 1.2 ? 5 : 4, layers = quadratic ? 2 : cuts + 3;
       const RobotSpec spec = blown_ball(cuts, layers, blown_by(stretch), 0.5, quadratic);
       const Model model = compile(spec);
-      const Equilibrium found = settled(Statics(model), {}, {});
+      const Equilibrium found = solve_converged(Statics(model), {}, {});
       const double inner = marker_at(model, found)[0] / 7;
       const double exact = quadratic ? 1e-3 : 1e-2;
       EXPECT_NEAR(inner / stretch, 1, exact);
@@ -231,7 +231,7 @@ TEST(MixedElements, IterationsDoNotGrowTowardsOneHalf) {
   std::vector<int> iterations;
   for (const double nu : {0.4, 0.49, 0.499, 0.4999, 0.5}) {
     const Model model = compile(mixed(curling_finger(), nu));
-    const Equilibrium found = settled(Statics(model), values({1.6}), {});
+    const Equilibrium found = solve_converged(Statics(model), values({1.6}), {});
     iterations.push_back(found.report.iterations);
   }
   const auto [least, most] = std::minmax_element(iterations.begin(), iterations.end());
@@ -243,7 +243,7 @@ TEST(MixedElements, SensitivitiesAreDerivatives) {
   RobotSpec spec = mixed(bending_finger());
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, values({1.3}), tight(1e-10));
+  const Equilibrium found = solve_converged(statics, values({1.3}), tight(1e-10));
   EXPECT_EQ(found.state.positions.rows(), model.rest.rows());
   expect_differences(model, statics, found, 1e-5, {});
   const auto harder = [&](double by) {
@@ -260,7 +260,7 @@ TEST(MixedElements, SensitivitiesAreDerivatives) {
   EXPECT_LT(slopes.positions[0].cwiseAbs().maxCoeff(), 1e-5);
 }
 
-/// Positions alone tell the pressures of an equilibrium: what is written down of a shape has no more.
+/// Positions alone determine the pressures of an equilibrium: a shape file contains nothing else.
 TEST(MixedElements, PressuresAreFoundFromPositions) {
   for (const double nu : {0.45, 0.5}) {
     RobotSpec spec = mixed(bending_finger(), nu);
@@ -268,7 +268,7 @@ TEST(MixedElements, PressuresAreFoundFromPositions) {
     spec.loads.gravity = {0, 0, -9.81};
     const Model model = compile(spec);
     const Statics statics(model);
-    const Equilibrium found = settled(statics, values({1.4}), tight(1e-10));
+    const Equilibrium found = solve_converged(statics, values({1.4}), tight(1e-10));
     State without = found.state;
     without.pressures.resize(0);
     const ElementDeformation here = statics.measured(found.state), there = statics.measured(without);
@@ -291,7 +291,7 @@ struct Membrane {
   double rise_mm = 0;
 
   Membrane(int cells, bool quadratic) : model(compile(cook_membrane(cells, 6.25, 0.5, quadratic))) {
-    found = settled(Statics(model), {}, {});
+    found = solve_converged(Statics(model), {}, {});
     rise_mm = marker_at(model, found)[1] - 60;
   }
 };

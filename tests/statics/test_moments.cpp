@@ -56,7 +56,7 @@ TEST(Moments, BendAStripToACircle) {
   State at;
   for (const double degrees : {30.0, 110.0}) {
     const double moment = bending * degrees * std::numbers::pi / 180 / 55;
-    const Equilibrium found = settled(statics, loads({0, 0, 0, 0, moment, 0, 0}));
+    const Equilibrium found = solve_converged(statics, loads({0, 0, 0, 0, moment, 0, 0}));
     const Eigen::AngleAxisd turn(turn_of_tip(model, found.state.positions));
     EXPECT_NEAR(turn.angle() * 180 / std::numbers::pi, degrees, 0.01 * degrees);
     EXPECT_NEAR(std::abs(turn.axis().y()), 1, 1e-6);
@@ -64,12 +64,12 @@ TEST(Moments, BendAStripToACircle) {
   }
 }
 
-/// What the support bears is the wrench and its moment about the support, whichever way the tip has turned.
+/// The support carries the wrench and its moment about the support, whatever the rotation of the tip.
 TEST(Moments, AreBorneByTheSupport) {
   for (const bool quadratic : {false, true}) {
     const Model model = compile(tool_strip(quadratic));
     const Statics statics(model);
-    const Equilibrium found = settled(statics, loads({0.003, -0.004, 0.005, 0.2, 0.3, -0.25, 0}));
+    const Equilibrium found = solve_converged(statics, loads({0.003, -0.004, 0.005, 0.2, 0.3, -0.25, 0}));
     const Reaction held = reactions(model, found.state.positions, statics.measured(found.state))[0];
     const Vec3 force(0.003, -0.004, 0.005), moment(0.2, 0.3, -0.25);
     EXPECT_GT(Eigen::AngleAxisd(turn_of_tip(model, found.state.positions)).angle(), 0.15);
@@ -86,7 +86,7 @@ TEST(Moments, AreThoseOfACouple) {
   const Vec3 moment(0.1, 0.35, 0);
   spec.loads.forces = {{"tool", {std::string("x_high"), {}}, {0, 0, 0}, std::nullopt, moment, std::nullopt}};
   const Model by_moment = compile(spec);
-  const Equilibrium expected = settled(Statics(by_moment), values({}));
+  const Equilibrium expected = solve_converged(Statics(by_moment), values({}));
   const auto corner = [&](double y, double z) {
     for (const Index v : by_moment.rigid[0].vertices)
       if ((vertex_at(by_moment.rest, v) - Vec3(60, y, z)).norm() < 1e-9) return v;
@@ -127,8 +127,8 @@ TEST(Moments, ACommandedPressureIsTheSameAsAGivenOne) {
   const Model commanded = compile(spec);
   spec.loads.tractions[0] = {"water", {std::string("z_low"), {}}, true, {0, 0, 0}, 0.05};
   const Model given = compile(spec);
-  const Equilibrium one = settled(Statics(commanded), loads({0, 0, 0, 0, 0, 0, 0.05})),
-                    other = settled(Statics(given), loads({0, 0, 0, 0, 0, 0}));
+  const Equilibrium one = solve_converged(Statics(commanded), loads({0, 0, 0, 0, 0, 0, 0.05})),
+                    other = solve_converged(Statics(given), loads({0, 0, 0, 0, 0, 0}));
   EXPECT_GT(distance(one.state.positions, commanded.rest), 1);
   EXPECT_LT(distance(one.state.positions, other.state.positions), 1e-6);
 }
@@ -141,8 +141,8 @@ TEST(Moments, AddUp) {
   spec.loads.forces[0].moment_range = std::array<Vec3, 2>{Vec3(0.1, 0.2, -1), Vec3(0.1, 0.2, 1)};
   const Model one = compile(spec);
   ASSERT_EQ(one.actuators.size(), 5u);
-  const Equilibrium found = settled(Statics(one), loads({0, 0, 0, 0.15, 0})),
-                    expected = settled(Statics(both), loads({0, 0, 0, 0.1, 0.2, 0.15, 0}));
+  const Equilibrium found = solve_converged(Statics(one), loads({0, 0, 0, 0.15, 0})),
+                    expected = solve_converged(Statics(both), loads({0, 0, 0, 0.1, 0.2, 0.15, 0}));
   EXPECT_LT(distance(found.state.positions, expected.state.positions), 1e-6);
 }
 

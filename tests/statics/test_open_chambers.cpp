@@ -11,7 +11,7 @@ namespace {
 
 using namespace testing;
 
-/// A block of 24 mm that hangs on its top, with a chamber that ends at so many planes of symmetry.
+/// A block of 24 mm that hangs from its top, with a chamber that ends at a number of planes of symmetry.
 RobotSpec hanging_block(int planes, bool quadratic) {
   Mesh mesh = block_mesh({4, 4, 4}, {24, 24, 24});
   add_volume_region(mesh, "chamber", [planes](const Vec3& p) {
@@ -58,8 +58,8 @@ TEST(OpenChambers, PressureActsAsTractionsOnTheWallAlone) {
       load.follows = true;
       load.pressure_kPa = pressure;
       const Model one = compile(chamber), other = compile(traction);
-      const Points inflated = settled(Statics(one), values({pressure})).state.positions,
-                   loaded = settled(Statics(other), {}).state.positions;
+      const Points inflated = solve_converged(Statics(one), values({pressure})).state.positions,
+                   loaded = solve_converged(Statics(other), {}).state.positions;
       const double moved = (loaded - other.rest).cwiseAbs().maxCoeff();
       EXPECT_GT(moved, 0.5);
       EXPECT_LT((inflated.topRows(loaded.rows()) - loaded).cwiseAbs().maxCoeff(), 1e-5 * moved);
@@ -76,7 +76,7 @@ TEST(OpenChambers, VolumeTakesThePressureOfTheMeshedChamber) {
       meshed.actuators = {air("chamber")};
       const auto pressure_of = [](const RobotSpec& spec) {
         const Model model = compile(spec);
-        return settled(Statics(model), values({1.2})).state.multipliers[0];
+        return solve_converged(Statics(model), values({1.2})).state.multipliers[0];
       };
       const double pressure = pressure_of(meshed);
       EXPECT_NEAR(pressure_of(walled), pressure, 1e-6 * pressure) << planes << (quadratic ? ", order 2" : "");

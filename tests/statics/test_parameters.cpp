@@ -52,7 +52,7 @@ NumberDifference difference_by(const RobotSpec& spec, const Number& number, cons
   for (const auto& [steps, weight] : {std::pair{-2, h}, std::pair{-1, -8 * h}, std::pair{1, 8 * h}, std::pair{2, -h}}) {
     const Model model = changed(spec, number, steps * step);
     State start;
-    start.positions = rubs(model) ? model.rest : at.positions;  // what rubs remembers its way
+    start.positions = has_friction(model) ? model.rest : at.positions;  // friction depends on the path
     const Statics statics(model);
     const Equilibrium found = statics.solve(at.actuation, start, tight(1e-10));
     EXPECT_EQ(found.report.status, Status::converged) << number.name << ": " << found.report.remark;
@@ -67,7 +67,7 @@ void expect_derivatives(const RobotSpec& spec, const Actuation& actuation, const
                         double tolerance = 1e-6) {
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, actuation, tight(1e-10));
+  const Equilibrium found = solve_converged(statics, actuation, tight(1e-10));
   const Beside beside(spec, numbers);
   const ParameterSensitivity slopes = Perturbations(statics, beside.perturbed).at(found.state, {}, 1e-8, true);
   ASSERT_TRUE(slopes.regular);
@@ -85,12 +85,13 @@ void expect_derivatives(const RobotSpec& spec, const Actuation& actuation, const
   }
 }
 
-/// What is told of the shape by a few lopsided weights, against differences of equilibria.
+/// Compares the gradient of a weighted sum over the shape, with a few asymmetric weights, with differences of
+/// equilibria.
 void expect_gradients(const RobotSpec& spec, const Actuation& actuation, const std::vector<Number>& numbers,
                       double tolerance = 1e-6) {
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, actuation, tight(1e-10));
+  const Equilibrium found = solve_converged(statics, actuation, tight(1e-10));
   const Beside beside(spec, numbers);
   Points weights(model.rest.rows(), 3);
   for (Eigen::Index i = 0; i < weights.size(); ++i) weights.data()[i] = std::sin(1 + 0.7 * static_cast<double>(i));
@@ -184,7 +185,7 @@ TEST(Parameters, OfATendonThatRubs) {
   expect_gradients(spec, values({3}), {numbers[0], numbers[1]});
   const Model model = compile(spec);
   const Statics statics(model);
-  const State at = settled(statics, values({3}), tight(1e-10)).state;
+  const State at = solve_converged(statics, values({3}), tight(1e-10)).state;
   EXPECT_TRUE(statics.reciprocal_moves(at, {Points::Ones(at.positions.rows(), 3)}).empty());  // no adjoint of itself
   spec.actuators[0].control = by_length.control;
   spec.actuators[0].low = by_length.low;
@@ -245,16 +246,17 @@ TEST(Parameters, AreRefusedWhereMoreThanNumbersDiffers) {
   EXPECT_THROW(Perturbations(Statics(shapes), {}), InvalidInput);
 }
 
-/// What another robot shares changes nothing of what it finds.
+/// A robot that uses another one's sparsity patterns has the same equilibria.
 TEST(Parameters, ARobotThatSharesPatternsHasTheSameEquilibria) {
   const RobotSpec spec = loaded_finger();
   RobotSpec softer = spec;
   *softer.materials[0].elastic->youngs_modulus = 0.7;
   const Model model = compile(spec), other = compile(softer);
   const Statics statics(model), alone(other), sharing(other, statics);
-  const Equilibrium expected = settled(alone, values({1.4, 0.93})), found = settled(sharing, values({1.4, 0.93}));
+  const Equilibrium expected = solve_converged(alone, values({1.4, 0.93})),
+                    found = solve_converged(sharing, values({1.4, 0.93}));
   EXPECT_LT(distance(found.state.positions, expected.state.positions), 1e-8);
-  EXPECT_GT(distance(settled(statics, values({1.4, 0.93})).state.positions, expected.state.positions), 0.01);
+  EXPECT_GT(distance(solve_converged(statics, values({1.4, 0.93})).state.positions, expected.state.positions), 0.01);
 }
 
 }  // namespace softkin

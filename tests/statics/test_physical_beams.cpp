@@ -75,7 +75,7 @@ TEST(PhysicalBeams, PayloadBendsACantileverAsTheElasticaSays) {
                                    {0, 0, -load * beam_modulus * beam_inertia / (beam_length * beam_length)}});
       const Model model = compile(spec);
       const Statics statics(model);
-      const Vec3 tip = marker_at(model, settled(statics, {}));
+      const Vec3 tip = marker_at(model, solve_converged(statics, {}));
       const Rod rod = elastica(load);
       EXPECT_NEAR(tip[0], beam_length * rod.x, 0.004 * beam_length) << load;
       EXPECT_NEAR(tip[1], beam_width / 2, 0.02) << load;  // the mesh is not symmetric
@@ -91,7 +91,7 @@ TEST(PhysicalBeams, WeightStretchesAHangingRod) {
   const Model model = compile(spec);
   const Statics statics(model);
   const double stretch = 1100e-9 * 9.81e-2 * beam_length * beam_length / (2 * beam_modulus);
-  EXPECT_NEAR(marker_at(model, settled(statics, {}, tight(1e-12)))[0] - beam_length, stretch, 1e-3 * stretch);
+  EXPECT_NEAR(marker_at(model, solve_converged(statics, {}, tight(1e-12)))[0] - beam_length, stretch, 1e-3 * stretch);
 }
 
 /// q L^4 / (8 E I) and, by shear, q L^2 / (2 (5/6) G A).
@@ -104,7 +104,7 @@ TEST(PhysicalBeams, WeightBendsALyingRod) {
   const double weight = 1100e-9 * 9.81e-2 * beam_area;
   const double bent = weight * std::pow(beam_length, 4) / (8 * beam_modulus * beam_inertia),
                sheared = weight * beam_length * beam_length / (2 * 5.0 / 6 * beam_modulus / 2 * beam_area);
-  const Vec3 tip = marker_at(model, settled(statics, {}, tight(1e-12)));
+  const Vec3 tip = marker_at(model, solve_converged(statics, {}, tight(1e-12)));
   EXPECT_NEAR(beam_width / 2 - tip[2], bent + sheared, 0.01 * bent);
 }
 
@@ -118,7 +118,7 @@ TEST(PhysicalBeams, AClampThatRisesLiftsTheWeight) {
   spec.fixed[0].displacement = {0, 0, 3};
   const Model high = compile(spec);
   const Statics low_statics(low), high_statics(high);
-  const Equilibrium a = settled(low_statics, {}), b = settled(high_statics, {});
+  const Equilibrium a = solve_converged(low_statics, {}), b = solve_converged(high_statics, {});
   const double weight = 1100e-9 * beam_area * beam_length + 1e-3;
   EXPECT_NEAR(b.report.energy - a.report.energy, 3 * weight, 1e-6 * weight);
   EXPECT_LT(distance(a.state.positions.rowwise() + Eigen::RowVector3d(0, 0, 3), b.state.positions), 1e-6);
@@ -161,7 +161,7 @@ TEST(PhysicalBeams, ElevatedIsTheSameAsRead) {
   std::filesystem::remove(file);
   const Model made_model = compile(made), read_model = compile(read);
   const Statics made_statics(made_model), read_statics(read_model);
-  const Equilibrium a = settled(made_statics, values({1.4})), b = settled(read_statics, values({1.4}));
+  const Equilibrium a = solve_converged(made_statics, values({1.4})), b = solve_converged(read_statics, values({1.4}));
   ASSERT_EQ(a.state.positions.rows(), b.state.positions.rows());
   EXPECT_LT(distance(a.state.positions.topRows(corners), b.state.positions.topRows(corners)), 1e-8);
   EXPECT_GT(distance(a.state.positions, b.state.positions), 1) << "the nodes are numbered alike";

@@ -27,21 +27,21 @@ double free_ratio(const Model& model, const Points& positions) {
 TEST(PhysicalCables, OneThatWouldPushGoesSlack) {
   const Model model = compile(finger_with_cable()), bare_model = compile(bending_finger());
   const Statics statics(model), bare(bare_model);
-  const Equilibrium alone = settled(bare, values({2.0}));
+  const Equilibrium alone = solve_converged(bare, values({2.0}));
   const double free = free_ratio(model, alone.state.positions);
-  const Equilibrium found = settled(statics, values({2.0, free + 0.01}));
+  const Equilibrium found = solve_converged(statics, values({2.0, free + 0.01}));
   EXPECT_EQ(found.state.multipliers[1], 0);
   EXPECT_LT(distance(found.state.positions, alone.state.positions), 1e-8);
-  EXPECT_GT(settled(statics, values({2.0, free - 0.01})).state.multipliers[1], 0.01);
+  EXPECT_GT(solve_converged(statics, values({2.0, free - 0.01})).state.multipliers[1], 0.01);
 }
 
 /// Along a path of lengths: slack while it is longer than the body wants, tight from there on. Tension sets in at zero.
 TEST(PhysicalCables, TightensAgainAlongAPath) {
   const Model model = compile(finger_with_cable()), bare_model = compile(bending_finger());
   const Statics statics(model), bare(bare_model);
-  const Points slack = settled(bare, values({1.5})).state.positions;
+  const Points slack = solve_converged(bare, values({1.5})).state.positions;
   const double free = free_ratio(model, slack);
-  Equilibrium found = settled(statics, values({1.5, free + 0.02}));
+  Equilibrium found = solve_converged(statics, values({1.5, free + 0.02}));
   EXPECT_EQ(found.state.multipliers[1], 0);
   double last = 0;
   for (const double beyond : {-0.004, -0.001, 0.001, 0.004, 0.016}) {
@@ -71,7 +71,8 @@ TEST(PhysicalCables, TightensAgainAlongAPath) {
 TEST(PhysicalCables, ASlackOneIsFree) {
   const Model model = compile(finger_with_cable()), bare_model = compile(bending_finger());
   const Statics statics(model), bare(bare_model);
-  State state = settled(statics, values({1.5, 1.4})).state, bare_state = settled(bare, values({1.5})).state;
+  State state = solve_converged(statics, values({1.5, 1.4})).state,
+        bare_state = solve_converged(bare, values({1.5})).state;
   for (const double ratio : {1.52, 1.54, 1.56}) {
     const Equilibrium found = statics.solve(values({ratio, 1.4}), state),
                       alone = bare.solve(values({ratio}), bare_state);
@@ -87,11 +88,11 @@ TEST(PhysicalCables, ASlackOneIsFree) {
 TEST(PhysicalCables, Two) {
   const Model model = compile(cable_beam());
   const Statics statics(model);
-  const Actuation asked[] = {values({0.9, 1.0}),  values({0.9, 1.2}), values({0.95, 0.95}),
-                             values({0.97, 0.9}), values({1.2, 1.2}), values({0.8, 0.93})};
+  const Actuation requested[] = {values({0.9, 1.0}),  values({0.9, 1.2}), values({0.95, 0.95}),
+                                 values({0.97, 0.9}), values({1.2, 1.2}), values({0.8, 0.93})};
   int slack = 0, tight_ones = 0;
-  for (const Actuation& actuation : asked) {
-    const Equilibrium found = settled(statics, actuation);
+  for (const Actuation& actuation : requested) {
+    const Equilibrium found = solve_converged(statics, actuation);
     for (Index a = 0; a < 2; ++a) {
       const double tension = found.state.multipliers[a],
                    ratio = achieved_ratio(model, model.actuators[a], found.state.positions);
@@ -107,13 +108,13 @@ TEST(PhysicalCables, Two) {
   }
   EXPECT_GT(slack, 2);
   EXPECT_GT(tight_ones, 5);
-  const Equilibrium both = settled(statics, values({0.95, 0.95}));
+  const Equilibrium both = solve_converged(statics, values({0.95, 0.95}));
   EXPECT_NEAR(both.state.multipliers[0], both.state.multipliers[1], 0.1 * both.state.multipliers[0]);
   EXPECT_NEAR(marker_at(model, both)[2], 5, 0.5);
 }
 
-/// Four cables along the edges, random lengths one after another: whichever pulls is as long as it is told, the others
-/// are shorter than they may be and carry nothing.
+/// Four cables along the edges get random lengths one after another: active cables have their commanded length, the
+/// others are slack and carry nothing.
 TEST(PhysicalCables, FourWithRandomLengths) {
   RobotSpec spec = physical_robot(block_mesh({12, 3, 3}, {60, 12, 12}));
   for (const double y : {1.0, 11.0})
@@ -127,18 +128,18 @@ TEST(PhysicalCables, FourWithRandomLengths) {
   State state = statics.rest();
   int slack = 0, pulling = 0;
   for (int i = 0; i < 15; ++i) {
-    const Actuation asked = Actuation::NullaryExpr(4, [&] { return ratio(engine); });
-    const Equilibrium found = statics.solve(asked, state);
-    ASSERT_EQ(found.report.status, Status::converged) << asked.transpose() << ": " << found.report.remark;
+    const Actuation requested = Actuation::NullaryExpr(4, [&] { return ratio(engine); });
+    const Equilibrium found = statics.solve(requested, state);
+    ASSERT_EQ(found.report.status, Status::converged) << requested.transpose() << ": " << found.report.remark;
     state = found.state;
     for (Index a = 0; a < 4; ++a) {
       const double length = achieved_ratio(model, model.actuators[a], state.positions);
       if (state.multipliers[a] > 0) {
-        EXPECT_NEAR(length, asked[a], 1e-7);
+        EXPECT_NEAR(length, requested[a], 1e-7);
         ++pulling;
       } else {
         EXPECT_EQ(state.multipliers[a], 0);
-        EXPECT_LT(length, asked[a] + 1e-7);
+        EXPECT_LT(length, requested[a] + 1e-7);
         ++slack;
       }
     }
@@ -151,16 +152,16 @@ TEST(PhysicalCables, FourWithRandomLengths) {
 TEST(PhysicalCables, AtRest) {
   const Model model = compile(cable_beam());
   const Statics statics(model);
-  const Equilibrium found = settled(statics, values({1.0, 1.0}));
+  const Equilibrium found = solve_converged(statics, values({1.0, 1.0}));
   EXPECT_LT(distance(found.state.positions, model.rest), 1e-9);
   EXPECT_LT(found.state.multipliers.cwiseAbs().maxCoeff(), 1e-9);
   EXPECT_GE(found.state.multipliers.minCoeff(), 0);
   const Model finger = compile(finger_with_cable());
   const Statics finger_statics(finger);
-  EXPECT_LT(distance(settled(finger_statics, values({1.0, 1.0})).state.positions, finger.rest), 1e-9);
+  EXPECT_LT(distance(solve_converged(finger_statics, values({1.0, 1.0})).state.positions, finger.rest), 1e-9);
 }
 
-/// Two cables along one way: the shorter one carries all; of one length, they share.
+/// Two cables along one path: the shorter one carries all; with the same length, both carry half.
 TEST(PhysicalCables, AlongOneWay) {
   RobotSpec spec = cable_beam();
   spec.actuators.pop_back();
@@ -172,8 +173,8 @@ TEST(PhysicalCables, AlongOneWay) {
   const Statics statics(model);
   for (const auto& [first, second] :
        {std::pair{0.9, 0.8}, {0.8, 0.9}, {0.9, 0.9}, {1.0, 0.9}, {0.9, 1.2}, {1.0, 1.0}}) {
-    const Equilibrium both = settled(statics, values({first, second})),
-                      one = settled(alone_statics, values({std::min(first, second)}));
+    const Equilibrium both = solve_converged(statics, values({first, second})),
+                      one = solve_converged(alone_statics, values({std::min(first, second)}));
     EXPECT_LT(distance(both.state.positions, one.state.positions), 1e-7) << first << " " << second;
     EXPECT_NEAR(both.state.multipliers.sum(), one.state.multipliers[0], 1e-6);
     EXPECT_GE(both.state.multipliers.minCoeff(), -1e-12);
@@ -183,15 +184,15 @@ TEST(PhysicalCables, AlongOneWay) {
   }
 }
 
-/// A cable under tension control may not be asked for less than none.
+/// A cable under tension control accepts no negative command.
 TEST(PhysicalCables, TensionControlPullsAsAsked) {
   RobotSpec spec = cable_beam();
   spec.actuators = {by_load(spec.actuators[0])};
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium none = settled(statics, values({0}));
+  const Equilibrium none = solve_converged(statics, values({0}));
   EXPECT_LT(distance(none.state.positions, model.rest), 1e-9);
-  const Equilibrium pulled = settled(statics, values({0.5}));
+  const Equilibrium pulled = solve_converged(statics, values({0.5}));
   EXPECT_EQ(pulled.state.multipliers[0], 0.5);
   EXPECT_GT(marker_at(model, pulled)[2], 5.5);
   EXPECT_THROW((void)statics.solve(values({-0.1}), statics.rest()), InvalidInput);
@@ -238,17 +239,18 @@ TEST(PhysicalCables, ACommandBelowANegativeOffsetDoesNothing) {
   spec.actuators[1].offset = -0.5;
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium slack = settled(statics, values({0.4, 0.3})), none = settled(statics, values({0.4, 0}));
+  const Equilibrium slack = solve_converged(statics, values({0.4, 0.3})),
+                    none = solve_converged(statics, values({0.4, 0}));
   EXPECT_LT(distance(slack.state.positions, none.state.positions), 1e-9);
   const Sensitivity slopes = statics.sensitivity(slack.state);
   EXPECT_EQ(slopes.positions[1].cwiseAbs().maxCoeff(), 0);
   EXPECT_EQ(slopes.multipliers(1, 1), 0);
-  const Equilibrium pulled = settled(statics, values({0.4, 0.9}));
+  const Equilibrium pulled = solve_converged(statics, values({0.4, 0.9}));
   RobotSpec acting = spec;
   acting.actuators[1].offset = 0;
   const Model other = compile(acting);
   const Statics direct(other);
-  const Equilibrium expected = settled(direct, values({0.4, 0.4}));
+  const Equilibrium expected = solve_converged(direct, values({0.4, 0.4}));
   EXPECT_LT(distance(pulled.state.positions, expected.state.positions), 1e-7);
   EXPECT_LE(pulled.report.iterations, 100);
   EXPECT_GT(statics.sensitivity(pulled.state).positions[1].cwiseAbs().maxCoeff(), 0);

@@ -29,14 +29,14 @@ TriangleSurface cut(const TriangleSurface& surface, double edge) {
 double pressure_at(const RobotSpec& spec, double ratio) {
   const Model model = compile(spec);
   const Statics statics(model);
-  return settled(statics, values({ratio})).state.multipliers[0];
+  return solve_converged(statics, values({ratio})).state.multipliers[0];
 }
 
 double ratio_at(RobotSpec spec, double pressure) {
   spec.actuators[0] = by_load(spec.actuators[0]);
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, values({pressure}));
+  const Equilibrium found = solve_converged(statics, values({pressure}));
   return achieved_ratio(model, model.actuators[0], found.state.positions);
 }
 
@@ -61,7 +61,7 @@ RobotSpec round_finger() {
   return spec;
 }
 
-/// A cylinder along x with so many corners.
+/// Returns a cylinder along x with a polygon as its cross-section.
 TriangleSurface cylinder(double start, double end, double radius, int corners) {
   TriangleSurface surface{Points(2 * corners + 2, 3), {}};
   for (int i = 0; i < corners; ++i) {

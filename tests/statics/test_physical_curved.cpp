@@ -56,7 +56,7 @@ double bent_rod(int corners, int layers, bool curved) {
   const double area = round_pi * radius * radius, inertia = area * radius * radius / 4;
   const double expected =
       force * std::pow(length, 3) / (3 * round_modulus * inertia) + force * length / (0.9 * round_modulus / 2 * area);
-  return -marker_at(model, settled(statics, {}, tight(1e-11)))[2] / expected;
+  return -marker_at(model, solve_converged(statics, {}, tight(1e-11)))[2] / expected;
 }
 
 constexpr double blown_MPa = 1e-5, inner_mm = 7, outer_mm = 10, round_nu = 0.3;
@@ -72,11 +72,11 @@ void hold_vertex(RobotSpec& spec, Index vertex, const std::array<bool, 3>& axes)
   spec.fixed.push_back({{VertexList{{vertex}}, {}}, axes});
 }
 
-/// By how much a chamber grows, over what Lame says [mm^3].
+/// Returns by how much more a chamber grows than in Lame's solution [mm^3].
 double growth_over(const RobotSpec& spec, double expected) {
   const Model model = compiled_round(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, values({1e3 * blown_MPa}), tight(1e-11));
+  const Equilibrium found = solve_converged(statics, values({1e3 * blown_MPa}), tight(1e-11));
   const Actuator& chamber = model.actuators[0];
   return (achieved_ratio(model, chamber, found.state.positions) - 1) * chamber.rest_measure / expected;
 }
@@ -142,7 +142,7 @@ double sinking_dome(int sides, int cuts, int layers, bool curved) {
   spec.markers.push_back({"top", {Vec3(0, 0, outer_mm), {}}});
   const Model model = compiled_round(spec);
   const Statics statics(model);
-  return outer_mm - marker_at(model, settled(statics, {}, tight(1e-12)))[2];
+  return outer_mm - marker_at(model, solve_converged(statics, {}, tight(1e-12)))[2];
 }
 
 bool has_curved_note(const Model& model) {
@@ -170,7 +170,8 @@ std::pair<double, double> moves_of(const TurnedBody& body, int finer, bool curve
   const Model model = compile(spec);
   EXPECT_EQ(curved, has_curved_note(model));
   const Statics statics(model);
-  const Vec3 moved = marker_at(model, settled(statics, {}, tight(1e-11))) - model.markers[0].point.at(model.rest);
+  const Vec3 moved =
+      marker_at(model, solve_converged(statics, {}, tight(1e-11))) - model.markers[0].point.at(model.rest);
   return {-moved[2], moved[0]};
 }
 

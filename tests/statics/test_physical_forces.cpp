@@ -6,7 +6,7 @@
 
 #include "statics/physical_samples.hpp"
 
-/// What holds a robot, and the stress in it.
+/// Reactions of supports and stresses of a robot.
 
 namespace softkin {
 
@@ -89,7 +89,7 @@ ElasticSpec constants(Law law) {
 
 }  // namespace
 
-/// A robot that hangs in gravity with a payload on it: its support bears both, and their moment.
+/// A robot hangs in gravity with a payload on it: its support carries both, and their moment.
 TEST(Reactions, BearWeightAndMoment) {
   RobotSpec spec = bending_finger();
   spec.materials[0].density = 1100;
@@ -98,7 +98,7 @@ TEST(Reactions, BearWeightAndMoment) {
   spec.rigid.push_back({{std::string("x_high"), {}}, "plate"});
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, values({1.3}));
+  const Equilibrium found = solve_converged(statics, values({1.3}));
   const auto held = reactions_of(model, statics, found);
   ASSERT_EQ(held.size(), 1u);
   EXPECT_EQ(model.held.supports[0].name, "x_low");
@@ -117,7 +117,7 @@ TEST(Reactions, InnerForcesAddUpToNothing) {
   spec.actuators.push_back(cable("tendon", {{2, 6, 14}, {30, 6, 14}, {58, 6, 14}}));
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, values({1.6, 0.95}));
+  const Equilibrium found = solve_converged(statics, values({1.6, 0.95}));
   EXPECT_GT(found.state.multipliers[1], 1e-2);
   const Points nodal = statics.measured(found.state).reactions;
   const auto held = reactions_of(model, statics, found);
@@ -139,7 +139,7 @@ TEST(Reactions, OfADisplacedEndIsThatOfABar) {
                 {{std::string("z_low"), {}}, {false, false, true}}};
   const Model model = compile(spec);
   const Statics statics(model);
-  const auto held = reactions_of(model, statics, settled(statics, {}));
+  const auto held = reactions_of(model, statics, solve_converged(statics, {}));
   ASSERT_EQ(held.size(), 4u);
   const double expected = 2.5 * 10 * 6 * pull / 80;
   EXPECT_NEAR(held[1].force.x(), expected, 2e-4 * expected);
@@ -148,8 +148,8 @@ TEST(Reactions, OfADisplacedEndIsThatOfABar) {
   EXPECT_LT((held[1].center - Vec3(80 + pull, 5, 3)).norm(), 0.01);
 }
 
-/// Two supports, one of them a rigid plate held by a part of its face alone: together they bear all, and no vertex and
-/// axis counts twice where they overlap.
+/// Two supports, one of them a rigid plate held by a part of its face alone, together carry all loads, and no vertex
+/// and axis counts twice where they overlap.
 TEST(Reactions, OfSeveralSupportsBearAllLoads) {
   RobotSpec spec = physical_robot(block_mesh({10, 3, 3}, {60, 12, 12}));
   spec.materials[0].density = 1100;
@@ -160,7 +160,7 @@ TEST(Reactions, OfSeveralSupportsBearAllLoads) {
   spec.fixed.push_back({{Box{{-1, -1, -1}, {6.1, 13, 13}}, {}}, {true, false, true}});
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, {});
+  const Equilibrium found = solve_converged(statics, {});
   const auto held = reactions_of(model, statics, found);
   ASSERT_EQ(held.size(), 3u);
   EXPECT_EQ(model.held.supports[1].name, "x_high");
@@ -181,9 +181,9 @@ TEST(Reactions, OfSeveralSupportsBearAllLoads) {
 TEST(Reactions, AreAFunctionOfTheState) {
   const Model model = compile(bending_finger());
   const Statics statics(model);
-  const Equilibrium found = settled(statics, values({1.5}));
+  const Equilibrium found = solve_converged(statics, values({1.5}));
   const Points before = statics.measured(found.state).reactions;
-  (void)settled(statics, values({0.9}));
+  (void)solve_converged(statics, values({0.9}));
   EXPECT_EQ(before, statics.measured(found.state).reactions);
   const ElementDeformation alone = statics.measured(State{found.state.positions});
   EXPECT_EQ(alone.volume_ratio, statics.measured(found.state).volume_ratio);
@@ -251,7 +251,7 @@ TEST(Stress, OfAThickSphereIsThatOfLame) {
   const Model model = compile(spec);
   const Statics statics(model);
   const double pressure = 0.1;  // [kPa]
-  const Equilibrium found = settled(statics, values({pressure}));
+  const Equilibrium found = solve_converged(statics, values({pressure}));
   const ElementStress stress = statics.measured(found.state).stress;
   double sum = 0, volume = 0;
   for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e) {

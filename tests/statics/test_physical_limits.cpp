@@ -48,11 +48,11 @@ TEST(PhysicalLimits, VolumeControlPassesTheMaximumOfAPressure) {
   }
   EXPECT_LT(last, 0.95 * most);
   // in one call too
-  const Equilibrium once = settled(statics, values({9.0}));
+  const Equilibrium once = solve_converged(statics, values({9.0}));
   EXPECT_NEAR(once.state.multipliers[0], last, 1e-5 * last);
 }
 
-/// Pressure control ends at the maximum, says so, and leaves the last good shape.
+/// Pressure control ends at the maximum, reports it, and leaves the last good shape.
 TEST(PhysicalLimits, PressureControlEndsAtTheMaximum) {
   const double modulus = 0.03;
   const Model by_volume = compile(balloon(modulus, false));
@@ -78,14 +78,14 @@ TEST(PhysicalLimits, PressureControlEndsAtTheMaximum) {
     const std::size_t at = remark.find("the pressure of chamber 'hollow' has its maximum there, ");
     ASSERT_EQ(at, 0u) << remark;
     EXPECT_NE(remark.find("command its volume (control: volume) to go on beyond it"), std::string::npos) << remark;
-    const double told = std::stod(remark.substr(remark.find("there, ") + 7));
-    EXPECT_GE(told, most * (1 - 1e-5));
-    EXPECT_LT(told, 1.002 * most);
+    const double reported = std::stod(remark.substr(remark.find("there, ") + 7));
+    EXPECT_GE(reported, most * (1 - 1e-5));
+    EXPECT_LT(reported, 1.002 * most);
     const double volume = std::stod(remark.substr(remark.find(" kPa at ") + 8));
     const Equilibrium there = volume_statics.solve(values({volume}), volume_statics.rest());
-    EXPECT_NEAR(there.state.multipliers[0], told, 1e-4 * told);
+    EXPECT_NEAR(there.state.multipliers[0], reported, 1e-4 * reported);
     for (const double beside : {0.97, 1.03})
-      EXPECT_LT(volume_statics.solve(values({beside * volume}), there.state).state.multipliers[0], told);
+      EXPECT_LT(volume_statics.solve(values({beside * volume}), there.state).state.multipliers[0], reported);
     EXPECT_TRUE(beyond.state.positions.allFinite());
     const double reached = beyond.state.actuation[0];
     EXPECT_NEAR(reached, factor * most * beyond.report.reached, 1e-9 * most);
@@ -99,7 +99,7 @@ TEST(PhysicalLimits, PressureControlEndsAtTheMaximum) {
   }
 }
 
-/// Where several loads change the way ends at the maximum too, and what to command instead is said.
+/// A path along which several loads change ends at the maximum, too, and the report suggests what to command instead.
 TEST(PhysicalLimits, SeveralLoadsEndAtTheMaximum) {
   RobotSpec spec = balloon(0.03, false);
   spec.actuators = {by_load(spec.actuators[0]), by_load(cable("tendon", {{0, 0, 12.5}, {12.5, 0, 0}}))};
@@ -109,7 +109,7 @@ TEST(PhysicalLimits, SeveralLoadsEndAtTheMaximum) {
   EXPECT_EQ(beyond.report.status, Status::limit);
   EXPECT_EQ(beyond.report.remark,
             "beyond this point no equilibrium follows: the curve of equilibria turns back there; --stable (in Python "
-            "stable=True) goes on along it to the next stable shape that bears more, where there is one; where a "
+            "stable=True) follows it to the next stable shape that carries more, where there is one; where a "
             "pressure has its "
             "maximum, command volumes (control: volume) and lengths (control: length) to go on beyond it");
   // 230 and 556 where the limit was bisected by steps beyond it
@@ -146,7 +146,8 @@ TEST(PhysicalLimits, RecordsStepsInMillimetresAndResidualsInNewtons) {
   }
 }
 
-/// A little less than what several loads reach together is borne, a little more is not, asked for each anew.
+/// Slightly less than the loads that several actuators reach together is carried, slightly more is not, each solved
+/// from rest.
 TEST(PhysicalLimits, TheCurveTurnsBackWhereNoMoreIsBorne) {
   RobotSpec spec = balloon(0.03, false);
   spec.actuators = {by_load(spec.actuators[0]), by_load(cable("tendon", {{0, 0, 12.5}, {12.5, 0, 0}}))};
@@ -158,15 +159,15 @@ TEST(PhysicalLimits, TheCurveTurnsBackWhereNoMoreIsBorne) {
   ASSERT_EQ(most.report.status, Status::limit) << most.report.remark;
   EXPECT_NE(most.report.remark.find("turns back there"), std::string::npos) << most.report.remark;
   EXPECT_LT(most.report.iterations, 80);
-  const auto borne = [&](double share) {
-    return statics.solve(share * most.state.actuation, statics.rest()).report.status == Status::converged;
+  const auto borne = [&](double fraction) {
+    return statics.solve(fraction * most.state.actuation, statics.rest()).report.status == Status::converged;
   };
   EXPECT_TRUE(borne(0.999));
   EXPECT_FALSE(borne(1.001));
 }
 
-/// A shallow arch under a weight at its top snaps through: just short of it the weight is carried, just beyond the last
-/// good shape is told, with how much it carries, and the arch still stands.
+/// A shallow arch under a weight at its top snaps through: just below the limit load the weight is carried; just above
+/// it, the last good shape is reported with the load factor it carries, and the arch still stands.
 TEST(PhysicalLimits, AnArchSnaps) {
   RobotSpec spec = physical_robot(block_mesh({20, 1, 1}, {100, 10, 2}));
   for (Index v = 0; v < spec.mesh.vertices.rows(); ++v)
@@ -179,7 +180,7 @@ TEST(PhysicalLimits, AnArchSnaps) {
     spec.loads.forces = {{"weight", {Vec3(50, 5, 7), {}}, {0, 0, -weight}}};
     const Model model = compile(spec);
     const Statics statics(model);
-    const double top = marker_at(model, settled(statics, {}))[2];
+    const double top = marker_at(model, solve_converged(statics, {}))[2];
     EXPECT_LT(top, last_top);
     EXPECT_GT(top, 4);
     last_top = top;
@@ -193,7 +194,7 @@ TEST(PhysicalLimits, AnArchSnaps) {
   EXPECT_GT(0.01 * found.report.reached, 0.0095);
   EXPECT_GT(marker_at(model, found)[2], 4);
   EXPECT_LT(marker_at(model, found)[2], last_top);
-  // and, if asked, to where it carries the weight again, as it does when it is pressed through first
+  // and, with `stable`, up to the shape that carries the weight again, as when it is pressed through first
   StaticsOptions stable;
   stable.stable = true;
   const Equilibrium through = statics.solve({}, statics.rest(), stable);
@@ -224,18 +225,18 @@ TEST(PhysicalLimits, NoShapeIsInvertedWhereTheLawForbidsIt) {
   EXPECT_FALSE(found.report.remark.empty());
 }
 
-/// What cannot be reached is not reported as reached: nothing may move; two chambers that are one may not hold
-/// different volumes.
+/// Constraints that cannot be satisfied are not reported as satisfied: of a body that cannot move, and different
+/// volumes of two chambers that are one.
 TEST(PhysicalLimits, AConstraintThatCannotBeMet) {
   RobotSpec stiff = bending_finger();
   stiff.actuators.push_back(cable("tendon", {{0, 6, 14}, {58, 6, 14}}));
   stiff.fixed = {{{Box{{-1, -1, -1}, {100, 100, 100}}, {}}}};
   const Model stiff_model = compile(stiff);
   const Statics stiff_statics(stiff_model);
-  EXPECT_EQ(settled(stiff_statics, values({1.0, 1.0})).report.status, Status::converged);
-  EXPECT_EQ(settled(stiff_statics, values({1.0, 1.2})).report.status, Status::converged);
-  for (const Actuation& asked : {values({1.2, 1.0}), values({1.0, 0.9}), values({0.9, 0.8})}) {
-    const Equilibrium found = stiff_statics.solve(asked, stiff_statics.rest());
+  EXPECT_EQ(solve_converged(stiff_statics, values({1.0, 1.0})).report.status, Status::converged);
+  EXPECT_EQ(solve_converged(stiff_statics, values({1.0, 1.2})).report.status, Status::converged);
+  for (const Actuation& requested : {values({1.2, 1.0}), values({1.0, 0.9}), values({0.9, 0.8})}) {
+    const Equilibrium found = stiff_statics.solve(requested, stiff_statics.rest());
     EXPECT_EQ(found.report.status, Status::limit);
     EXPECT_FALSE(found.report.remark.empty());
     EXPECT_LT(distance(found.state.positions, stiff_model.rest), 1e-12);
@@ -243,7 +244,7 @@ TEST(PhysicalLimits, AConstraintThatCannotBeMet) {
   const Model model = compile(robot_with_bags({"bag", "twin"}));
   const Statics statics(model);
   EXPECT_EQ(statics.solve(values({1.3, 1.1}), statics.rest()).report.status, Status::limit);
-  const Equilibrium same = settled(statics, values({1.3, 1.3}));
+  const Equilibrium same = solve_converged(statics, values({1.3, 1.3}));
   EXPECT_NEAR(achieved_ratio(model, model.actuators[0], same.state.positions), 1.3, 1e-7);
 }
 

@@ -25,7 +25,7 @@ double energy_slope(const Model& model, const Statics& statics, const Equilibriu
 void expect_slopes(const RobotSpec& spec, const Actuation& actuation) {
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, actuation);
+  const Equilibrium found = solve_converged(statics, actuation);
   for (Index a = 0; a < actuation.size(); ++a) {
     const bool cable = model.actuators[a].is<CableDrive>();
     const double force = cable ? -found.state.multipliers[a] : 1e-3 * found.state.multipliers[a];  // kPa to MPa
@@ -80,27 +80,27 @@ TEST(PhysicalMultipliers, LoadControlGivesTheSameShape) {
     const RobotSpec spec = cables ? cable_beam() : chambers_beam(2);
     const Model model = compile(spec);
     const Statics statics(model);
-    const Equilibrium found = settled(statics, cables ? values({0.9, 0.97}) : values({1.6, 1.2}));
+    const Equilibrium found = solve_converged(statics, cables ? values({0.9, 0.97}) : values({1.6, 1.2}));
     RobotSpec loaded = spec;
     for (ActuatorSpec& a : loaded.actuators) a = by_load(a);
     const Model loaded_model = compile(loaded);
     const Statics loaded_statics(loaded_model);
     const Actuation loads = found.state.multipliers;
     EXPECT_GT(loads.cwiseAbs().minCoeff(), 1e-4);
-    const Equilibrium same = settled(loaded_statics, loads);
+    const Equilibrium same = solve_converged(loaded_statics, loads);
     EXPECT_LT(distance(same.state.positions, found.state.positions), 1e-7);
     EXPECT_LT((same.state.multipliers - loads).norm(), 1e-12 * loads.norm());
     // one of each
     loaded.actuators[0] = spec.actuators[0];
     const Model mixed_model = compile(loaded);
     const Statics mixed_statics(mixed_model);
-    const Equilibrium mixed = settled(mixed_statics, values({found.actuation[0], loads[1]}));
+    const Equilibrium mixed = solve_converged(mixed_statics, values({found.actuation[0], loads[1]}));
     EXPECT_LT(distance(mixed.state.positions, found.state.positions), 1e-7);
     EXPECT_NEAR(mixed.state.multipliers[0], loads[0], 1e-7 * std::abs(loads[0]));
   }
 }
 
-/// E scales forces and no shape; by a power of two it scales every number of the way exactly.
+/// E scales forces but not shapes; scaling by a power of two scales every number of the path exactly.
 TEST(PhysicalMultipliers, ScaleWithTheModulus) {
   for (const Law law : {Law::neo_hookean, Law::yeoh}) {
     RobotSpec soft = bending_finger(), hard = bending_finger();
@@ -108,7 +108,8 @@ TEST(PhysicalMultipliers, ScaleWithTheModulus) {
     hard.materials[0].elastic = elastic(law, std::ldexp(0.02, 17), 0.4);
     const Model soft_model = compile(soft), hard_model = compile(hard);
     const Statics soft_statics(soft_model), hard_statics(hard_model);
-    const Equilibrium a = settled(soft_statics, values({1.8})), b = settled(hard_statics, values({1.8}));
+    const Equilibrium a = solve_converged(soft_statics, values({1.8})),
+                      b = solve_converged(hard_statics, values({1.8}));
     EXPECT_LT(distance(a.state.positions, b.state.positions), 1e-7);
     EXPECT_NEAR(b.state.multipliers[0] / a.state.multipliers[0], std::ldexp(1.0, 17), 1e-3);
     EXPECT_EQ(a.report.iterations, b.report.iterations);

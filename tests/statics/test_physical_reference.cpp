@@ -225,9 +225,9 @@ Eigen::RowVector3d middle_of(const Mesh& mesh) {
 
 /// A point of a bar that is stretched evenly, and twisted evenly about its axis.
 Vec3 strained(const Mesh& mesh, const Vec3& rest, double stretch, double degrees) {
-  const double share = rest[0] / mesh.vertices.col(0).maxCoeff();
-  const Vec3 axis = middle_of(mesh).transpose().cwiseProduct(Vec3(0, 1, 1)), along(rest[0] + share * stretch, 0, 0);
-  const Mat3 turn = Eigen::AngleAxisd(share * degrees * EIGEN_PI / 180, Vec3::UnitX()).toRotationMatrix();
+  const double fraction = rest[0] / mesh.vertices.col(0).maxCoeff();
+  const Vec3 axis = middle_of(mesh).transpose().cwiseProduct(Vec3(0, 1, 1)), along(rest[0] + fraction * stretch, 0, 0);
+  const Mat3 turn = Eigen::AngleAxisd(fraction * degrees * EIGEN_PI / 180, Vec3::UnitX()).toRotationMatrix();
   return axis + along + turn * (rest - axis).cwiseProduct(Vec3(0, 1, 1));
 }
 

@@ -17,21 +17,21 @@ using namespace testing;
 TEST(PhysicalSolve, TheStartDoesNotMatter) {
   const Model model = compile(chambers_beam(2));
   const Statics statics(model);
-  const Actuation asked = values({1.8, 1.1});
-  const Equilibrium expected = settled(statics, asked);
-  const Equilibrium other = settled(statics, values({1.2, 2.0}));
+  const Actuation requested = values({1.8, 1.1});
+  const Equilibrium expected = solve_converged(statics, requested);
+  const Equilibrium other = solve_converged(statics, values({1.2, 2.0}));
   State unknown{other.state.positions};
   State with_pressure{other.state.positions, {}, other.state.multipliers};
-  State wrong{other.state.positions, values({1, 1})};  // says that it is at rest
+  State wrong{other.state.positions, values({1, 1})};  // claims to be at rest
   State shaken{model.rest + noise(model.rest.rows(), 0.3, 1)};
   for (const State& start : {other.state, unknown, with_pressure, wrong, shaken}) {
-    const Equilibrium found = statics.solve(asked, start, tight());
+    const Equilibrium found = statics.solve(requested, start, tight());
     EXPECT_EQ(found.report.status, Status::converged) << found.report.remark;
     EXPECT_LT(distance(found.state.positions, expected.state.positions), 1e-7);
     EXPECT_LT((found.state.multipliers - expected.state.multipliers).norm(), 1e-6);
   }
   // where it is already there is nothing to do
-  const Equilibrium again = statics.solve(asked, expected.state, tight());
+  const Equilibrium again = statics.solve(requested, expected.state, tight());
   EXPECT_LT(distance(again.state.positions, expected.state.positions), 1e-8);
   EXPECT_LE(again.report.iterations, 2);
 }
@@ -41,7 +41,8 @@ TEST(PhysicalSolve, UnknownActuationUnderLoadControl) {
   for (ActuatorSpec& a : spec.actuators) a = by_load(a);
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium expected = settled(statics, values({0.8, 0.1})), other = settled(statics, values({0.1, 1.0}));
+  const Equilibrium expected = solve_converged(statics, values({0.8, 0.1})),
+                    other = solve_converged(statics, values({0.1, 1.0}));
   for (const State& start : {State{other.state.positions}, State{other.state.positions, {}, other.state.multipliers}}) {
     const Equilibrium found = statics.solve(values({0.8, 0.1}), start, tight());
     EXPECT_EQ(found.report.status, Status::converged) << found.report.remark;
@@ -64,7 +65,8 @@ TEST(PhysicalSolve, InvariantUnderRigidMotion) {
     point.point = Vec3(r * std::get<Vec3>(point.point) + shift);
   const Model model = compile(spec), turned_model = compile(turned);
   const Statics statics(model), turned_statics(turned_model);
-  const Equilibrium a = settled(statics, values({1.6, 0.97})), b = settled(turned_statics, values({1.6, 0.97}));
+  const Equilibrium a = solve_converged(statics, values({1.6, 0.97})),
+                    b = solve_converged(turned_statics, values({1.6, 0.97}));
   EXPECT_LT(distance((a.state.positions * r.transpose()).rowwise() + shift.transpose(), b.state.positions), 1e-7);
   EXPECT_LT((a.state.multipliers - b.state.multipliers).norm(), 1e-7 * a.state.multipliers.norm());
   EXPECT_GT(a.state.multipliers.cwiseAbs().minCoeff(), 1e-3);
@@ -94,8 +96,8 @@ TEST(PhysicalSolve, ThreadsChangeNothing) {
   StaticsOptions one = tight(1e-6), two = tight(1e-6);
   one.threads = 1;
   two.threads = 2;
-  const Equilibrium a = settled(statics, values({1.5, 1.3, 0.9}), one),
-                    b = settled(statics, values({1.5, 1.3, 0.9}), two);
+  const Equilibrium a = solve_converged(statics, values({1.5, 1.3, 0.9}), one),
+                    b = solve_converged(statics, values({1.5, 1.3, 0.9}), two);
   EXPECT_EQ(a.report.iterations, b.report.iterations);
   EXPECT_EQ(a.state.positions, b.state.positions);
 }
@@ -104,25 +106,25 @@ TEST(PhysicalSolve, ThreadsChangeNothing) {
 TEST(PhysicalSolve, SolvesSideBySideAndAgain) {
   const Model model = compile(chambers_beam(2));
   const Statics statics(model);
-  const Actuation asked[] = {values({1.5, 1.1}), values({0.9, 1.7}), values({1.2, 1.2}), values({2.0, 0.8})};
+  const Actuation requested[] = {values({1.5, 1.1}), values({0.9, 1.7}), values({1.2, 1.2}), values({2.0, 0.8})};
   std::vector<Points> expected, found(4);
-  for (const Actuation& actuation : asked) {
+  for (const Actuation& actuation : requested) {
     const Statics fresh(model);
-    expected.push_back(settled(fresh, actuation).state.positions);
+    expected.push_back(solve_converged(fresh, actuation).state.positions);
   }
   std::vector<std::thread> threads;
   for (int i = 0; i < 4; ++i)
     threads.emplace_back([&, i] {
       StaticsOptions options = tight();
       options.threads = 1;
-      found[i] = statics.solve(asked[i], statics.rest(), options).state.positions;
+      found[i] = statics.solve(requested[i], statics.rest(), options).state.positions;
     });
   for (std::thread& thread : threads) thread.join();
   for (int i = 0; i < 4; ++i) EXPECT_LT(distance(found[i], expected[i]), 1e-9);
   // a path that comes back; each solve begins with the factor that the last one left
   State state = statics.rest();
   for (const int i : {0, 1, 2, 3, 2, 0}) {
-    const Equilibrium next = statics.solve(asked[i], state, tight());
+    const Equilibrium next = statics.solve(requested[i], state, tight());
     EXPECT_EQ(next.report.status, Status::converged);
     EXPECT_LT(distance(next.state.positions, expected[i]), 1e-7);
     state = next.state;
@@ -157,7 +159,7 @@ TEST(PhysicalSolve, AsksBeforeItsFirstFactor) {
 TEST(PhysicalSolve, ConvergesFastAtTheEnd) {
   const Model model = compile(bending_finger());
   const Statics statics(model);
-  const State start = settled(statics, values({1.5})).state;
+  const State start = solve_converged(statics, values({1.5})).state;
   const Equilibrium found = statics.solve(values({1.6}), start, tight(1e-7));
   EXPECT_LE(found.report.iterations, 8);
   EXPECT_LE(found.report.continuation_steps, 1);
@@ -186,7 +188,7 @@ TEST(PhysicalSolve, FromRestToTheEndsOfARange) {
 TEST(PhysicalSolve, ALongCableHangsFromTheStart) {
   const Model model = compile(cable_beam());
   const Statics statics(model);
-  const Equilibrium found = settled(statics, values({1.5, 1.5}));
+  const Equilibrium found = solve_converged(statics, values({1.5, 1.5}));
   EXPECT_LT(distance(found.state.positions, model.rest), 1e-9);
   EXPECT_EQ(found.state.multipliers, Eigen::VectorXd::Zero(2));
   EXPECT_LE(found.report.iterations, 4);

@@ -16,16 +16,16 @@ using namespace testing;
 /// The equations at a state that is given, apart from the solve that found it.
 struct Equations : PhysicalEquations {
   Equations(const Model& robot, const State& state) : PhysicalEquations(robot) {
-    demand = {state.actuation, state.share};
+    load_state = {state.actuation, state.load_factor};
     at = system.iterate(state);
     for (Index a = 0; a < system.actuators(); ++a)
       active.push_back(system.measures().constrains(a) && at.multipliers[a] != 0);
-    system.evaluate(at, demand, active, work, balance, team);
+    system.evaluate(at, load_state, active, work, balance, team);
   }
 
   /// The stiffness on the directions that keep the active measures, dense: its eigenvalues, ascending.
   Eigen::VectorXd eigenvalues() {
-    (void)system.factorise(at, demand, active, balance, {}, work, team);
+    (void)system.factorise(at, load_state, active, balance, {}, work, team);
     Eigen::MatrixXd inverse = Eigen::MatrixXd::Identity(system.freedoms().size(), system.freedoms().size());
     work.saddle.solve(inverse, team);
     Eigen::MatrixXd stiffness = inverse.inverse();
@@ -81,7 +81,7 @@ RobotSpec pressed_bar(double by) {
 
 }  // namespace
 
-/// A stiff insert: the steps are small although much of what the soft body pulls with is out of balance.
+/// With a stiff insert, steps are small although the residual is large compared with the soft body's internal forces.
 TEST(Balance, ForcesBalanceWhereStepsAreSmall) {
   RobotSpec spec = bending_finger();
   add_volume_region(spec.mesh, "fabric", [](const Vec3& p) { return p.z() < 4; });
@@ -116,7 +116,7 @@ TEST(Stability, TheLowestModeIsThatOfTheDenseMatrix) {
     Equations equations(model, state);
     const Eigen::VectorXd all = equations.eigenvalues();
     SolveReport report;
-    const physical::LowestMode mode = physical::lowest_mode(equations.system, equations.at, equations.demand,
+    const physical::LowestMode mode = physical::lowest_mode(equations.system, equations.at, equations.load_state,
                                                             equations.active, equations.work, equations.team, report);
     EXPECT_EQ(mode.unstable, (all.array() < 0).count());
     ASSERT_GT(mode.unstable, 0);
@@ -127,8 +127,8 @@ TEST(Stability, TheLowestModeIsThatOfTheDenseMatrix) {
   }
 }
 
-/// Pressed together a bar stays straight unless it is told to leave what is unstable: then it buckles, to a shape of
-/// less energy that is stable by the dense matrix too.
+/// A bar under compression stays straight unless `stable` is set: then it buckles, to a shape of less energy that is
+/// stable by the dense matrix, too.
 TEST(Stability, APressedBarBuckles) {
   const Model model = compile(pressed_bar(15));
   const Statics statics(model);
@@ -168,9 +168,9 @@ TEST(Stability, AFactorThatIsNoLongerAsStiffIsNoticed) {
   for (double by = 0; by < 5e-3; by += 1e-4) {
     Equations there(model, pressed(by));
     here.at = there.at;
-    here.system.evaluate(here.at, here.demand, here.active, here.work, here.balance, here.team);
+    here.system.evaluate(here.at, here.load_state, here.active, here.work, here.balance, here.team);
     const bool as_stiff =
-        as_stiff_as_factorised(here.system, here.at, here.demand, here.active, here.balance, here.work, here.team);
+        as_stiff_as_factorised(here.system, here.at, here.load_state, here.active, here.balance, here.work, here.team);
     const double change = std::abs(there.eigenvalues()[0] / least - 1);
     if (change < 0.2 || change > 0.3) {
       EXPECT_EQ(as_stiff, change < 0.25) << by << " changes it by " << change;
@@ -198,8 +198,8 @@ TEST(Stability, AStrutCarriesEulersLoad) {
   EXPECT_NEAR(-force.x(), euler, 0.05 * euler);
 }
 
-/// A clamped arch with a soft band below its top, whose end is pulled down: the band is softer than the arch gives way,
-/// so that the arch snaps through under a displacement. The jump is told, with where it begins; before it, nothing is.
+/// The end of a clamped arch with a soft band below its top is pulled down. The band is softer than the arch, so that
+/// the arch snaps through under a displacement. The snap-through is reported with its start; before it, none is.
 TEST(Stability, ASnapUnderDisplacementIsTold) {
   RobotSpec spec = snapping_arch();
   const auto solved = [&](double by) {

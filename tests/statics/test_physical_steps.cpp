@@ -79,14 +79,14 @@ TEST(PhysicalSteps, ACableThatIsHeldGoesWithItsRobot) {
   EXPECT_LT(missed_by_prediction(spec), 1e-3);  // to which predictions are refined
 }
 
-/// A support pulls at a cable of a given length: predictions miss by the square of the way.
+/// A support pulls at a cable of a given length: the error of predictions is quadratic in the step.
 TEST(PhysicalSteps, ASupportPullsAtACable) {
   RobotSpec spec = testing::cable_beam();
   spec.actuators = {testing::cable("zigzag", {{0, 5, 9}, {20, 5, 1}, {40, 5, 9}, {60, 5, 1}})};
   spec.fixed.push_back({{std::string("x_high"), {}}, {true, true, true}});
   std::vector<double> missed;
-  for (const double way : {0.2, 0.1}) {
-    spec.fixed[1].displacement = {way, 0, 0};
+  for (const double path : {0.2, 0.1}) {
+    spec.fixed[1].displacement = {path, 0, 0};
     missed.push_back(missed_by_prediction(spec));
   }
   EXPECT_LT(missed[0], 0.1);

@@ -22,10 +22,10 @@ RobotSpec full_robot() {
   return spec;
 }
 
-/// A shape out of balance, and what is asked of it.
+/// A shape that is no equilibrium, and its load state.
 struct SystemSample : PhysicalEquations {
   explicit SystemSample(const RobotSpec& spec) : PhysicalEquations(compile(spec)) {
-    demand = {Actuation::Constant(system.actuators(), 1.2), 1};
+    load_state = {Actuation::Constant(system.actuators(), 1.2), 1};
     at.positions = model.rest + noise(model.rest.rows(), 0.1, 1);
     system.freedoms().hold(1, at.positions);
     at.multipliers = Eigen::VectorXd::Constant(system.actuators(), 0.01);
@@ -34,12 +34,12 @@ struct SystemSample : PhysicalEquations {
   }
 
   physical::Balance balance_at(const physical::Iterate& iterate) {
-    system.evaluate(iterate, demand, active, work, balance, team);
+    system.evaluate(iterate, load_state, active, work, balance, team);
     return balance;
   }
   int factorise(physical::System::Stiffness kind = physical::System::Stiffness::exact) {
     (void)balance_at(at);
-    return system.factorise(at, demand, active, balance, {kind}, work, team);
+    return system.factorise(at, load_state, active, balance, {kind}, work, team);
   }
 };
 
@@ -115,7 +115,7 @@ TEST(System, CountsUnstableDirections) {
 }
 
 /// The change of balance that the predictor assumes is that of the equations.
-TEST(System, UpsetIsTheSlopeInTheDemand) {
+TEST(System, ResidualChangeIsTheDerivativeInTheLoadState) {
   RobotSpec spec = physical_robot(mixed_robot(true).mesh);
   spec.actuators = mixed_robot(true).actuators;
   for (const char* side : {"y_low", "y_high"}) spec.fixed.push_back({{std::string(side), {}}, {false, true, false}});
@@ -124,27 +124,27 @@ TEST(System, UpsetIsTheSlopeInTheDemand) {
   spec.loads.gravity = {0, 0, -2};
   SystemSample sample(spec);
   sample.at.multipliers[1] = sample.system.measures().unit(1) * 30;
-  const physical::Demand from{values({1.1, 30, 0.95}), 0.5}, to{values({1.4, 80, 0.9}), 0.8};
-  sample.demand = from;
+  const physical::LoadState from{values({1.1, 30, 0.95}), 0.5}, to{values({1.4, 80, 0.9}), 0.8};
+  sample.load_state = from;
   (void)sample.factorise();
   sample.system.assemble(sample.at, from, sample.balance, physical::System::Stiffness::exact, sample.work, sample.team);
-  physical::Balance upset;
-  sample.system.upset(sample.at, from, to, sample.active, sample.work, upset, sample.team);
+  physical::Balance residual_change;
+  sample.system.residual_change(sample.at, from, to, sample.active, sample.work, residual_change, sample.team);
   constexpr double reach = 1e-4;
   physical::Balance sides[2];
   for (int side = 0; side < 2; ++side) {
-    const double way = side == 0 ? reach : -reach;
-    sample.demand = {from.actuation + way * (to.actuation - from.actuation),
-                     from.share + way * (to.share - from.share)};
+    const double path = side == 0 ? reach : -reach;
+    sample.load_state = {from.actuation + path * (to.actuation - from.actuation),
+                         from.load_factor + path * (to.load_factor - from.load_factor)};
     physical::Iterate iterate = sample.at;
-    iterate.multipliers[1] = sample.system.measures().unit(1) * sample.demand.actuation[1];
+    iterate.multipliers[1] = sample.system.measures().unit(1) * sample.load_state.actuation[1];
     sides[side] = sample.balance_at(iterate);
   }
   const Eigen::VectorXd force = (sides[0].force - sides[1].force) / (2 * reach);
   const Eigen::VectorXd constraint = (sides[0].constraint - sides[1].constraint) / (2 * reach);
   EXPECT_GT(force.norm(), 1e-3);
-  EXPECT_LT((upset.force - force).norm(), 1e-5 * force.norm());
-  EXPECT_LT((upset.constraint - constraint).norm(), 1e-8 * constraint.norm());
+  EXPECT_LT((residual_change.force - force).norm(), 1e-5 * force.norm());
+  EXPECT_LT((residual_change.constraint - constraint).norm(), 1e-8 * constraint.norm());
 }
 
 /// What is held moves from rest to its place, and the body is pulled along.
@@ -154,19 +154,19 @@ TEST(System, UpsetFollowsDisplacedSupports) {
   end.displacement = {2, 1, -1};
   spec.fixed.push_back(end);
   SystemSample sample(spec);
-  const physical::Demand from{Actuation(0), 0.3}, to{Actuation(0), 0.8};
-  sample.demand = from;
-  sample.system.freedoms().hold(from.share, sample.at.positions);
+  const physical::LoadState from{Actuation(0), 0.3}, to{Actuation(0), 0.8};
+  sample.load_state = from;
+  sample.system.freedoms().hold(from.load_factor, sample.at.positions);
   (void)sample.factorise();
   sample.system.assemble(sample.at, from, sample.balance, physical::System::Stiffness::exact, sample.work, sample.team);
-  physical::Balance upset;
-  sample.system.upset(sample.at, from, to, sample.active, sample.work, upset, sample.team);
+  physical::Balance residual_change;
+  sample.system.residual_change(sample.at, from, to, sample.active, sample.work, residual_change, sample.team);
   constexpr double reach = 1e-5;
   physical::Iterate high = sample.at, low = sample.at;
-  sample.system.freedoms().hold(from.share + 0.5 * reach, high.positions);
-  sample.system.freedoms().hold(from.share - 0.5 * reach, low.positions);
+  sample.system.freedoms().hold(from.load_factor + 0.5 * reach, high.positions);
+  sample.system.freedoms().hold(from.load_factor - 0.5 * reach, low.positions);
   const Eigen::VectorXd force = (sample.balance_at(high).force - sample.balance_at(low).force) / (2 * reach);
-  EXPECT_LT((upset.force - force).norm(), 1e-6 * force.norm());
+  EXPECT_LT((residual_change.force - force).norm(), 1e-6 * force.norm());
 }
 
 /// A step is taken as it is to first order: the difference falls with its square.

@@ -108,19 +108,19 @@ TEST(PhysicalVoltage, AFreeSheetFollowsItsClosedCurve) {
     const Statics statics(model);
     const ElasticLaw& law = model.elements.materials[0].elastic;
     const SheetState end = pull_in_of(law);
-    for (const double share : {0.2, 0.5, 0.8, 0.9, 0.99}) {
-      const double voltage = share * end.voltage_kV;
+    for (const double fraction : {0.2, 0.5, 0.8, 0.9, 0.99}) {
+      const double voltage = fraction * end.voltage_kV;
       const SheetState expected = sheet_under(law, voltage, end.stretch);
-      const Equilibrium found = settled(statics, values({voltage}));
+      const Equilibrium found = solve_converged(statics, values({voltage}));
       const Vec3 stretch(expected.stretch, expected.stretch, expected.across);
       const double moved = distance(model.rest * stretch.asDiagonal(), model.rest);
-      EXPECT_LT(distance(found.state.positions, model.rest * stretch.asDiagonal()), 1e-3 * moved) << share;
+      EXPECT_LT(distance(found.state.positions, model.rest * stretch.asDiagonal()), 1e-3 * moved) << fraction;
       EXPECT_EQ(found.state.multipliers[0], voltage);
     }
   }
 }
 
-/// The way stops at the maximum of the voltage and says where.
+/// The path stops at the maximum of the voltage and reports it.
 TEST(PhysicalVoltage, PullInIsALimit) {
   for (const ElasticSpec& material : {neo_hookean(0.4), neo_hookean(0.499), gent(40, 0.4), gent(8, 0.499)}) {
     const Model model = compile(free_sheet(material));
@@ -158,10 +158,10 @@ TEST(PhysicalVoltage, ChargeIsTheDerivativeOfTheEnergy) {
   const Model model = compile(free_sheet(neo_hookean(0.4)));
   const Statics statics(model);
   const double voltage = 9, step = 1e-3;
-  const Equilibrium at = settled(statics, values({voltage}));
+  const Equilibrium at = solve_converged(statics, values({voltage}));
   const ElectricLayer layer = electric_layer(model, 0, at.state.positions, voltage);
-  const double change = settled(statics, values({voltage + step})).report.energy -
-                        settled(statics, values({voltage - step})).report.energy;
+  const double change = solve_converged(statics, values({voltage + step})).report.energy -
+                        solve_converged(statics, values({voltage - step})).report.energy;
   EXPECT_NEAR(layer.charge_nC, -1e3 * change / (2 * step), 1e-5 * layer.charge_nC);  // mJ per kV are uC
   EXPECT_NEAR(layer.charge_nC, layer.capacitance_pF * voltage, 1e-9 * layer.charge_nC);
   // a flat capacitor
@@ -176,7 +176,7 @@ TEST(PhysicalVoltage, ChargeIsTheDerivativeOfTheEnergy) {
 TEST(PhysicalVoltage, AFreeLayerHasNoTotalStress) {
   const Model model = compile(free_sheet(gent(40, 0.45)));
   const Statics statics(model);
-  const Equilibrium at = settled(statics, values({10}));
+  const Equilibrium at = solve_converged(statics, values({10}));
   const ElementDeformation deformation = statics.measured(at.state);
   for (const double stress : deformation.stress.von_mises) EXPECT_LT(stress, 1e-9);
   for (const auto& stress : deformation.stress.principal)
@@ -194,7 +194,9 @@ TEST(PhysicalVoltage, SensitivitiesAreThoseOfTheEquilibria) {
 TEST(PhysicalVoltage, ElectrodesOfOneMembraneHaveVoltagesOfTheirOwn) {
   const Model model = compile(two_electrodes());
   const Statics statics(model);
-  const auto tip = [&](double left, double right) { return marker_at(model, settled(statics, values({left, right}))); };
+  const auto tip = [&](double left, double right) {
+    return marker_at(model, solve_converged(statics, values({left, right})));
+  };
   const Vec3 one = tip(3, 0), other = tip(0, 3), both = tip(3, 3);
   EXPECT_LT(one[2], 0.45);
   EXPECT_LT(both[2], one[2]);
@@ -203,25 +205,25 @@ TEST(PhysicalVoltage, ElectrodesOfOneMembraneHaveVoltagesOfTheirOwn) {
   EXPECT_NEAR(both[1], 3, 0.2 * std::abs(one[1] - 3));
 }
 
-/// A share of the voltage over all prisms is so much less voltage; prisms without any are passive.
+/// A uniform fraction of the voltage acts as a lower voltage; prisms without any are passive.
 TEST(PhysicalVoltage, SharesOfTheVoltage) {
   RobotSpec spec = free_sheet(neo_hookean(0.4));
   const std::size_t count = spec.mesh.prisms.size();
-  PrismValues shares;
+  PrismValues fractions;
   for (std::size_t e = count; e-- > 0;) {
-    shares.prisms.push_back(e);
-    shares.values.push_back(0.5);
-    shares.origins.push_back({});
+    fractions.prisms.push_back(e);
+    fractions.values.push_back(0.5);
+    fractions.origins.push_back({});
   }
-  spec.actuators[0].as<DeaSpec>()->shares = shares;
+  spec.actuators[0].as<DeaSpec>()->fractions = fractions;
   const Model halved = compile(spec);
   const Model model = compile(free_sheet(neo_hookean(0.4)));
-  const Points expected = settled(Statics(model), values({6})).state.positions;
-  EXPECT_LT(distance(settled(Statics(halved), values({12})).state.positions, expected), 1e-8);
+  const Points expected = solve_converged(Statics(model), values({6})).state.positions;
+  EXPECT_LT(distance(solve_converged(Statics(halved), values({12})).state.positions, expected), 1e-8);
 
-  for (double& share : spec.actuators[0].as<DeaSpec>()->shares->values) share = 0;
+  for (double& fraction : spec.actuators[0].as<DeaSpec>()->fractions->values) fraction = 0;
   const Model passive = compile(spec);
-  EXPECT_LT(distance(settled(Statics(passive), values({20})).state.positions, passive.rest), 1e-12);
+  EXPECT_LT(distance(solve_converged(Statics(passive), values({20})).state.positions, passive.rest), 1e-12);
 }
 
 /// A prestretched layer is one whose mesh was drawn stretched: under voltage it comes to the shape of the same layer
@@ -234,8 +236,8 @@ TEST(PhysicalVoltage, APrestretchedLayerIsDrawnStretched) {
   const Model model = compile(stretched), unstretched = compile(drawn);
   const Statics of_stretched(model), of_drawn(unstretched);
   for (const double voltage : {0.0, 8.0, 16.0}) {
-    const Equilibrium at = settled(of_stretched, values({voltage}));
-    EXPECT_LT(distance(at.state.positions, settled(of_drawn, values({voltage})).state.positions), 1e-8);
+    const Equilibrium at = solve_converged(of_stretched, values({voltage}));
+    EXPECT_LT(distance(at.state.positions, solve_converged(of_drawn, values({voltage})).state.positions), 1e-8);
     for (const double stress : of_stretched.measured(at.state).stress.von_mises) EXPECT_LT(stress, 1e-8);
   }
 }
@@ -243,11 +245,11 @@ TEST(PhysicalVoltage, APrestretchedLayerIsDrawnStretched) {
 TEST(PhysicalVoltage, EquilibriumFromAStartThatTellsItsVoltage) {
   const Model model = compile(two_electrodes());
   const Statics statics(model);
-  const Equilibrium at = settled(statics, values({3, 1}));
-  State told;
-  told.positions = at.state.positions;
-  told.multipliers = at.state.multipliers;  // and no actuation
-  const Equilibrium again = statics.solve(values({3, 1}), told, tight());
+  const Equilibrium at = solve_converged(statics, values({3, 1}));
+  State reported;
+  reported.positions = at.state.positions;
+  reported.multipliers = at.state.multipliers;  // and no actuation
+  const Equilibrium again = statics.solve(values({3, 1}), reported, tight());
   EXPECT_EQ(again.report.status, Status::converged);
   EXPECT_LT(distance(again.state.positions, at.state.positions), 1e-9);
   EXPECT_LE(again.report.iterations, 3);

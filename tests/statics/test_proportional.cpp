@@ -41,8 +41,8 @@ struct ProportionalCase {
 /// a_i = c a_i^cur, by volumes of the chamber's elements that are computed here, and their volumes so sum to a U.
 TEST(Proportional, RatiosAreInProportionToTheCurrentOnes) {
   ProportionalCase c(proportional(finger_robot(true)));
-  const double asked = 1.7;
-  (void)c.residual_at(values({asked}), c.positions);
+  const double requested = 1.7;
+  (void)c.residual_at(values({requested}), c.positions);
   const auto& set = c.system.sets().pneumatic.at(0);
   const auto volume = [&](const Points& points, Index e) {
     std::array<Vec3, 4> p;
@@ -58,10 +58,10 @@ TEST(Proportional, RatiosAreInProportionToTheCurrentOnes) {
   while (c.local.ratios[index].empty()) ++index;
   for (Index e = 0; e < set.count; ++e) {
     const double ratio = c.local.ratios[index][e / energy::lanes][e % energy::lanes];
-    EXPECT_NEAR(ratio, asked * rest / current * volume(c.positions, e) / volume(c.model.rest, e), 1e-12);
+    EXPECT_NEAR(ratio, requested * rest / current * volume(c.positions, e) / volume(c.model.rest, e), 1e-12);
     sum += ratio * volume(c.model.rest, e);
   }
-  EXPECT_NEAR(sum, asked * rest, 1e-9 * rest);
+  EXPECT_NEAR(sum, requested * rest, 1e-9 * rest);
 }
 
 TEST(Proportional, ResidualChangesAsTheDifferenceQuotientSays) {
@@ -90,17 +90,17 @@ TEST(Proportional, ResidualChangesAsTheDifferenceQuotientSays) {
   }
 }
 
-/// From rest, at R_omega = 1 and blended; and there equilibria change with the commands as differences say.
+/// Solves from rest, at R_omega = 1 and blended; sensitivities of the equilibria agree with differences.
 TEST(Proportional, NewtonFindsTheFixedPointOfAlgorithm1) {
   for (const double shape_ratio : {1.0, 0.5}) {
     const Model model = compile(proportional(mixed_robot(true, shape_ratio)));
     const Statics statics(model);
-    const Actuation asked = values({1.2, 1.5, 0.85});
-    const Equilibrium newton = settled(statics, asked);
+    const Actuation requested = values({1.2, 1.5, 0.85});
+    const Equilibrium newton = solve_converged(statics, requested);
     EXPECT_LT(newton.report.iterations, 60);
     StaticsOptions printed = tight(1e-8);
     printed.solver = Solver::local_global;
-    const Equilibrium algorithm = statics.solve(asked, statics.rest(), printed);
+    const Equilibrium algorithm = statics.solve(requested, statics.rest(), printed);
     EXPECT_EQ(algorithm.report.status, Status::converged) << algorithm.report.remark;
     EXPECT_LT(distance(newton.state.positions, algorithm.state.positions), 1e-4);
     expect_differences(model, statics, newton, 1e-6);
@@ -112,7 +112,7 @@ TEST(Proportional, NewtonFindsTheFixedPointOfAlgorithm1) {
 TEST(Proportional, IsAsTheOthersWhereAllElementsAreAlike) {
   const std::array<int, 3> cells{4, 2, 2};
   for (const Distribution distribution :
-       {Distribution::least_norm, Distribution::uniform, Distribution::proportional}) {
+       {Distribution::minimum_norm, Distribution::uniform, Distribution::proportional}) {
     Mesh mesh = block_mesh(cells, {40, 20, 20});
     add_volume_region(mesh, "chamber", [](const Vec3& p) { return p.x() < 20; });
     RobotSpec spec = block_robot(std::move(mesh));
@@ -125,7 +125,7 @@ TEST(Proportional, IsAsTheOthersWhereAllElementsAreAlike) {
     air.distribution = distribution;
     spec.actuators = {air};
     const Model model = compile(spec);
-    const Equilibrium found = settled(Statics(model), values({2}));
+    const Equilibrium found = solve_converged(Statics(model), values({2}));
     for (Index v = 0; v < model.rest.rows(); ++v)
       if (model.rest(v, 0) < 21) {
         EXPECT_LT((found.state.positions.row(v) - std::cbrt(2) * model.rest.row(v)).norm(), 1e-6) << v;

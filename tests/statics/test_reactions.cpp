@@ -87,7 +87,7 @@ struct Standing {
   std::vector<Reaction> held;
 
   Standing(const RobotSpec& spec, const Actuation& actuation)
-      : model(compile(spec)), statics(model), found(settled(statics, actuation)) {
+      : model(compile(spec)), statics(model), found(solve_converged(statics, actuation)) {
     held = reactions(model, found.state.positions, statics.measured(found.state));
   }
   explicit Standing(const RobotSpec& spec) : Standing(spec, compile(spec).rest_actuation()) {}
@@ -150,12 +150,12 @@ struct Standing {
 void expect_balance(const Standing& robot) {
   double size = 0;
   for (const Reaction& each : robot.held) size += each.force.norm();
-  const Wrench all = robot.all(), pressed = robot.pressed(false), told = robot.on_supports();
+  const Wrench all = robot.all(), pressed = robot.pressed(false), reported = robot.on_supports();
   EXPECT_LT(all.force.norm(), 1e-8 * size);
   EXPECT_LT(all.moment.norm(), 1e-8 * size * robot.model.diagonal_mm);
   EXPECT_GT(pressed.force.norm(), 1e-2 * size);
-  EXPECT_LT((told.force - pressed.force).norm(), 1e-12 * pressed.force.norm());
-  EXPECT_LT((told.moment - pressed.moment).norm(), 1e-12 * pressed.force.norm() * robot.model.diagonal_mm);
+  EXPECT_LT((reported.force - pressed.force).norm(), 1e-12 * pressed.force.norm());
+  EXPECT_LT((reported.moment - pressed.moment).norm(), 1e-12 * pressed.force.norm() * robot.model.diagonal_mm);
 }
 
 /// A quarter of a closed tube between two planes of symmetry, on a plate without friction.
@@ -364,7 +364,7 @@ TEST(Reactions, ASheetOverTheOpeningIsOfTheRobot) {
   spec.layers = {std::make_shared<const LayerSpec>(sheet)};
   const Standing robot(spec, values({20}));
   EXPECT_TRUE(robot.held[0].chambers.empty());
-  EXPECT_LT(robot.held[0].force.norm(), 1e-9);  // the wall pulls at it, and the air in the same sheet pushes
+  EXPECT_LT(robot.held[0].force.norm(), 1e-9);  // the wall's tension and the pressure on the same sheet cancel
   EXPECT_LT(robot.all().force.norm(), 1e-9);
 }
 
@@ -418,7 +418,7 @@ TEST(Reactions, DerivativesByCommandsEqualDifferences) {
     const Model model = compile(each.spec);
     const Statics statics(model);
     const Actuation at = Eigen::Map<const Eigen::VectorXd>(each.at.data(), std::ssize(each.at));
-    const Equilibrium found = settled(statics, at);
+    const Equilibrium found = solve_converged(statics, at);
     std::vector<Actuation> changes;
     for (Index a = 0; a < at.size(); ++a) changes.emplace_back(Actuation::Unit(at.size(), a));
     const ParameterSensitivity exact = statics.sensitivity_along(found.state, changes, tight(), 1e-10, true);
@@ -445,7 +445,7 @@ TEST(Reactions, DerivativesByNumbersEqualDifferences) {
       [](RobotSpec& s, double by) { s.loads.gravity.x() += by; }};
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, values({30}));
+  const Equilibrium found = solve_converged(statics, values({30}));
   for (const auto& number : numbers) {
     const auto with = [&](double by) {
       RobotSpec other = spec;
@@ -459,7 +459,7 @@ TEST(Reactions, DerivativesByNumbersEqualDifferences) {
     const auto at = [&](double by) {
       const Model other = with(by);
       const Statics of(other);
-      return of.measured(settled(of, values({30}), tight(1e-11)).state).reactions;
+      return of.measured(solve_converged(of, values({30}), tight(1e-11)).state).reactions;
     };
     constexpr double h = 1e-3;
     const Points expected = (8 * (at(h) - at(-h)) - (at(2 * h) - at(-2 * h))) / (12 * h);

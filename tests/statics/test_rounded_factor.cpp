@@ -86,7 +86,7 @@ TEST(RoundedFactor, ARefinedStepIsExact) {
   const Model model = compile(strip(50, 50));
   const physical::System system(model);
   Team team(1);
-  const physical::Demand demand{Actuation::Constant(1, 0.99), 1};
+  const physical::LoadState load_state{Actuation::Constant(1, 0.99), 1};
   const physical::Iterate at{model.rest, Eigen::VectorXd::Zero(1)};
   struct Found {
     Eigen::VectorXd step, change, refined, refined_change;
@@ -95,8 +95,8 @@ TEST(RoundedFactor, ARefinedStepIsExact) {
     physical::Workspace work(system);
     work.saddle.precision() = precision;
     physical::Balance balance;
-    system.evaluate(at, demand, {true}, work, balance, team);
-    (void)system.factorise(at, demand, {true}, balance, {.step = true}, work, team);
+    system.evaluate(at, load_state, {true}, work, balance, team);
+    (void)system.factorise(at, load_state, {true}, balance, {.step = true}, work, team);
     EXPECT_EQ(work.saddle.factor().in_double(), precision == Precision::twice);
     Found found;
     work.saddle.step(balance, found.step, found.change, team);

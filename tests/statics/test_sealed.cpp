@@ -54,9 +54,9 @@ double volume_of(const Model& model, const Equilibrium& found, std::size_t actua
 void expect_as_by_volume(const RobotSpec& by_volume, const Equilibrium& found, double tolerance = 1e-6) {
   const Model model = compile(by_volume);
   const Statics statics(model);
-  Actuation asked = found.actuation;
-  asked[0] = achieved_ratio(model, model.actuators[0], found.state.positions);
-  const Equilibrium same = statics.solve(asked, statics.rest(), tight());
+  Actuation requested = found.actuation;
+  requested[0] = achieved_ratio(model, model.actuators[0], found.state.positions);
+  const Equilibrium same = statics.solve(requested, statics.rest(), tight());
   ASSERT_EQ(same.report.status, Status::converged) << same.report.remark;
   EXPECT_NEAR(found.state.multipliers[0], same.state.multipliers[0],
               tolerance * std::abs(same.state.multipliers[0]) + 1e-8);
@@ -91,12 +91,12 @@ TEST(Sealed, BoylesLaw) {
   const Statics statics(model);
   const double rest = model.actuators[0].rest;
   EXPECT_NEAR(rest, model.actuators[0].rest_measure / 1000, 1e-15);
-  EXPECT_LT(distance(settled(statics, values({rest})).state.positions, model.rest), 1e-12);
-  for (const double share : {0.5, 1.5, 3.0, 6.0}) {
-    const Equilibrium found = settled(statics, values({share * rest}), {});
+  EXPECT_LT(distance(solve_converged(statics, values({rest})).state.positions, model.rest), 1e-12);
+  for (const double fraction : {0.5, 1.5, 3.0, 6.0}) {
+    const Equilibrium found = solve_converged(statics, values({fraction * rest}), {});
     const double absolute = found.state.multipliers[0] + atmosphere;
-    EXPECT_NEAR(absolute * volume_of(model, found) / (atmosphere * share * rest), 1, 1e-9) << share;
-    expect_as_by_volume(spec, settled(statics, values({share * rest})));
+    EXPECT_NEAR(absolute * volume_of(model, found) / (atmosphere * fraction * rest), 1, 1e-9) << fraction;
+    expect_as_by_volume(spec, solve_converged(statics, values({fraction * rest})));
   }
 }
 
@@ -114,7 +114,7 @@ TEST(Sealed, PolytropesWithASyringe) {
     EXPECT_NEAR(amount.actuators[0].rest, rest + 0.4, 1e-15);
     for (const double push : {-0.5, 0.7, 2.0, 2.9}) {
       const Statics statics(pushed);
-      const Equilibrium found = settled(statics, values({push}));
+      const Equilibrium found = solve_converged(statics, values({push}));
       const double all = rest + 0.4 + 3, whole = volume_of(pushed, found) + 0.4 + 3 - push;
       const double ratio = (found.state.multipliers[0] + atmosphere) / atmosphere;
       EXPECT_NEAR(ratio * std::pow(whole / all, exponent), 1, 1e-9);
@@ -122,7 +122,7 @@ TEST(Sealed, PolytropesWithASyringe) {
       expect_as_by_volume(spec, found);
       // as much gas as is then in the chamber and the tubes
       const double inside = (volume_of(pushed, found) + 0.4) * std::pow(ratio, 1 / exponent);
-      const Equilibrium same = settled(Statics(amount), values({inside}));
+      const Equilibrium same = solve_converged(Statics(amount), values({inside}));
       EXPECT_NEAR(same.state.multipliers[0], found.state.multipliers[0], 1e-7);
       EXPECT_LT(distance(same.state.positions, found.state.positions), 1e-7);
     }
@@ -136,9 +136,9 @@ TEST(Sealed, Liquid) {
     const Model model = compile(with_sealed(spec, water(modulus)));
     const Statics statics(model);
     const double rest = model.actuators[0].rest;
-    for (const double share : {0.8, 1.6}) {
-      const Equilibrium found = settled(statics, values({share * rest}));
-      const double pressure = 1e3 * modulus * std::log(share * rest / volume_of(model, found));
+    for (const double fraction : {0.8, 1.6}) {
+      const Equilibrium found = solve_converged(statics, values({fraction * rest}));
+      const double pressure = 1e3 * modulus * std::log(fraction * rest / volume_of(model, found));
       EXPECT_NEAR(found.state.multipliers[0], pressure, 1e-6 * std::abs(pressure)) << modulus;
       expect_as_by_volume(spec, found);
     }
@@ -146,7 +146,7 @@ TEST(Sealed, Liquid) {
   FillingSpec stiff = water(1);
   stiff.compressibility = 0;
   const Model model = compile(with_sealed(spec, stiff));
-  const Equilibrium found = settled(Statics(model), values({1.6 * model.actuators[0].rest}));
+  const Equilibrium found = solve_converged(Statics(model), values({1.6 * model.actuators[0].rest}));
   EXPECT_NEAR(volume_of(model, found), 1.6 * model.actuators[0].rest, 1e-9);
   expect_as_by_volume(spec, found);
 }
@@ -177,7 +177,7 @@ TEST(Sealed, DerivativesByNumbers) {
       {1, [](RobotSpec& s) -> double& { return *s.materials[0].elastic->youngs_modulus; }}};
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, values({1.8}), tight(1e-10));
+  const Equilibrium found = solve_converged(statics, values({1.8}), tight(1e-10));
   const auto changed = [&](const auto& number, double by) {
     RobotSpec other = spec;
     number(other) += by;
@@ -247,13 +247,13 @@ TEST(Sealed, PressedByAPlate) {
   }
 }
 
-/// Beside a tendon that rubs: in few iterations to what a chamber by volume has no reason to leave.
+/// With a tendon with friction, a sealed chamber takes few iterations to the equilibrium under volume control.
 TEST(Sealed, BesideATendonThatRubs) {
   RobotSpec spec = bending_finger();
   spec.actuators.push_back(by_load(cable("tendon", {{0, 6, 15}, {15, 6, 15}, {30, 6, 15}, {45, 6, 15}, {60, 6, 15}})));
   spec.actuators[1].as<CableSpec>()->friction = 0.4;
   const Model model = compile(with_sealed(spec)), enclosure = compile(spec);
-  const Equilibrium found = settled(Statics(model), values({1.8, 0.5}));
+  const Equilibrium found = solve_converged(Statics(model), values({1.8, 0.5}));
   EXPECT_LE(found.report.iterations, 60);
   EXPECT_NEAR((found.state.multipliers[0] + atmosphere) * volume_of(model, found), atmosphere * 1.8,
               1e-9 * atmosphere * 1.8);
@@ -265,13 +265,14 @@ TEST(Sealed, BesideATendonThatRubs) {
   EXPECT_LT(distance(held.state.positions, found.state.positions), 1e-6);
 }
 
-/// Two equal balloons on one pipe stay equal until the pressure of one has its maximum, whatever their gas does; then
-/// they are unstable in one way, and go to where both have one pressure, one below its maximum and one beyond it.
+/// Two equal balloons on one pipe stay equal until the pressure of one has its maximum, whatever the state of their
+/// gas. Then they have one unstable mode and move to where both have one pressure, one before its maximum and one
+/// beyond it.
 TEST(Sealed, TwoBalloonsOnOnePipe) {
   const RobotSpec one = balloon();
   const Model single = compile(one);
   const Statics alone(single);
-  const auto pressure = [&](double ratio) { return settled(alone, values({ratio})).state.multipliers[0]; };
+  const auto pressure = [&](double ratio) { return solve_converged(alone, values({ratio})).state.multipliers[0]; };
   // the maximum, by golden sections
   double low = 1.2, high = 8;
   constexpr double golden = 0.6180339887498949;
@@ -279,21 +280,22 @@ TEST(Sealed, TwoBalloonsOnOnePipe) {
     const double a = high - golden * (high - low), b = low + golden * (high - low);
     (pressure(a) < pressure(b) ? low : high) = pressure(a) < pressure(b) ? a : b;
   }
-  const double summit = 0.5 * (low + high), most = pressure(summit), volume = single.actuators[0].rest_measure / 1000;
-  ASSERT_LT(pressure(1.3 * summit), 0.999 * most);
+  const double limit_point = 0.5 * (low + high), most = pressure(limit_point),
+               volume = single.actuators[0].rest_measure / 1000;
+  ASSERT_LT(pressure(1.3 * limit_point), 0.999 * most);
   const Model model = compile(two_balloons(one));
   const Statics statics(model);
-  const double rest = model.actuators[0].rest, limit = 2 * volume * summit * (most + atmosphere) / atmosphere;
+  const double rest = model.actuators[0].rest, limit = 2 * volume * limit_point * (most + atmosphere) / atmosphere;
   EXPECT_NEAR(rest, 2 * volume, 1e-12);
   const auto ratios = [&](const Equilibrium& found) {
     std::vector<double> all = connected_volumes(model.actuators[0], found.state.positions);
     for (double& each : all) each /= 1000 * volume;
     return all;
   };
-  const Equilibrium below = settled(statics, values({0.9995 * limit}));
+  const Equilibrium below = solve_converged(statics, values({0.9995 * limit}));
   EXPECT_EQ(below.report.physical.unstable_modes, 0);
   EXPECT_NEAR(ratios(below)[0], ratios(below)[1], 1e-6);
-  const Equilibrium above = settled(statics, values({1.0005 * limit}));
+  const Equilibrium above = solve_converged(statics, values({1.0005 * limit}));
   EXPECT_EQ(above.report.physical.unstable_modes, 1) << above.report.remark;
   EXPECT_NEAR(ratios(above)[0], ratios(above)[1], 1e-6);
   // with the default tolerance, too, whose last steps are of a factor that is of another shape
@@ -306,8 +308,8 @@ TEST(Sealed, TwoBalloonsOnOnePipe) {
   ASSERT_EQ(unequal.report.status, Status::converged) << unequal.report.remark;
   EXPECT_EQ(unequal.report.physical.unstable_modes, 0);
   const std::vector<double> both = ratios(unequal);
-  EXPECT_LT(std::min(both[0], both[1]), summit - 0.1);
-  EXPECT_GT(std::max(both[0], both[1]), summit + 0.1);
+  EXPECT_LT(std::min(both[0], both[1]), limit_point - 0.1);
+  EXPECT_GT(std::max(both[0], both[1]), limit_point + 0.1);
   for (const double ratio : both)
     EXPECT_NEAR(pressure(ratio), unequal.state.multipliers[0], 1e-6 * unequal.state.multipliers[0]);
   EXPECT_NEAR((unequal.state.multipliers[0] + atmosphere) * (both[0] + both[1]) * volume, atmosphere * 1.1 * limit,
@@ -322,9 +324,9 @@ TEST(Sealed, PassesTheMaximumOfAPressure) {
   const double rest = model.actuators[0].rest;
   double most = 0, last = 0;
   State state = statics.rest();
-  for (const double share : {2.0, 4.0, 6.0, 9.0, 15.0}) {
-    const Equilibrium found = statics.solve(values({share * rest}), state, tight());
-    ASSERT_EQ(found.report.status, Status::converged) << share << ": " << found.report.remark;
+  for (const double fraction : {2.0, 4.0, 6.0, 9.0, 15.0}) {
+    const Equilibrium found = statics.solve(values({fraction * rest}), state, tight());
+    ASSERT_EQ(found.report.status, Status::converged) << fraction << ": " << found.report.remark;
     EXPECT_EQ(found.report.physical.unstable_modes, 0);
     state = found.state;
     last = state.multipliers[0];
@@ -334,8 +336,8 @@ TEST(Sealed, PassesTheMaximumOfAPressure) {
   EXPECT_LT(last, 0.95 * most);
 }
 
-/// In a large vessel a gas hardly differs from a pressure that is held, and an amount has its maximum, too: where the
-/// pressure of the balloon falls faster than that of the gas. It is told.
+/// In a large vessel a gas hardly differs from a constant pressure, and its amount has a limit point, too: where the
+/// pressure of the balloon falls faster than that of the gas. The limit is reported.
 TEST(Sealed, AmountThatHasItsMaximum) {
   FillingSpec vessel;
   vessel.dead_mL = 20000;

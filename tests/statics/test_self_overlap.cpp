@@ -15,8 +15,8 @@ using namespace testing;
 
 constexpr double pi = std::numbers::pi;
 
-/// A bar of 100 x 12 x 12 mm rolled up by so many laps around an axis along y, which it goes along by 8 mm a lap and
-/// away from by 3 mm a lap: where laps lie over each other, a layer of 4 mm is in both.
+/// A bar of 100 x 12 x 12 mm, rolled up by a number of laps around an axis along y. It advances along the axis by 8 mm
+/// and away from it by 3 mm per lap, so that laps overlap by a layer of 4 mm.
 constexpr double bar_length = 100, bar_width = 12, along = 8, away = 3;
 
 Points rolled(const Points& rest, double laps) {
@@ -84,8 +84,8 @@ TEST(SelfOverlap, HasThePointsThatAllElementsHold) {
   EXPECT_TRUE(std::any_of(expected.begin(), expected.end(), same));
 }
 
-/// The layer that two laps share is 4 mm thick, and leans by the way along the axis in a lap; no point is deeper, and
-/// those on its sides that lie amid the radial width are as deep.
+/// The layer in which two laps overlap is 4 mm thick, and is inclined by the axial advance per lap. No point is deeper,
+/// and those on its sides in the middle of the radial width are as deep.
 TEST(SelfOverlap, IsAsDeepAsTheLapsLieInEachOther) {
   for (const auto& [model, name] : {std::pair(bar(), "tetrahedra"), std::pair(bar(Split::prisms), "prisms"),
                                     std::pair(bar(Split::six, true), "order 2")}) {

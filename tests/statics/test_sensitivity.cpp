@@ -117,7 +117,7 @@ TEST(Sensitivity, ForcesAtPlacesOfTheRobot) {
     EXPECT_FALSE(model.actuators[5].as<ForceCommand>()->faces.empty());
     const Statics statics(model);
     for (const Actuation& commands : {model.rest_actuation(), values({1.2, 0.3, -0.2, 0.5, 0.1, -0.3})})
-      expect_differences(model, statics, settled(statics, commands), 1e-6, {5e-4, 1e-3, 1e-2});
+      expect_differences(model, statics, solve_converged(statics, commands), 1e-6, {5e-4, 1e-3, 1e-2});
   }
 }
 
@@ -125,12 +125,12 @@ TEST(Sensitivity, ForcesAtPlacesOfTheRobot) {
 TEST(Sensitivity, CommandedForcesDoAsOthers) {
   RobotSpec spec = pushed_finger();
   const Model commanded = compile(spec);
-  const Equilibrium found = settled(Statics(commanded), values({1.2, 0.3, -0.2, 0.5, 0.1, -0.3}));
+  const Equilibrium found = solve_converged(Statics(commanded), values({1.2, 0.3, -0.2, 0.5, 0.1, -0.3}));
   spec.loads.forces[0].force = {0.3, -0.2, 0.5};
   spec.loads.forces[1].force = {0.1, 0.5, -0.3};
   for (ForceSpec& force : spec.loads.forces) force.range.reset();
   const Model held = compile(spec);
-  const Equilibrium expected = settled(Statics(held), values({1.2}));
+  const Equilibrium expected = solve_converged(Statics(held), values({1.2}));
   EXPECT_LT((found.state.positions - expected.state.positions).cwiseAbs().maxCoeff(), 1e-6);
 }
 
@@ -141,7 +141,7 @@ TEST(Sensitivity, LargeBend) {
     if (by_pressure) spec.actuators = {by_load(spec.actuators[0])};
     const Model model = compile(spec);
     const Statics statics(model);
-    const Equilibrium at = settled(statics, values({by_pressure ? 340.0 : 6.0}));
+    const Equilibrium at = solve_converged(statics, values({by_pressure ? 340.0 : 6.0}));
     EXPECT_LT(marker_at(model, at)[2], -65);
     expect_differences(model, statics, at, 1e-6, {5e-3, 0, 0.2});
   }
@@ -155,7 +155,7 @@ TEST(Sensitivity, ManyActuatorsWithRigidRegionsLoadsAndADisplacedSupport) {
   const Model model = compile(spec);
   const Statics statics(model);
   for (const Actuation& actuation : {values({1.0, 0, 1.0, 0.99, 0.01}), values({1.5, 40, 1.1, 0.9, 0.3})})
-    expect_differences(model, statics, settled(statics, actuation), 1e-6);
+    expect_differences(model, statics, solve_converged(statics, actuation), 1e-6);
 }
 
 /// A rigid end that its support lets turn about one axis only.
@@ -173,7 +173,7 @@ TEST(Sensitivity, ASlackCableChangesNothing) {
   spec.actuators.push_back(cable("tendon", {{2, 6, 1}, {30, 6, 1}, {58, 6, 1}}));
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium at = settled(statics, values({1.5, 1.4}));
+  const Equilibrium at = solve_converged(statics, values({1.5, 1.4}));
   ASSERT_EQ(at.state.multipliers[1], 0);
   const Sensitivity found = statics.sensitivity(at.state);
   EXPECT_TRUE(found.regular);
@@ -191,7 +191,7 @@ TEST(Sensitivity, ACableOnTheVergeIsTaut) {
   spec.actuators.push_back(cable("tendon", {{2, 6, 1}, {30, 6, 1}, {58, 6, 1}}));
   const Model model = compile(spec);
   const Statics statics(model);
-  Equilibrium at = settled(statics, values({1.5, 1.4}));
+  Equilibrium at = solve_converged(statics, values({1.5, 1.4}));
   at.state.actuation[1] = achieved_ratio(model, model.actuators[1], at.state.positions);
   const Sensitivity found = statics.sensitivity(at.state);
   const Difference expected = one_sided(statics, at.state, 1, -1e-3);
@@ -206,7 +206,7 @@ TEST(Sensitivity, WhereOnlyTheConstraintMakesItStable) {
   spec.materials[0].elastic = elastic(Law::mooney_rivlin, 0.1, 0.45);
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium at = settled(statics, values({7.0, 1.1}));
+  const Equilibrium at = solve_converged(statics, values({7.0, 1.1}));
   expect_differences(model, statics, at, 1e-6);
 }
 
@@ -240,13 +240,13 @@ TEST(Sensitivity, DoesNotDependOnThreads) {
   }
 }
 
-/// A sensitivity asked for on the way leaves the next equilibrium where it is.
+/// A sensitivity that is computed between two solves does not change the next equilibrium.
 TEST(Sensitivity, LeavesSolvesAlone) {
   const Model model = compile(chambers_beam(2));
   const Statics statics(model), other(model);
   State state = statics.rest(), undisturbed = state;
   for (const double volume : {1.2, 1.5, 1.6}) {
-    (void)statics.sensitivity(settled(statics, values({volume, 1.0})).state);
+    (void)statics.sensitivity(solve_converged(statics, values({volume, 1.0})).state);
     const Equilibrium found = statics.solve(values({volume, 1.1}), state, tight());
     (void)statics.sensitivity(found.state);
     const Equilibrium expected = other.solve(values({volume, 1.1}), undisturbed, tight());
@@ -262,7 +262,7 @@ TEST(Sensitivity, WithoutActuators) {
   spec.loads.forces.push_back({"payload", {std::string("x_high"), {}}, {0, 0, -0.01}});
   const Model model = compile(spec);
   const Statics statics(model);
-  Equilibrium at = settled(statics, {});
+  Equilibrium at = solve_converged(statics, {});
   const Sensitivity found = statics.sensitivity(at.state);
   EXPECT_TRUE(found.regular);
   EXPECT_TRUE(found.positions.empty());
@@ -276,7 +276,7 @@ TEST(Sensitivity, DependentConstraintsAreNotRegular) {
   spec.actuators[1].name = "twin";
   const Model twins = compile(spec);
   const Statics statics(twins);
-  Equilibrium at = settled(statics, values({0.9, 0.9}));
+  Equilibrium at = solve_converged(statics, values({0.9, 0.9}));
   at.state.multipliers.setConstant(at.state.multipliers.sum() / 2);
   expect_zero(statics.sensitivity(at.state), twins);
   expect_zero(statics.sensitivity(at.state, anew()), twins);
@@ -285,24 +285,24 @@ TEST(Sensitivity, DependentConstraintsAreNotRegular) {
   held.fixed = {{{Box{{-1, -1, -1}, {100, 100, 100}}, {}}}};
   const Model stiff = compile(held);
   const Statics stiff_statics(stiff);
-  expect_zero(stiff_statics.sensitivity(settled(stiff_statics, values({1.0})).state), stiff);
+  expect_zero(stiff_statics.sensitivity(solve_converged(stiff_statics, values({1.0})).state), stiff);
 }
 
 /// A beam pressed shorter until its stiffness is singular, to the last digit: there is no derivative.
 TEST(Sensitivity, SingularStiffnessIsNotRegular) {
   RobotSpec spec = cable_beam();
-  spec.actuators = {by_load(cable("askew", {{0, 3, 9}, {30, 4, 8}, {60, 2, 7}}))};  // pulls at every mode
+  spec.actuators = {by_load(cable("askew", {{0, 3, 9}, {30, 4, 8}, {60, 2, 7}}))};  // loads every mode
   const Model model = compile(spec);
   const physical::System system(model);
   physical::Workspace work(system);
   Team team(1);
   physical::Iterate at{model.rest, Eigen::VectorXd::Zero(1)};
-  const physical::Demand demand{values({0}), 1};
+  const physical::LoadState load_state{values({0}), 1};
   const auto press = [&](double length) { at.positions = model.rest * Eigen::Vector3d(length, 1, 1).asDiagonal(); };
   const auto modes = [&] {
     physical::Balance balance;
-    system.evaluate(at, demand, {false}, work, balance, team);
-    return system.factorise(at, demand, {false}, balance, {}, work, team);
+    system.evaluate(at, load_state, {false}, work, balance, team);
+    return system.factorise(at, load_state, {false}, balance, {}, work, team);
   };
   double unstable = 0.5, stable = 1;
   press(unstable);
@@ -312,7 +312,7 @@ TEST(Sensitivity, SingularStiffnessIsNotRegular) {
     (modes() > 0 ? unstable : stable) = 0.5 * (unstable + stable);
   }
   const Statics statics(model);
-  State state{{}, demand.actuation, Eigen::VectorXd::Zero(1)};
+  State state{{}, load_state.actuation, Eigen::VectorXd::Zero(1)};
   for (const double length : {stable, unstable}) {
     press(length);
     state.positions = at.positions;
@@ -328,7 +328,7 @@ TEST(Sensitivity, SingularStiffnessIsNotRegular) {
 TEST(Sensitivity, RefusesWhatItCannotKnow) {
   const Model model = compile(cable_beam());
   const Statics statics(model);
-  const State good = settled(statics, values({0.9, 1.0})).state;
+  const State good = solve_converged(statics, values({0.9, 1.0})).state;
   const auto refused = [&](const std::function<void(State&)>& spoil) {
     State state = good;
     spoil(state);
@@ -340,13 +340,13 @@ TEST(Sensitivity, RefusesWhatItCannotKnow) {
   refused([](State& s) { s.positions.conservativeResize(3, 3); });
   refused([](State& s) { s.positions(4, 1) = NAN; });
   refused([](State& s) { s.multipliers[0] = INFINITY; });
-  refused([](State& s) { s.share = NAN; });
+  refused([](State& s) { s.load_factor = NAN; });
   StaticsOptions options;
   options.threads = -1;
   EXPECT_THROW((void)statics.sensitivity(good, options), InvalidInput);
 }
 
-/// What was solved before with the same object leaves no trace where it is told not to.
+/// Earlier solves with the same object have no influence where reuse is disabled.
 TEST(Sensitivity, WithoutReuseNothingDependsOnEarlierSolves) {
   const Model model = compile(crowded_robot());
   const Statics used(model), fresh(model);
@@ -360,10 +360,10 @@ TEST(Sensitivity, WithoutReuseNothingDependsOnEarlierSolves) {
   EXPECT_NE(reused.positions[0], expected.positions[0]);  // another factor, other rounding
   expect_same(used.sensitivity(state, anew()), expected, 0);
   state = used.solve(values({1.22, 11, 1.05, 0.965, 0.1}), state, tight()).state;
-  const Actuation asked = values({1.25, 12, 1.05, 0.96, 0.1});
+  const Actuation requested = values({1.25, 12, 1.05, 0.96, 0.1});
   for (const bool from_rest : {false, true}) {
     const State start = from_rest ? used.rest() : state;
-    const Equilibrium a = used.solve(asked, start, anew()), b = fresh.solve(asked, start, anew());
+    const Equilibrium a = used.solve(requested, start, anew()), b = fresh.solve(requested, start, anew());
     EXPECT_EQ(a.state.positions, b.state.positions);
     EXPECT_EQ(a.state.multipliers, b.state.multipliers);
     EXPECT_EQ(a.report.iterations, b.report.iterations);

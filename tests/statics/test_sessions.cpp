@@ -18,14 +18,14 @@ std::ptrdiff_t threads_now() {
   return std::distance(std::filesystem::directory_iterator("/proc/self/task"), std::filesystem::directory_iterator());
 }
 
-/// Has this process so many threads? One that has ended may be listed for a moment.
+/// Returns if this process has a number of threads. One that has ended may be listed for a moment.
 bool has_threads(std::ptrdiff_t count) {
   for (int wait = 0; wait < 500 && threads_now() != count; ++wait)
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   return threads_now() == count;
 }
 
-/// Equilibria on the way of the first actuator from rest to a ratio, each from the last.
+/// Returns equilibria on the path of the first actuator from rest to a ratio, each solved from the last.
 std::vector<Points> walk_to(const Model& model, const Statics& statics, double ratio, const StaticsOptions& options) {
   std::vector<Points> shapes;
   Actuation command = model.rest_actuation();
@@ -61,11 +61,11 @@ TEST(Sessions, SeveralThreadsAtOnceGetWhatOneAfterAnotherGets) {
         for (std::size_t i = 0; i < ratios.size(); ++i)
           users.emplace_back([&, i] { at_once[i] = walk_to(model, shared, ratios[i], options); });
         for (std::thread& user : users) user.join();
-        // a factor that is used again may by then have gone to another thread, which shows in the last digits
-        const double share = reuse ? 1e-6 : 0;
+        // a factor that is used again may by then belong to another thread, which changes the last digits
+        const double fraction = reuse ? 1e-6 : 0;
         for (std::size_t i = 0; i < ratios.size(); ++i)
           for (std::size_t s = 0; s < one_by_one[i].size(); ++s)
-            EXPECT_LE((at_once[i][s] - one_by_one[i][s]).norm(), share * one_by_one[i][s].norm())
+            EXPECT_LE((at_once[i][s] - one_by_one[i][s]).norm(), fraction * one_by_one[i][s].norm())
                 << threads << " threads, walk " << i << ", shape " << s << (reuse ? ", factors reused" : "");
       }
 }

@@ -30,19 +30,19 @@ RobotSpec together(const RobotSpec& spec, const std::vector<Placement>& places) 
 }
 
 /// Solves a robot alone with each actuation and as many of it together, one at each place. close: over the diagonal
-void expect_alike(const RobotSpec& spec, const std::vector<Placement>& places, const std::vector<Actuation>& asked,
+void expect_alike(const RobotSpec& spec, const std::vector<Placement>& places, const std::vector<Actuation>& requested,
                   double close = 1e-9) {
   const Model alone = compile(spec), all = compile(together(spec, places));
   const Statics one(alone), whole(all);
   Actuation every(alone.actuators.size() * places.size());
   for (std::size_t i = 0; i < places.size(); ++i)
-    every.segment(static_cast<Index>(i) * asked[i].size(), asked[i].size()) = asked[i];
+    every.segment(static_cast<Index>(i) * requested[i].size(), requested[i].size()) = requested[i];
   const Equilibrium found = whole.solve(every, {all.rest}, tight());
   ASSERT_EQ(found.report.status, Status::converged) << found.report.remark;
   const Index count = alone.rest.rows();
   ASSERT_EQ(all.rest.rows(), count * static_cast<Index>(places.size()));
   for (std::size_t i = 0; i < places.size(); ++i) {
-    const Equilibrium expected = one.solve(asked[i], {alone.rest}, tight());
+    const Equilibrium expected = one.solve(requested[i], {alone.rest}, tight());
     ASSERT_EQ(expected.report.status, Status::converged) << expected.report.remark;
     const Points& shape = expected.state.positions;
     EXPECT_GT((shape - alone.rest).rowwise().norm().maxCoeff(), 0.02 * alone.diagonal_mm);
@@ -147,7 +147,7 @@ TEST(SeveralRobots, ThatPressEachOtherAreInBalance) {
     spec.contact->self = false;  // holds of each alone
     const Model model = compile(spec), one = compile(blocks.robot());
     const Statics statics(model);
-    const Equilibrium found = settled(statics, {}, tight());
+    const Equilibrium found = solve_converged(statics, {}, tight());
     const ElementDeformation measured = statics.measured(found.state);
     ASSERT_TRUE(measured.contacts.has_value());
     ASSERT_EQ(measured.contacts->pairs.size(), 1u);
@@ -169,7 +169,7 @@ TEST(SeveralRobots, ThatPressEachOtherAreInBalance) {
     EXPECT_LT(moment.norm(), 1e-8 * load * StackedBlocks::size);
     // two blocks of one mesh, which may touch itself
     const Statics single(one);
-    const Equilibrium alone = settled(single, {}, tight());
+    const Equilibrium alone = solve_converged(single, {}, tight());
     EXPECT_NEAR(reaction_of(one, single, alone, 0).z(), load, 1e-8 * load);
     ASSERT_EQ(alone.state.positions.rows(), found.state.positions.rows());
     if (quadratic) continue;  // its vertices stand in another order
@@ -182,7 +182,7 @@ TEST(SeveralRobots, ThatStandCloseToEachOtherPressFromTheStart) {
   const StackedBlocks blocks{0.1, 0.05, 0};
   const Model model = compile(two_robots(blocks));
   const Statics statics(model);
-  const Equilibrium found = settled(statics, {}, tight());
+  const Equilibrium found = solve_converged(statics, {}, tight());
   const double load = reaction_of(model, statics, found, 0).z();
   double below = 0, above = 2 * StackedBlocks::size;
   for (Index v = 0; v < model.rest.rows(); ++v) {

@@ -40,9 +40,9 @@ RobotSpec squeezed_pillow(const Pillow& made, double height) {
   return spec;
 }
 
-/// Of two discs that do not stretch, inflated between plates: no film is pulled around the axis, so that a meridian's
-/// tension times the distance x from it stays the same, and sin(slope) = (x^2 - a^2) / (r^2 - a^2) outside of the flat
-/// middle of radius a, on which a plate bears the pressure.
+/// Two inextensible discs, inflated between plates: the film has no hoop tension, so that a meridian's tension times
+/// its distance x from the axis is constant, and sin(slope) = (x^2 - a^2) / (r^2 - a^2) outside of the flat middle of
+/// radius a, where a plate carries the pressure.
 struct SqueezedMylar {
   double flat = 0, volume = 0;  // a [mm], [mm^3]
 
@@ -69,8 +69,8 @@ struct SqueezedMylar {
     for (int i = 0; i < steps; ++i) {
       const double width = std::numbers::pi / 2 / steps, slope = (i + 0.5) * width;
       const double x = std::sqrt(flat * flat + (1 - flat * flat) * std::sin(slope));
-      const double way = (1 - flat * flat) / (2 * x) * width, rise = way * std::sin(slope);
-      length += way;
+      const double path = (1 - flat * flat) / (2 * x) * width, rise = path * std::sin(slope);
+      length += path;
       half += rise;
       volume += 2 * std::numbers::pi * x * x * rise;
     }
@@ -100,7 +100,7 @@ TEST(SheetContact, PlatesBearThePressureOfWhatLiesOnThem) {
   for (const double height : {84.0, 60.0, 36.0}) {
     const Model model = compile(squeezed_pillow(made, height));
     const Statics statics(model);
-    const Equilibrium found = settled(statics, inflated(model));
+    const Equilibrium found = solve_converged(statics, inflated(model));
     const SqueezedMylar known(height);
     const PairForces above = pair_of(model, statics, found, "robot", "above"),
                      below = pair_of(model, statics, found, "robot", "below");
@@ -119,7 +119,7 @@ TEST(SheetContact, WhatIsPressedFollowsTheRateOfForceWithThePlate) {
   const Model model = compile(squeezed_pillow(made, 60));
   const Statics statics(model);
   Actuation commands = inflated(model);
-  const Equilibrium before = settled(statics, commands);
+  const Equilibrium before = solve_converged(statics, commands);
   commands[1] = -4;  // above
   const Equilibrium found = statics.solve(commands, before.state, {}, {});
   ASSERT_EQ(found.report.status, Status::converged);
@@ -178,13 +178,13 @@ TEST(SheetContact, PillowsThatPressEachOtherAreFlatAsOnAPlate) {
   spec.contact->distance_mm = 0.1;
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, Actuation::Constant(2, pressure_kPa));
+  const Equilibrium found = solve_converged(statics, Actuation::Constant(2, pressure_kPa));
 
   RobotSpec single = squeezed_pillow(made, apart);
   single.contact->obstacles.resize(1);
   const Model alone = compile(single);
   const Statics alone_statics(alone);
-  const Equilibrium like = settled(alone_statics, inflated(alone));
+  const Equilibrium like = solve_converged(alone_statics, inflated(alone));
   const PairForces on_plate = pair_of(alone, alone_statics, like, "robot", "above");
   const PairForces between = pair_of(model, statics, found, "robot", "robot");
   EXPECT_GT(on_plate.normal_N, 5);
@@ -243,7 +243,7 @@ TEST(SheetContact, AFilmOnABodyLiftsWhatLiesOnIt) {
   spec.contact->obstacles = {plate("above", top + 6, -1)};
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, inflated(model, kPa));
+  const Equilibrium found = solve_converged(statics, inflated(model, kPa));
   const PairForces pressed = pair_of(model, statics, found, "robot", "above");
   EXPECT_GT(pressed.normal_N, 1);
   EXPECT_NEAR(pressed.pressure_kPa, kPa, 0.15 * kPa);  // of one vertex

@@ -46,7 +46,7 @@ TEST(Sheets, DiscsBecomeMylarBalloons) {
   const Model model = compile(film_robot(made));
   ASSERT_TRUE(flat_at_rest(model.actuators[0]));
   const Statics statics(model);
-  const Equilibrium found = settled(statics, Actuation::Constant(1, 1.0));
+  const Equilibrium found = solve_converged(statics, Actuation::Constant(1, 1.0));
   EXPECT_EQ(found.report.physical.unstable_modes, 0);
   EXPECT_NEAR(across(made, found.state.positions), known.height * radius, 0.02 * known.height * radius);
   const double volume = enclosed_volume(found.state.positions, model.actuators[0].as<ChamberDrive>()->cavity);
@@ -62,7 +62,7 @@ TEST(Sheets, DiscsBecomeMylarBalloons) {
 TEST(Sheets, WithoutLoadsTheyLieAsTheyWereCut) {
   const Pillow made = pillow(disc(50, 4));
   const Model model = compile(film_robot(made));
-  const Equilibrium found = settled(Statics(model), Actuation::Constant(1, 0.0));
+  const Equilibrium found = solve_converged(Statics(model), Actuation::Constant(1, 0.0));
   EXPECT_EQ(found.state.positions, model.rest);
 }
 
@@ -70,7 +70,7 @@ TEST(Sheets, GasOfABagFollowsBoyle) {
   const Pillow made = pillow(disc(100, 6));
   const Model model = compile(film_robot(made, Control::filling, 2000));
   constexpr double amount_mL = 1300, atmosphere_kPa = 101.325;
-  const Equilibrium found = settled(Statics(model), Actuation::Constant(1, amount_mL));
+  const Equilibrium found = solve_converged(Statics(model), Actuation::Constant(1, amount_mL));
   const double volume_mL = enclosed_volume(found.state.positions, model.actuators[0].as<ChamberDrive>()->cavity) / 1000;
   EXPECT_GT(found.state.multipliers[0], 1);
   EXPECT_NEAR((found.state.multipliers[0] + atmosphere_kPa) * volume_mL, atmosphere_kPa * amount_mL,
@@ -123,7 +123,7 @@ TEST(Sheets, ABalloonOfRubberBearsWhatItsLawSays) {
   }
 }
 
-/// A rectangle of squares cut by their diagonals, either way, of a film that bends; order 2.
+/// A rectangle of squares, divided by either diagonal, of a film with bending stiffness; order 2.
 RobotSpec bending_sheet(const Vec3& from, const Vec3& to, int along, int across, double thickness_mm, double modulus,
                         double nu) {
   RobotSpec spec;
@@ -134,8 +134,8 @@ RobotSpec bending_sheet(const Vec3& from, const Vec3& to, int along, int across,
   const auto place = [&](int i, int j) { return static_cast<Index>(i * (across + 1) + j); };
   for (int i = 0; i <= along; ++i)
     for (int j = 0; j <= across; ++j) {
-      const Vec3 share(static_cast<double>(i) / along, static_cast<double>(j) / across, 0);
-      spec.mesh.vertices.row(place(i, j)) = (from + share.cwiseProduct(to - from)).transpose();
+      const Vec3 fraction(static_cast<double>(i) / along, static_cast<double>(j) / across, 0);
+      spec.mesh.vertices.row(place(i, j)) = (from + fraction.cwiseProduct(to - from)).transpose();
       if (i == along || j == across) continue;
       const Index a = place(i, j), b = place(i + 1, j), c = place(i + 1, j + 1), d = place(i, j + 1);
       if ((i + j) % 2 == 0)
@@ -178,7 +178,7 @@ TEST(Sheets, ThatBendSinkAsKirchhoffSays) {
   const Model model = compile(spec);
   EXPECT_EQ(order_of(model), 2);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, model.rest_actuation());
+  const Equilibrium found = solve_converged(statics, model.rest_actuation());
   const double load = density * 1e-9 * 9.81 * thickness;  // [N/mm^2]
   const double rigidity = modulus * std::pow(thickness, 3) / (12 * (1 - nu * nu));
   const double sinks = 0.0040624 * load * std::pow(side, 4) / rigidity;
@@ -202,7 +202,7 @@ TEST(Sheets, ThatBendFollowTheElastica) {
     end.force = {0, 0, -times * rigidity / (length * length)};
     spec.loads.forces = {end};
     const Model model = compile(spec);
-    const Equilibrium found = settled(Statics(model), model.rest_actuation());
+    const Equilibrium found = solve_converged(Statics(model), model.rest_actuation());
     const Vec3 tip = marker_at(model, found);
     EXPECT_NEAR(-tip[2], sinks * length, 0.01 * sinks * length) << times;
     EXPECT_NEAR(length - tip[0], shortens * length, 0.01 * length) << times;
@@ -247,7 +247,7 @@ TEST(Sheets, HangOnABodyAndPullIt) {
   }
   spec.markers = {{"end", {Vec3(30, 5, 10), {}}}};
   const Model model = compile(spec);
-  const Equilibrium found = settled(Statics(model), model.rest_actuation());
+  const Equilibrium found = solve_converged(Statics(model), model.rest_actuation());
   const double moved = model.markers[0].at(found.state.positions).x() - 30;
   // S = E (s^2 - 1) / 2 along it, force = width thickness s S
   const double s = 1 + moved / 20;

@@ -6,7 +6,7 @@
 #include "statics/contact_scenes.hpp"
 #include "statics/physical_samples.hpp"
 
-/// A solve that is stopped, at any instant, gives the last equilibrium on its way, from which another one goes on.
+/// A solve that is stopped at any instant returns the last equilibrium on its path, from which another solve continues.
 
 namespace softkin {
 
@@ -20,35 +20,36 @@ StaticsOptions traced() {
   return options;
 }
 
-/// Stops after so many looks at the progress.
-Equilibrium stopped_after(const Statics& statics, const Actuation& asked, int looks, const State& start,
+/// Stops after a number of calls of the progress callback.
+Equilibrium stopped_after(const Statics& statics, const Actuation& requested, int looks, const State& start,
                           const StaticsOptions& options = tight(1e-8)) {
   statics.forget();
-  return statics.solve(asked, start, options, [looks](const Progress&) mutable { return looks-- > 0; });
+  return statics.solve(requested, start, options, [looks](const Progress&) mutable { return looks-- > 0; });
 }
 
-/// At every instant: what is there is an equilibrium of what it says, and the way on leads where the whole one led.
-void expect_stoppable(const RobotSpec& spec, const Actuation& asked, double within_mm) {
+/// Checks at every instant that the state is an equilibrium of its load state, and that the rest of the path has the
+/// same end.
+void expect_stoppable(const RobotSpec& spec, const Actuation& requested, double within_mm) {
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium whole = statics.solve(asked, statics.rest(), traced());
+  const Equilibrium whole = statics.solve(requested, statics.rest(), traced());
   ASSERT_EQ(whole.report.status, Status::converged) << whole.report.remark;
-  int between = 0;  // of the stopped ones, with a part of the way done
+  int between = 0;  // of the stopped ones, with a part of the path completed
   for (int looks = 0;; ++looks) {
-    const Equilibrium part = stopped_after(statics, asked, looks, statics.rest());
+    const Equilibrium part = stopped_after(statics, requested, looks, statics.rest());
     if (!part.report.stopped) {
       EXPECT_GT(looks, 3);
       break;
     }
     ASSERT_EQ(part.report.status, Status::interrupted) << looks;
-    ASSERT_TRUE(part.state.knows(asked.size())) << looks;
+    ASSERT_TRUE(part.state.knows(requested.size())) << looks;
     EXPECT_TRUE(part.state.positions.allFinite());
     between += part.report.reached > 0 && part.report.reached < 1;
     statics.forget();
-    const Equilibrium on = statics.solve(asked, part.state, tight(1e-8));
+    const Equilibrium on = statics.solve(requested, part.state, tight(1e-8));
     ASSERT_EQ(on.report.status, Status::converged) << looks << ": " << on.report.remark;
     EXPECT_LT(distance(on.state.positions, whole.state.positions), within_mm) << looks;
-    if (part.state.share < 1) continue;  // else it can be asked for itself
+    if (part.state.load_factor < 1) continue;  // an equilibrium at the full load factor can be solved for itself
     const Equilibrium same = statics.solve(part.state.actuation, part.state, tight(1e-8));
     EXPECT_LT(distance(same.state.positions, part.state.positions), within_mm) << looks;
   }
@@ -59,17 +60,17 @@ TEST(Stopped, AtAnyInstantOfALength) {
   expect_stoppable(cable_beam(), values({0.6, 1.5}), 1e-5);
 }
 
-/// On the way along the volume to the maximum of its pressure, too.
+/// A solve can be stopped, too, during measure-controlled continuation to the maximum of the pressure.
 TEST(Stopped, AtAnyInstantOfTheSearchForAMaximum) {
   RobotSpec spec = bending_finger();
   spec.materials[0].elastic = elastic(Law::neo_hookean, 0.1, 0.45);
   spec.actuators[0] = by_load(spec.actuators[0]);
   const Model model = compile(spec);
   const Statics statics(model);
-  const Actuation asked = values({1000});
+  const Actuation requested = values({1000});
   double most = 0;
   for (int looks = 0;; looks += 11) {
-    const Equilibrium part = stopped_after(statics, asked, looks, statics.rest());
+    const Equilibrium part = stopped_after(statics, requested, looks, statics.rest());
     if (!part.report.stopped) break;
     ASSERT_TRUE(part.state.knows(1)) << looks;
     EXPECT_GE(part.state.actuation[0], most) << "what was found is lost";
@@ -83,19 +84,19 @@ TEST(Stopped, AtAnyInstantOfTheSearchForAMaximum) {
   EXPECT_GT(most, 0);
 }
 
-/// Of a large robot a factorisation takes seconds: along what a load does, up and back, whoever asks is heard before
-/// each, but for one more that counts the ways in which an answer is unstable.
+/// A factorisation of a large robot takes seconds: continuation, up to a load and back, polls for cancellation before
+/// each of them, except for one more that counts the unstable modes of an answer.
 TEST(Stopped, WithinOneFactorisation) {
   RobotSpec pressed = bending_finger(), onto = BlockOnFloor{0.05, 0.03, 0.3}.robot();
   pressed.materials[0].elastic = elastic(Law::neo_hookean, 0.1, 0.45);
   pressed.actuators[0] = by_load(pressed.actuators[0]);
   StaticsOptions beyond = tight(1e-8);
   beyond.beyond = 4;
-  const auto expect_heard = [](const Statics& statics, const Actuation& asked, const State& start,
+  const auto expect_heard = [](const Statics& statics, const Actuation& requested, const State& start,
                                const StaticsOptions& options = tight(1e-8)) {
     int before = 0;
     for (int looks = 0;; ++looks) {
-      const Equilibrium part = stopped_after(statics, asked, looks, start, options);
+      const Equilibrium part = stopped_after(statics, requested, looks, start, options);
       EXPECT_LE(part.report.factorisations, before + 1 + (part.report.physical.unstable_modes > 0)) << looks;
       before = part.report.factorisations;
       if (!part.report.stopped) break;
@@ -103,37 +104,37 @@ TEST(Stopped, WithinOneFactorisation) {
     EXPECT_GT(before, 3);
   };
   const Model by_load_model = compile(pressed);
-  const Statics climbs(by_load_model);
-  expect_heard(climbs, values({1000}), climbs.rest());
-  const Equilibrium far = climbs.solve(values({1000}), climbs.rest(), beyond);
+  const Statics by_measure(by_load_model);
+  expect_heard(by_measure, values({1000}), by_measure.rest());
+  const Equilibrium far = by_measure.solve(values({1000}), by_measure.rest(), beyond);
   ASSERT_EQ(far.report.physical.unstable_modes, 1) << far.report.remark;
-  expect_heard(climbs, 1.01 * far.state.actuation, far.state, beyond);
-  for (const auto& [spec, asked] : {std::pair{cable_beam(), values({0.6, 1.5})}, std::pair{onto, Actuation(0)}}) {
+  expect_heard(by_measure, 1.01 * far.state.actuation, far.state, beyond);
+  for (const auto& [spec, requested] : {std::pair{cable_beam(), values({0.6, 1.5})}, std::pair{onto, Actuation(0)}}) {
     const Model model = compile(spec);
     const Statics statics(model);
-    expect_heard(statics, asked, statics.rest());
+    expect_heard(statics, requested, statics.rest());
   }
 }
 
-/// As a callback throws at every instant: what is asked next is answered as by a solver that is new.
-void expect_unharmed_by_exceptions(const RobotSpec& spec, const Actuation& asked) {
+/// A callback throws at every instant: the next solve gives the same result as a new solver.
+void expect_unharmed_by_exceptions(const RobotSpec& spec, const Actuation& requested) {
   struct Thrown {};
   const Model model = compile(spec);
-  const Equilibrium whole = settled(Statics(model), asked);
+  const Equilibrium whole = solve_converged(Statics(model), requested);
   ASSERT_EQ(whole.report.status, Status::converged) << whole.report.remark;
   const Statics statics(model);
   int looks = 0;
   for (bool thrown = true; thrown; ++looks) {
     thrown = false;
     try {
-      (void)statics.solve(asked, statics.rest(), tight(), [left = looks](const Progress&) mutable {
+      (void)statics.solve(requested, statics.rest(), tight(), [left = looks](const Progress&) mutable {
         if (left-- == 0) throw Thrown{};
         return true;
       });
     } catch (const Thrown&) {
       thrown = true;
     }
-    const Equilibrium again = settled(statics, asked);
+    const Equilibrium again = solve_converged(statics, requested);
     ASSERT_EQ(again.state.positions, whole.state.positions) << looks;
     ASSERT_EQ(again.report.iterations, whole.report.iterations) << looks;
   }
@@ -166,7 +167,7 @@ TEST(Stopped, ByItsDeadlineItIsNotConvergedAndSaysSo) {
   EXPECT_FALSE(Deadline(HUGE_VAL).any());
 }
 
-/// Who is asked may look at the same deadline, which passes while they are.
+/// The callback may read the same deadline, which passes meanwhile.
 TEST(Stopped, ByADeadlineThatPassesWhileItAsks) {
   const Model model = compile(bending_finger());
   const Statics statics(model);
@@ -197,8 +198,8 @@ TEST(Stopped, ATargetShapeToo) {
   }
 }
 
-/// What arrives with the last iteration that it may take has arrived, to the last bit; with one less it has its last
-/// good shape and share, from which it goes on.
+/// A solve that converges with its last allowed iteration is the same to the last bit; with one iteration less it
+/// returns its last good shape and load factor, from which it continues.
 TEST(Stopped, ByItsLimitOfIterations) {
   RobotSpec target = bending_finger();
   target.formulation = Formulation::target_shape;
@@ -206,29 +207,29 @@ TEST(Stopped, ByItsLimitOfIterations) {
   for (const RobotSpec& spec : {bending_finger(), cable_beam(), target}) {
     const Model model = compile(spec);
     const Statics statics(model);
-    Actuation asked = Actuation::Constant(std::ssize(model.actuators), 1.5);
-    if (model.actuators.size() == 2) asked[0] = 0.6;
+    Actuation requested = Actuation::Constant(std::ssize(model.actuators), 1.5);
+    if (model.actuators.size() == 2) requested[0] = 0.6;
     StaticsOptions options;
     options.reuse_factor = false;
-    const Equilibrium found = statics.solve(asked, statics.rest(), options);
+    const Equilibrium found = statics.solve(requested, statics.rest(), options);
     ASSERT_EQ(found.report.status, Status::converged) << found.report.remark;
     ASSERT_GT(found.report.iterations, 3);
     options.max_iterations = found.report.iterations;
-    const Equilibrium just = statics.solve(asked, statics.rest(), options);
+    const Equilibrium just = statics.solve(requested, statics.rest(), options);
     EXPECT_EQ(just.report.status, Status::converged) << just.report.remark;
     EXPECT_EQ(just.state.positions, found.state.positions);
     // the limit is one of a step as long as the path advances, so that several steps may take more in all
     Equilibrium cut = found;
     while (cut.report.status == Status::converged && options.max_iterations > 1) {
       --options.max_iterations;
-      cut = statics.solve(asked, statics.rest(), options);
+      cut = statics.solve(requested, statics.rest(), options);
     }
     EXPECT_EQ(cut.report.status, Status::not_converged);
     EXPECT_GE(cut.report.iterations, options.max_iterations);
-    EXPECT_FALSE(cut.report.stopped);  // so that a path goes on
+    EXPECT_FALSE(cut.report.stopped);  // so that a path continues
     EXPECT_EQ(cut.report.remark,
               "the limit of " + std::to_string(options.max_iterations) + " iterations (max_iterations) was reached");
-    const Equilibrium on = statics.solve(asked, cut.state, {});
+    const Equilibrium on = statics.solve(requested, cut.state, {});
     EXPECT_EQ(on.report.status, Status::converged) << on.report.remark;
     EXPECT_LT((on.state.positions - found.state.positions).rowwise().norm().maxCoeff(), 1e-4);
   }
@@ -269,7 +270,7 @@ TEST(Trace, HasEveryStepOfTheWay) {
   EXPECT_EQ(iterations, found.report.iterations);
   EXPECT_EQ(taken, found.report.continuation_steps);
   EXPECT_GT(found.report.trace.size(), static_cast<std::size_t>(taken)) << "nothing was rejected";
-  EXPECT_TRUE(settled(statics, values({0.6, 1.5})).report.trace.empty());
+  EXPECT_TRUE(solve_converged(statics, values({0.6, 1.5})).report.trace.empty());
 }
 
 /// Along the volume to the maximum of a pressure.

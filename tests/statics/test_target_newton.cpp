@@ -54,8 +54,8 @@ const std::vector<Actuation> mixed_actuations{values({1.4, 1, 1}), values({0.7, 
 }  // namespace
 
 TEST(TargetNewton, RestIsFoundAtOnce) {
-  for (const bool least_norm : {false, true}) {
-    const Model model = compile(mixed_robot(least_norm, 0.5));
+  for (const bool minimum_norm : {false, true}) {
+    const Model model = compile(mixed_robot(minimum_norm, 0.5));
     const Statics statics(model);
     const Equilibrium found = statics.solve(model.rest_actuation(), statics.rest());
     EXPECT_EQ(found.report.status, Status::converged);
@@ -80,10 +80,10 @@ TEST(TargetNewton, EveryActuatorWithLeastNormRatios) {
 
 TEST(TargetNewton, BlendedTargets) {
   for (const double shape_ratio : {0.5, 0.14})
-    for (const bool least_norm : {false, true}) {
+    for (const bool minimum_norm : {false, true}) {
       SCOPED_TRACE(shape_ratio);
-      expect_same_fixed_point(mixed_robot(least_norm, shape_ratio), values({1.2, 1.5, 0.85}));
-      expect_same_fixed_point(finger_robot(least_norm, shape_ratio), values({1.8}));
+      expect_same_fixed_point(mixed_robot(minimum_norm, shape_ratio), values({1.2, 1.5, 0.85}));
+      expect_same_fixed_point(finger_robot(minimum_norm, shape_ratio), values({1.8}));
     }
 }
 
@@ -105,9 +105,9 @@ TEST(TargetNewton, TwoMaterials) {
 }
 
 TEST(TargetNewton, RigidRegionsAndFixedAxes) {
-  for (const bool least_norm : {false, true})
+  for (const bool minimum_norm : {false, true})
     for (const double shape_ratio : {1.0, 0.5}) {
-      RobotSpec spec = mixed_robot(least_norm, shape_ratio);
+      RobotSpec spec = mixed_robot(minimum_norm, shape_ratio);
       spec.rigid.push_back({{Box{{50, 0, 0}, {60, 20, 24}}, {}}, "end"});
       spec.rigid.push_back({{Box{{20, 0, 8}, {30, 20, 8}}, {}}, "patch"});
       expect_same_fixed_point(spec, values({1.2, 1.6, 0.85}));
@@ -118,8 +118,8 @@ TEST(TargetNewton, RigidRegionsAndFixedAxes) {
 }
 
 TEST(TargetNewton, FromRandomStarts) {
-  for (const bool least_norm : {false, true}) {
-    const Model model = compile(finger_robot(least_norm));
+  for (const bool minimum_norm : {false, true}) {
+    const Model model = compile(finger_robot(minimum_norm));
     const Statics statics(model);
     const Points expected = statics.solve(values({1.8}), statics.rest(), as_printed()).state.positions;
     for (const double size : {0.3, 1.0, 3.0}) {
@@ -134,9 +134,9 @@ TEST(TargetNewton, FromRandomStarts) {
 
 /// Every small step is followed by one of at most the size of its square: Algorithm 1 takes off a few percent.
 TEST(TargetNewton, ConvergesQuadratically) {
-  for (const bool least_norm : {false, true})
+  for (const bool minimum_norm : {false, true})
     for (const double shape_ratio : {1.0, 0.5}) {
-      const Model model = compile(finger_robot(least_norm, shape_ratio));
+      const Model model = compile(finger_robot(minimum_norm, shape_ratio));
       const Statics statics(model);
       const auto history = statics.solve(values({4.0}), statics.rest(), newton(1e-9)).report.history;
       int pairs = 0;
@@ -176,8 +176,8 @@ TEST(TargetNewton, ResultDoesNotDependOnThreads) {
 }
 
 TEST(TargetNewton, ASecondSolveFromTheResultEndsAtOnce) {
-  for (const bool least_norm : {false, true}) {
-    const Model model = compile(mixed_robot(least_norm));
+  for (const bool minimum_norm : {false, true}) {
+    const Model model = compile(mixed_robot(minimum_norm));
     const Statics statics(model);
     const Actuation actuation = values({1.2, 1.5, 0.9});
     const Equilibrium first = statics.solve(actuation, statics.rest());
@@ -230,8 +230,8 @@ TEST(TargetNewton, FreeChamberAlone) {
                 {{VertexList{{3}}, {}}, {false, true, true}},
                 {{VertexList{{12}}, {}}, {false, false, true}}};
   ActuatorSpec air = testing::actuator("air", PneumaticSpec{.region = "body"}, 0.5, 3, true);
-  for (const bool least_norm : {true, false}) {
-    air.distribution = testing::shared(least_norm);
+  for (const bool minimum_norm : {true, false}) {
+    air.distribution = testing::shared(minimum_norm);
     spec.actuators = {air};
     const Model model = compile(spec);
     const Statics statics(model);
@@ -241,29 +241,29 @@ TEST(TargetNewton, FreeChamberAlone) {
   }
 }
 
-/// A chamber that asks for many times its volume at once: Newton's method finds it on the way there. Which of these
-/// demands are too far for one call is decided by rounding.
+/// A chamber is to have many times its volume at once: Newton's method finds the shape by intermediate equilibria.
+/// Rounding decides which of these commands are too far for one call.
 TEST(TargetNewton, GoesThroughEquilibriaInBetweenWhereOneCallIsTooFar) {
   struct Case {
-    bool least_norm;
-    double demand;
+    bool minimum_norm;
+    double load_state;
   };
   bool any = false;
-  for (const auto& [least_norm, demand] : {Case{false, 100}, Case{true, 80}, Case{true, 70}, Case{true, 90}}) {
-    RobotSpec spec = finger_robot(least_norm, 0.5);
+  for (const auto& [minimum_norm, load_state] : {Case{false, 100}, Case{true, 80}, Case{true, 70}, Case{true, 90}}) {
+    RobotSpec spec = finger_robot(minimum_norm, 0.5);
     spec.actuators[0].high = 200;
     const Model model = compile(spec);
     const Statics statics(model);
-    const Equilibrium found = statics.solve(values({demand}), statics.rest(), newton(1e-8));
+    const Equilibrium found = statics.solve(values({load_state}), statics.rest(), newton(1e-8));
     if (found.report.status != Status::converged || found.report.continuation_steps <= 1) continue;
     StaticsOptions once = as_printed();
     once.max_iterations = 1;
-    EXPECT_LT(statics.solve(values({demand}), found.state, once).report.step_mm, 1e-7);  // Algorithm 1 stays there
+    EXPECT_LT(statics.solve(values({load_state}), found.state, once).report.step_mm, 1e-7);  // Algorithm 1 stays there
     any = true;
     // from an equilibrium nearby it is one step
-    const Equilibrium next = statics.solve(values({demand + 1}), found.state, newton(1e-8));
-    EXPECT_EQ(next.report.status, Status::converged) << demand;
-    EXPECT_EQ(next.report.continuation_steps, 1) << demand;
+    const Equilibrium next = statics.solve(values({load_state + 1}), found.state, newton(1e-8));
+    EXPECT_EQ(next.report.status, Status::converged) << load_state;
+    EXPECT_EQ(next.report.continuation_steps, 1) << load_state;
     break;
   }
   EXPECT_TRUE(any);

@@ -43,10 +43,10 @@ RobotSpec with_rigid_regions(RobotSpec spec) {
 }  // namespace
 
 TEST(TargetTangent, ResidualChangesAsTheDifferenceQuotientSays) {
-  for (const bool least_norm : {false, true})
+  for (const bool minimum_norm : {false, true})
     for (const double shape_ratio : {1.0, 0.5}) {
-      Case c(mixed_robot(least_norm, shape_ratio));
-      EXPECT_EQ(c.system.is_gradient(), !least_norm && shape_ratio == 1);
+      Case c(mixed_robot(minimum_norm, shape_ratio));
+      EXPECT_EQ(c.system.is_gradient(), !minimum_norm && shape_ratio == 1);
       const Points along = noise(c.model.rest.rows(), 1, 9);
       c.system.local_step(away_from_rest(), c.positions, c.local, c.alone);
       target_shape::System::Scratch out = c.system.make_scratch();
@@ -101,10 +101,10 @@ TEST(TargetTangent, RedistributionIsTheCouplingOfAllElements) {
 
 /// K step = right, with K from differences of the reduced residual along the step's own motion.
 TEST(TargetTangent, SolvesTheExactDerivative) {
-  for (const bool least_norm : {false, true})
+  for (const bool minimum_norm : {false, true})
     for (const double shape_ratio : {1.0, 0.5})
       for (const bool rigid : {false, true}) {
-        RobotSpec spec = mixed_robot(least_norm, shape_ratio);
+        RobotSpec spec = mixed_robot(minimum_norm, shape_ratio);
         Case c(rigid ? with_rigid_regions(spec) : spec);
         const target_shape::Unknowns unknowns(c.model, c.system);
         target_shape::Tangent tangent(unknowns);
@@ -127,7 +127,7 @@ TEST(TargetTangent, SolvesTheExactDerivative) {
           return out;
         };
         const Eigen::VectorXd quotient = (reduced(-h) - reduced(h)) / (2 * h);
-        EXPECT_LT((quotient - right).norm(), 1e-4 * right.norm()) << least_norm << shape_ratio << rigid;
+        EXPECT_LT((quotient - right).norm(), 1e-4 * right.norm()) << minimum_norm << shape_ratio << rigid;
       }
 }
 

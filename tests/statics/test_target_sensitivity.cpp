@@ -27,9 +27,9 @@ StaticsOptions solved_anew() {
 /// Of the residual at a shape that is no equilibrium, by differences of local steps; a ratio at its least value stays.
 TEST(TargetSensitivity, ResidualChangesWithCommandsAsTheDifferenceQuotientSays) {
   Team alone(1);
-  for (const bool least_norm : {false, true})
+  for (const bool minimum_norm : {false, true})
     for (const double shape_ratio : {1.0, 0.5}) {
-      const Model model = compile(mixed_robot(least_norm, shape_ratio));
+      const Model model = compile(mixed_robot(minimum_norm, shape_ratio));
       const target_shape::System system(model);
       target_shape::System::Scratch local = system.make_scratch(), out = system.make_scratch();
       const Points positions = model.rest + noise(model.rest.rows(), 0.3, 4);
@@ -45,40 +45,40 @@ TEST(TargetSensitivity, ResidualChangesWithCommandsAsTheDifferenceQuotientSays) 
           const Points quotient = (residual_at(a, h) - residual_at(a, -h)) / (2 * h);
           (void)residual_at(a, 0);
           system.command_change(local, a, out, alone);
-          if (a == 1 && at[1] < 0.01 && !least_norm) {  // all ratios are at their least value
+          if (a == 1 && at[1] < 0.01 && !minimum_norm) {  // all ratios are at their least value
             EXPECT_LT(quotient.norm(), 1e-5);
             EXPECT_EQ(out.residual.norm(), 0);
             continue;
           }
           EXPECT_GT(quotient.norm(), 1);
-          EXPECT_LT((out.residual - quotient).norm(), 1e-7 * quotient.norm()) << least_norm << shape_ratio << a;
+          EXPECT_LT((out.residual - quotient).norm(), 1e-7 * quotient.norm()) << minimum_norm << shape_ratio << a;
         }
       }
     }
 }
 
 TEST(TargetSensitivity, EveryActuatorAndMaterial) {
-  for (const bool least_norm : {false, true})
+  for (const bool minimum_norm : {false, true})
     for (const double shape_ratio : {1.0, 0.5}) {
-      SCOPED_TRACE(std::to_string(least_norm) + " " + std::to_string(shape_ratio));
-      RobotSpec spec = mixed_robot(least_norm, shape_ratio);
+      SCOPED_TRACE(std::to_string(minimum_norm) + " " + std::to_string(shape_ratio));
+      RobotSpec spec = mixed_robot(minimum_norm, shape_ratio);
       spec.actuators[2].high = 1.2;
       const Model model = compile(spec);
       const Statics statics(model);
       for (const Actuation& actuation : {values({1, 1, 1}), values({1.2, 1.5, 0.85}), values({0.7, 2.2, 0.7})})
-        expect_differences(model, statics, settled(statics, actuation), 2e-6);
+        expect_differences(model, statics, solve_converged(statics, actuation), 2e-6);
     }
 }
 
 TEST(TargetSensitivity, RigidRegions) {
-  for (const bool least_norm : {false, true})
-    expect_differences_at(with_rigid_ends(mixed_robot(least_norm, least_norm ? 0.6 : 1)), values({1.2, 1.6, 0.8}),
+  for (const bool minimum_norm : {false, true})
+    expect_differences_at(with_rigid_ends(mixed_robot(minimum_norm, minimum_norm ? 0.6 : 1)), values({1.2, 1.6, 0.8}),
                           2e-6);
 }
 
 TEST(TargetSensitivity, LargeBend) {
-  for (const bool least_norm : {false, true}) {
-    RobotSpec spec = finger_robot(least_norm);
+  for (const bool minimum_norm : {false, true}) {
+    RobotSpec spec = finger_robot(minimum_norm);
     MaterialSpec floor;
     floor.region = "floor";
     floor.weight = 100;
@@ -87,7 +87,7 @@ TEST(TargetSensitivity, LargeBend) {
     spec.actuators[0].high = 12;
     const Model model = compile(spec);
     const Statics statics(model);
-    const Equilibrium at = settled(statics, values({10}));
+    const Equilibrium at = solve_converged(statics, values({10}));
     EXPECT_LT(at.state.positions.col(2).minCoeff(), -25);  // its tip is bent by 160 degrees
     expect_differences(model, statics, at, 2e-6, {1e-2, 0, 0});
   }
@@ -95,10 +95,10 @@ TEST(TargetSensitivity, LargeBend) {
 
 /// After a few iterations only the factor is far off; after Algorithm 1 there is none.
 TEST(TargetSensitivity, DoesNotDependOnTheFactor) {
-  for (const bool least_norm : {false, true}) {
-    const Model model = compile(mixed_robot(least_norm, 1));
+  for (const bool minimum_norm : {false, true}) {
+    const Model model = compile(mixed_robot(minimum_norm, 1));
     const Statics statics(model);
-    const Equilibrium at = settled(statics, values({1.2, 1.5, 0.85}));
+    const Equilibrium at = solve_converged(statics, values({1.2, 1.5, 0.85}));
     const Sensitivity reused = statics.sensitivity(at.state, {}, 1e-10),
                       fresh = statics.sensitivity(at.state, solved_anew(), 1e-10),
                       again = statics.sensitivity(at.state, {}, 1e-10), rough = statics.sensitivity(at.state, {}, 1e-4);
@@ -141,8 +141,8 @@ TEST(TargetSensitivity, AMechanismIsNotRegular) {
 }
 
 TEST(TargetSensitivity, WithoutReuseNothingDependsOnEarlierSolves) {
-  for (const bool least_norm : {false, true}) {
-    const Model model = compile(with_rigid_ends(mixed_robot(least_norm, least_norm ? 0.5 : 1)));
+  for (const bool minimum_norm : {false, true}) {
+    const Model model = compile(with_rigid_ends(mixed_robot(minimum_norm, minimum_norm ? 0.5 : 1)));
     const Statics used(model), fresh(model);
     State state = used.rest();
     for (const Actuation& earlier : {values({0.7, 2.0, 0.8}), values({1.1, 1.2, 0.95})}) {
@@ -156,8 +156,9 @@ TEST(TargetSensitivity, WithoutReuseNothingDependsOnEarlierSolves) {
     EXPECT_EQ(at_once.positions[0], expected.positions[0]);
     for (const bool from_rest : {false, true}) {
       const State start = from_rest ? used.rest() : state;
-      const Actuation asked = values({1.15, 1.25, 0.93});
-      const Equilibrium a = used.solve(asked, start, solved_anew()), b = fresh.solve(asked, start, solved_anew());
+      const Actuation requested = values({1.15, 1.25, 0.93});
+      const Equilibrium a = used.solve(requested, start, solved_anew()),
+                        b = fresh.solve(requested, start, solved_anew());
       EXPECT_EQ(a.state.positions, b.state.positions);
       EXPECT_EQ(a.report.iterations, b.report.iterations);
       const Sensitivity x = used.sensitivity(a.state, solved_anew()), y = fresh.sensitivity(b.state, solved_anew());

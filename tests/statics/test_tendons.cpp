@@ -4,7 +4,7 @@
 
 #include "statics/sensitivity_samples.hpp"
 
-/// Cables that rub where they turn.
+/// Cables with friction where they bend.
 
 namespace softkin {
 
@@ -66,14 +66,14 @@ Equilibrium pulled(const Statics& statics, const Equilibrium& from, double comma
 /// What a capstan leaves of a tension that goes to and fro.
 class Eytelwein {
  public:
-  explicit Eytelwein(double exponent) : most_(std::exp(-exponent)) {}
+  explicit Eytelwein(double exponent) : max_(std::exp(-exponent)) {}
   double end(double tension) {
-    end_ = std::clamp(end_, tension * most_, tension / most_);
+    end_ = std::clamp(end_, tension * max_, tension / max_);
     return end_;
   }
 
  private:
-  double most_, end_ = 0;
+  double max_, end_ = 0;
 };
 
 /// An arm that a tendon through its whole length bends.
@@ -98,7 +98,7 @@ TEST(Tendons, CapstanToAndFro) {
     const Statics statics(model);
     const double exponent = 0.3 * wrapped(model.actuators[0], model.rest);
     Eytelwein expected(exponent);
-    Equilibrium found = settled(statics, values({0}));
+    Equilibrium found = solve_converged(statics, values({0}));
     double loop = 0, loop_expected = 0, last_end = 0, last_expected = 0, last = 0;
     std::vector<double> commands;
     for (int i = 1; i <= 12; ++i) commands.push_back(0.5 * i);
@@ -109,7 +109,7 @@ TEST(Tendons, CapstanToAndFro) {
       const auto tendon = statics.measured(found.state).tendons.at(0);
       ASSERT_TRUE(tendon);
       EXPECT_NEAR(tendon->end_N, end, 1e-6 * end) << command;
-      // as it slips exactly; as it sticks it gives way by the creep, 1e-4 of its length
+      // exact when it slips; when it sticks it yields by the creep, 1e-4 of its length
       const double creeps = 2 * 1e-4 * model.actuators[0].rest_measure * modulus_MPa * area_mm2 / free_mm;
       EXPECT_NEAR(end, wanted, tendon->sticks > 0 ? creeps + 1e-3 * wanted : 1e-3 * wanted)
           << height << ", " << command;
@@ -129,7 +129,7 @@ TEST(Tendons, BeginInTheMiddle) {
   const Statics statics(model);
   const double exponent = 0.3 * wrapped(model.actuators[0], model.rest), creep = 1e-4 * model.actuators[0].rest_measure;
   for (const double tension : {1e-4, 1e-3, 3e-3}) {
-    const double found = end_force(model, settled(statics, values({tension})));
+    const double found = end_force(model, solve_converged(statics, values({tension})));
     double low = 0, high = tension;  // of F = T exp(-mu theta y), by the slip of the spring that F presses
     for (int i = 0; i < 60; ++i) {
       const double middle = 0.5 * (low + high), slip = middle * free_mm / (modulus_MPa * area_mm2) / creep;
@@ -139,17 +139,17 @@ TEST(Tendons, BeginInTheMiddle) {
   }
 }
 
-/// The same by lengths: the tension at the motor is then what comes out.
+/// The same under length control: the tension at the motor is then a result.
 TEST(Tendons, CapstanByLength) {
   const Model by_load_model = compile(capstan(3, 0.3)), model = compile(capstan(3, 0.3, true));
   const Statics by_load(by_load_model), statics(model);
   const double factor = std::exp(0.3 * wrapped(model.actuators[0], model.rest));
-  Equilibrium found = settled(statics, values({1}));
+  Equilibrium found = solve_converged(statics, values({1}));
   for (const double ratio : {0.99, 0.97, 0.95}) {
     found = pulled(statics, found, ratio);
     EXPECT_NEAR(found.state.multipliers[0], factor * end_force(model, found), 1e-3 * found.state.multipliers[0]);
   }
-  const Equilibrium same = settled(by_load, values({found.state.multipliers[0]}));
+  const Equilibrium same = solve_converged(by_load, values({found.state.multipliers[0]}));
   EXPECT_LT(distance(same.state.positions, found.state.positions), 1e-5);
   const double end = end_force(model, found);
   found = pulled(statics, found, 0.952);  // farther back than the creep
@@ -164,7 +164,7 @@ TEST(Tendons, Sheath) {
   spec.actuators[0].as<CableSpec>()->sheath_turns_degrees = 270;
   const Model model = compile(spec);
   const Statics statics(model);
-  Equilibrium found = settled(statics, values({0}));
+  Equilibrium found = solve_converged(statics, values({0}));
   Eytelwein expected(0.1 * 1.5 * 3.14159265358979);
   for (const double command : {3.0, 6.0, 5.0, 2.0, 1.0}) {
     found = pulled(statics, found, command);
@@ -177,8 +177,8 @@ TEST(Tendons, TensionsFallAlongABentArm) {
   for (const bool quadratic : {true, false}) {
     const Model model = compile(arm(0.2, quadratic)), smooth = compile(arm(0, quadratic));
     const Statics statics(model), without(smooth);
-    const double free = marker_at(smooth, settled(without, values({2})))[2];
-    Equilibrium found = settled(statics, values({0}));
+    const double free = marker_at(smooth, solve_converged(without, values({2})))[2];
+    Equilibrium found = solve_converged(statics, values({0}));
     double on = 0, back = 0;
     for (const double tension : {0.5, 1.0, 1.5, 2.0, 2.5, 3.0}) {
       found = pulled(statics, found, tension);
@@ -206,7 +206,7 @@ TEST(Tendons, TensionsFallAlongABentArm) {
 TEST(Tendons, StayWhereTheyStick) {
   const Model model = compile(arm(0.2));
   const Statics statics(model);
-  Equilibrium found = settled(statics, values({3}));
+  Equilibrium found = solve_converged(statics, values({3}));
   EXPECT_EQ(statics.measured(pulled(statics, found, 2.95).state).tendons.at(0)->sticks, 1);
   found = pulled(statics, found, 2.8);
   const Points first = found.state.positions;
@@ -217,12 +217,12 @@ TEST(Tendons, StayWhereTheyStick) {
   EXPECT_LT(distance(found.state.positions, first), 2e-3);
 }
 
-/// Steps of different lengths on the same way come to the same shape.
+/// Steps of different lengths on the same path lead to the same shape.
 TEST(Tendons, StepsDoNotMatter) {
   const Model model = compile(arm(0.3));
   const Statics statics(model);
-  const Equilibrium once = pulled(statics, settled(statics, values({3})), 1.0);
-  Equilibrium found = settled(statics, values({0}));
+  const Equilibrium once = pulled(statics, solve_converged(statics, values({3})), 1.0);
+  Equilibrium found = solve_converged(statics, values({0}));
   for (int i = 1; i <= 12; ++i) found = pulled(statics, found, 0.25 * i);
   for (int i = 1; i <= 16; ++i) found = pulled(statics, found, 3 - 0.125 * i);
   EXPECT_LT(distance(found.state.positions, once.state.positions), 0.02);
@@ -240,7 +240,7 @@ TEST(Tendons, Derivatives) {
     }
     const Model model = compile(spec);
     const Statics statics(model);
-    const Equilibrium found = settled(statics, values({by_length ? 0.95 : 2.0}));
+    const Equilibrium found = solve_converged(statics, values({by_length ? 0.95 : 2.0}));
     const Sensitivity derivative = statics.sensitivity(found.state);
     ASSERT_TRUE(derivative.regular);
     const Difference difference = one_sided(statics, found.state, 0, by_length ? -1e-3 : 1e-2);

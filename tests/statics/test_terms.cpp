@@ -10,7 +10,8 @@
 #include "statics/physical_equations.hpp"
 #include "statics/pillows.hpp"
 
-/// Every term of every kind of robot: gradient, stiffness, and derivatives by commands and shares, by differences.
+/// Compares all terms of all kinds of robots with differences: gradient, stiffness, derivatives by commands and load
+/// factor.
 
 namespace softkin {
 
@@ -88,12 +89,12 @@ RobotSpec threaded_robot(bool quadratic) {
   const Vec3 size = spec.mesh.vertices.colwise().maxCoeff().transpose();
   FibreSpec thread;
   thread.name = "thread";
-  thread.way = std::vector<Vec3>{0.02 * size, Vec3(0.9 * size.x(), 0.7 * size.y(), 0.95 * size.z())};
+  thread.path = std::vector<Vec3>{0.02 * size, Vec3(0.9 * size.x(), 0.7 * size.y(), 0.95 * size.z())};
   thread.stiffness_N = 3;
   FibreSpec slack = thread;
   slack.name = "slack";
   slack.tension_only = true;
-  slack.way = std::vector<Vec3>{Vec3(0.1 * size.x(), 0.9 * size.y(), 0.1 * size.z()), 0.8 * size, 0.5 * size};
+  slack.path = std::vector<Vec3>{Vec3(0.1 * size.x(), 0.9 * size.y(), 0.1 * size.z()), 0.8 * size, 0.5 * size};
   spec.fibres = {thread, slack};
   return spec;
 }
@@ -170,21 +171,21 @@ RobotSpec fibrous_robot(Split split, bool quadratic) {
   return spec;
 }
 
-/// The terms of a robot in a shape out of balance.
+/// The terms of a robot in a shape that is no equilibrium.
 struct TermsSample : PhysicalEquations {
   TermsSample(const RobotSpec& spec, double shake, const Vec3& move) : PhysicalEquations(compile(spec)) {
     active.resize(system.actuators());
-    demand = {model.rest_actuation(), 0.7, 0.4};
+    load_state = {model.rest_actuation(), 0.7, 0.4};
     std::mt19937 engine(5);
     std::uniform_real_distribution<double> within(0.05, 0.2);
     for (Index a = 0; a < system.actuators(); ++a) {
       const double low = model.actuators[a].low, high = model.actuators[a].high;
-      const double reach = std::min({high - demand.actuation[a], 1.0});
-      demand.actuation[a] += (reach > 0 ? reach : low - demand.actuation[a]) * within(engine);
+      const double reach = std::min({high - load_state.actuation[a], 1.0});
+      load_state.actuation[a] += (reach > 0 ? reach : low - load_state.actuation[a]) * within(engine);
     }
     at.positions = model.rest + noise(model.rest.rows(), shake, 1);
     at.positions.rowwise() += move.transpose();
-    system.placement().hold({demand.actuation, 0, 0}, at.positions);
+    system.placement().hold({load_state.actuation, 0, 0}, at.positions);
     at.multipliers = Eigen::VectorXd::Zero(system.actuators());
     work.fading.force = noise(model.rest.rows(), 1, 9);
     (void)renew_friction(system, at.positions, {at.positions, at.positions}, at, work, team);
@@ -195,7 +196,7 @@ struct TermsSample : PhysicalEquations {
     double energy = 0;
     Points gradient;
   };
-  Found found(std::size_t term, const physical::Demand& wanted, const Points& shape) {
+  Found found(std::size_t term, const physical::LoadState& wanted, const Points& shape) {
     Found all{0, Points::Zero(shape.rows(), 3)};
     Term::Sum sum{all.gradient};
     physical::Iterate there = at;
@@ -205,17 +206,17 @@ struct TermsSample : PhysicalEquations {
     all.energy = sum.energy;
     return all;
   }
-  Points gradient(std::size_t term, const physical::Demand& wanted) {
+  Points gradient(std::size_t term, const physical::LoadState& wanted) {
     return found(term, wanted, at.positions).gradient;
   }
 
   /// Of one term alone.
-  Points stiffness_times_way(std::size_t term) {
-    system.evaluate(at, demand, active, work, balance, team);
-    system.assemble(at, demand, balance, physical::System::Stiffness::exact, work, team);
+  Points stiffness_times_motion(std::size_t term) {
+    system.evaluate(at, load_state, active, work, balance, team);
+    system.assemble(at, load_state, balance, physical::System::Stiffness::exact, work, team);
     LargeVector<double> slots(work.stiffness.slots.size()), blocks;
     std::fill(slots.begin(), slots.end(), 0.0);
-    system.terms()[term]->stiffness(at, demand, false, *work.terms[term], slots, team);
+    system.terms()[term]->stiffness(at, load_state, false, *work.terms[term], slots, team);
     work.stiffness.layout->pattern.gather(slots, blocks, team);
     Points product;
     work.stiffness.layout->pattern.multiply(blocks, along, product, team);
@@ -227,42 +228,44 @@ struct TermsSample : PhysicalEquations {
   Points along;
 };
 
-void expect_near(const Points& exact, const Points& slope, double share, const std::string& what) {
-  EXPECT_LT((slope - exact).norm(), share * exact.norm() + 1e-9) << what;
+void expect_near(const Points& exact, const Points& slope, double fraction, const std::string& what) {
+  EXPECT_LT((slope - exact).norm(), fraction * exact.norm() + 1e-9) << what;
 }
 
 /// Sizes of what was compared, by term: nothing that can not fail.
 using Seen = std::array<std::array<double, 4>, all_terms>;
 
-/// share: of the stiffness, that may be missed
+/// Compares the derivatives of every term with differences.
+///
+/// fraction  relative tolerance of the stiffness
 void expect_derivatives(const RobotSpec& spec, double shake, const Vec3& move, double reach, Seen& seen,
-                        double share = 1e-4) {
+                        double fraction = 1e-4) {
   TermsSample sample(spec, shake, move);
-  physical::Demand towards = sample.demand;  // by as much of every command and share
+  physical::LoadState towards = sample.load_state;  // all commands and the load factor change by the same ratio
   constexpr double little = 1e-5;
   for (Index a = 0; a < towards.actuation.size(); ++a) towards.actuation[a] *= 1 + little;
-  towards.share *= 1 + little;
+  towards.load_factor *= 1 + little;
   towards.fading *= 1 - little;
   const std::size_t count = sample.system.terms().size();
   for (std::size_t t = 0; t < count; ++t) {
     const Term& term = *sample.system.terms()[t];
     Term::Scratch& scratch = *sample.work.terms[t];
     const std::string what = typeid(term).name();
-    const auto shape = [&](double way) { return Points(sample.at.positions + way * reach * sample.along); };
-    const auto high = sample.found(t, sample.demand, shape(1)), low = sample.found(t, sample.demand, shape(-1));
-    const Points exact = sample.gradient(t, sample.demand);
+    const auto shape = [&](double path) { return Points(sample.at.positions + path * reach * sample.along); };
+    const auto high = sample.found(t, sample.load_state, shape(1)), low = sample.found(t, sample.load_state, shape(-1));
+    const Points exact = sample.gradient(t, sample.load_state);
     if (term.conservative()) {
       EXPECT_NEAR(exact.cwiseProduct(sample.along).sum(), (high.energy - low.energy) / (2 * reach),
                   1e-5 * exact.norm() * sample.along.norm() + 1e-9)
           << what;
     }
-    const Points stiff = sample.stiffness_times_way(t);
-    expect_near(stiff, (high.gradient - low.gradient) / (2 * reach), share, what + ": stiffness");
+    const Points stiff = sample.stiffness_times_motion(t);
+    expect_near(stiff, (high.gradient - low.gradient) / (2 * reach), fraction, what + ": stiffness");
     double by_commands = 0;
     for (Index a = 0; a < towards.actuation.size(); ++a) {
       Points slope = Points::Zero(exact.rows(), 3);
-      term.add_derivative(a, sample.demand, sample.at.positions, scratch, slope, sample.team);
-      physical::Demand more = sample.demand, less = sample.demand;
+      term.add_derivative(a, sample.load_state, sample.at.positions, scratch, slope, sample.team);
+      physical::LoadState more = sample.load_state, less = sample.load_state;
       const double part = 1e-5 * std::max(1e-2, std::abs(more.actuation[a]));
       more.actuation[a] += part;
       less.actuation[a] -= part;
@@ -273,8 +276,8 @@ void expect_derivatives(const RobotSpec& spec, double shake, const Vec3& move, d
       by_commands += slope.norm();
     }
     Points change = Points::Zero(exact.rows(), 3);
-    term.add_change(sample.demand, towards, sample.at.positions, scratch, change, sample.team);
-    const Points changed = sample.gradient(t, towards) - sample.gradient(t, sample.demand);
+    term.add_change(sample.load_state, towards, sample.at.positions, scratch, change, sample.team);
+    const Points changed = sample.gradient(t, towards) - sample.gradient(t, sample.load_state);
     EXPECT_LE((change - changed).norm(), 2e-4 * change.norm() + 1e-12 * exact.norm()) << what;
     const std::array<double, 4> sizes{exact.norm(), stiff.norm(), by_commands, change.norm()};
     const bool contact = count > 4 && t == count - 1 && sample.system.contact();
@@ -334,14 +337,14 @@ TEST(Terms, DerivativesAreThoseOfTheEnergies) {
   for (const auto& [split, quadratic] :
        {std::pair{Split::six, false}, std::pair{Split::six, true}, std::pair{Split::prisms, false}}) {
     for (const double level : {50.0, 2.6}) {
-      const double share = quadratic && level < 6 ? 5e-4 : 1e-5;  // curved faces are cut nearly where they should be
-      expect_derivatives(submerged_robot(split, quadratic, level), 0.1, Vec3::Zero(), 1e-5, seen, share);
-      expect_derivatives(submerged_open(split, quadratic, level), 0.1, Vec3::Zero(), 1e-5, seen, share);
+      const double fraction = quadratic && level < 6 ? 5e-4 : 1e-5;  // curved faces are cut nearly where they should be
+      expect_derivatives(submerged_robot(split, quadratic, level), 0.1, Vec3::Zero(), 1e-5, seen, fraction);
+      expect_derivatives(submerged_open(split, quadratic, level), 0.1, Vec3::Zero(), 1e-5, seen, fraction);
     }
     expect_derivatives(fibrous_robot(split, quadratic), 0.1, Vec3::Zero(), 1e-5, seen);
   }
-  // body, dead and fading loads, what is done to bodies, magnets, fibres, tractions, contact, liquids, families of
-  // fibres, layers, moments: gradient, stiffness, by commands, by shares
+  // body, dead and fading loads, loads on bodies, magnets, fibres, tractions, contact, liquids, families of fibres,
+  // layers, moments: gradient, stiffness, derivatives by commands, by load factor
   const std::array<std::array<bool, 4>, all_terms> has{{{true, true, true, true},
                                                         {true, false, false, true},
                                                         {true, false, false, true},

@@ -63,7 +63,7 @@ TEST(Tractions, DeadOnesAreNominalStresses) {
     for (const double kilopascals : {300.0, -200.0}) {
       spec.loads.tractions = {traction("x_high", {kilopascals, 0, 0}, false)};
       const Model model = compile(spec);
-      const Equilibrium found = settled(Statics(model), model.rest_actuation());
+      const Equilibrium found = solve_converged(Statics(model), model.rest_actuation());
       EXPECT_NEAR(found.state.positions.col(0).maxCoeff(), 20 * (1 + 1e-3 * kilopascals), 1e-7);
     }
 }
@@ -76,7 +76,7 @@ TEST(Tractions, PressuresAreTrueStresses) {
       spec.loads.tractions = {pressure("x_high", kilopascals, "x"), pressure("y_high", kilopascals, "y"),
                               pressure("z_high", kilopascals, "z")};
       const Model model = compile(spec);
-      const Equilibrium found = settled(Statics(model), model.rest_actuation());
+      const Equilibrium found = solve_converged(Statics(model), model.rest_actuation());
       const double p = 1e-3 * kilopascals, s = (std::sqrt(1 + 4 * p) - 1) / (2 * p);
       EXPECT_LT(distance(found.state.positions, s * model.rest), 1e-7) << s;
     }
@@ -94,13 +94,13 @@ TEST(Tractions, APressureOnTheWallsOfAChamberIsThatOfTheChamber) {
     spec.mesh_options.quadratic = quadratic;
     spec.actuators = {by_load(spec.actuators[0])};
     const Model by_chamber = compile(spec);
-    const Equilibrium expected = settled(Statics(by_chamber), values({80}));
+    const Equilibrium expected = solve_converged(Statics(by_chamber), values({80}));
     const Box around = quadratic ? Box{{9, 3.9, 3.9}, {51, 8.1, 8.1}} : Box{{4.9, 3.9, 7.9}, {55.1, 8.1, 12.1}};
     spec.actuators.clear();
     spec.voids.push_back({std::string("chamber"), {}});
     spec.loads.tractions = {{"water", {around, {}}, true, {0, 0, 0}, 80}};
     const Model by_walls = compile(spec);
-    const Equilibrium found = settled(Statics(by_walls), by_walls.rest_actuation());
+    const Equilibrium found = solve_converged(Statics(by_walls), by_walls.rest_actuation());
     EXPECT_GT(distance(expected.state.positions, by_chamber.rest), 0.3);
     EXPECT_LT(distance(found.state.positions, expected.state.positions), 1e-6);
   }
@@ -114,7 +114,8 @@ TEST(Tractions, ThoseThatFollowTurnWithTheRobot) {
     spec.loads.tractions = {traction("x_high", {0.3, 0.2, -0.4}, follows)};
     const Model model = compile(spec);
     const Statics statics(model);
-    const Equilibrium straight = settled(statics, values({0})), turned = settled(statics, values({130}));
+    const Equilibrium straight = solve_converged(statics, values({0})),
+                      turned = solve_converged(statics, values({130}));
     EXPECT_GT(distance(straight.state.positions, model.rest), 5);
     const Mat3 rotation = Eigen::AngleAxisd(130 * std::numbers::pi / 180, Vec3(0, 1, 0)).toRotationMatrix();
     const double off = distance(straight.state.positions * rotation.transpose(), turned.state.positions);
@@ -125,13 +126,13 @@ TEST(Tractions, ThoseThatFollowTurnWithTheRobot) {
   }
 }
 
-/// The support bears what acts on the surface, whose size is that of the traction on the present area.
+/// The support carries the traction's force on the surface, whose area is that of the current shape.
 TEST(Tractions, TheSupportBearsThem) {
   RobotSpec spec = strip();
   spec.loads.tractions = {traction("z_high", {0.06, 0, -0.04}, false), pressure("y_high", 0.05)};
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, model.rest_actuation());
+  const Equilibrium found = solve_converged(statics, model.rest_actuation());
   Vec3 expected = 1e-3 * 60 * 4 * Vec3(0.06, 0, -0.04);
   for (const LoadedFace& loaded : model.loads.tractions[0].faces) {
     TriangleNodes nodes;
@@ -166,7 +167,7 @@ TEST(Tractions, AFollowingLoadBendsACantileverAsTheElasticaSays) {
   const double load = 2 * bending / (length * length);
   spec.loads.tractions = {traction("x_high", {0, 0, 1e3 * load / 16}, true)};
   const Model model = compile(spec);
-  const Equilibrium found = settled(Statics(model), model.rest_actuation());
+  const Equilibrium found = solve_converged(Statics(model), model.rest_actuation());
   // of the end's normal
   Vec3 high = Vec3::Zero(), low = Vec3::Zero();
   for (Index v = 0; v < model.rest.rows(); ++v)

@@ -14,11 +14,11 @@ using namespace testing;
 
 constexpr double tolerance = 1e-5;  // [mm]
 
-Demand demand_at(double way) {
-  return {Eigen::Vector2d(1 + way, 3 - 2 * way), 1};
+LoadState load_state_at(double path) {
+  return {Eigen::Vector2d(1 + path, 3 - 2 * path), 1};
 }
 
-/// A way whose vertices move by polynomials.
+/// A path whose vertices move by polynomials.
 struct Curve {
   std::vector<Points> coefficients;
 
@@ -28,20 +28,20 @@ struct Curve {
     for (int i = 0; i <= degree; ++i)
       coefficients.emplace_back(Points::NullaryExpr(20, 3, [&] { return normal(engine); }));
   }
-  [[nodiscard]] Iterate at(double way) const {
+  [[nodiscard]] Iterate at(double path) const {
     Points positions = Points::Zero(20, 3);
     double power = 1;
     for (const Points& coefficient : coefficients) {
       positions += power * coefficient;
-      power *= way;
+      power *= path;
     }
     return {positions, Eigen::Vector2d(positions(0, 0), positions(1, 1))};
   }
 };
 
-Trail walked(const Curve& curve, const std::vector<double>& ways) {
+Trail walked(const Curve& curve, const std::vector<double>& paths) {
   Trail trail;
-  for (const double way : ways) trail.add(demand_at(way), {true, true}, curve.at(way));
+  for (const double path : paths) trail.add(load_state_at(path), {true, true}, curve.at(path));
   return trail;
 }
 
@@ -50,13 +50,13 @@ Trail walked(const Curve& curve, const std::vector<double>& ways) {
 TEST(Trail, PolynomialsAreFollowed) {
   const std::vector<double> even{0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6}, uneven{0, 0.1, 0.15, 0.22, 0.31, 0.47, 0.53};
   for (const int degree : {1, 3, 5})
-    for (const auto& ways : {even, uneven})
+    for (const auto& paths : {even, uneven})
       for (const double next : {0.6, 0.65, 0.4, 0.55}) {
-        if (next == ways.back()) continue;
+        if (next == paths.back()) continue;
         const Curve curve(degree);
-        const Trail trail = walked(curve, ways);
-        Iterate at = curve.at(ways.back());
-        ASSERT_TRUE(trail.lead(demand_at(ways.back()), demand_at(next), {true, true}, tolerance, at))
+        const Trail trail = walked(curve, paths);
+        Iterate at = curve.at(paths.back());
+        ASSERT_TRUE(trail.lead(load_state_at(paths.back()), load_state_at(next), {true, true}, tolerance, at))
             << degree << " " << next;
         EXPECT_LT((at.positions - curve.at(next).positions).norm(), 1e-10) << degree << " " << next;
         EXPECT_LT((at.multipliers - curve.at(next).multipliers).norm(), 1e-10);
@@ -65,27 +65,27 @@ TEST(Trail, PolynomialsAreFollowed) {
 
 TEST(Trail, NothingIsToldOfWhatCannotBeForetold) {
   const Curve curve(9);
-  const std::vector<double> ways{0, 0.4, 0.8, 1.2, 1.6, 2};
-  const Trail trail = walked(curve, ways);
+  const std::vector<double> paths{0, 0.4, 0.8, 1.2, 1.6, 2};
+  const Trail trail = walked(curve, paths);
   Iterate at = curve.at(2);
-  EXPECT_FALSE(trail.lead(demand_at(2), demand_at(2.4), {true, true}, tolerance, at));
+  EXPECT_FALSE(trail.lead(load_state_at(2), load_state_at(2.4), {true, true}, tolerance, at));
   EXPECT_EQ(at.positions, curve.at(2).positions);
-  // a straight way that is foretold, but with other constraints, from elsewhere, or to where one is
+  // a straight path is predicted, but not with other constraints, from another state, or to the current load state
   const Curve straight(1);
-  const Trail other = walked(straight, ways);
+  const Trail other = walked(straight, paths);
   at = straight.at(2);
-  EXPECT_FALSE(other.lead(demand_at(2), demand_at(2.4), {true, false}, tolerance, at));
-  EXPECT_FALSE(other.lead(demand_at(2), demand_at(2), {true, true}, tolerance, at));
-  EXPECT_FALSE(other.lead(demand_at(1.9), demand_at(2.4), {true, true}, tolerance, at));
-  EXPECT_TRUE(other.lead(demand_at(2), demand_at(2.4), {true, true}, tolerance, at));
+  EXPECT_FALSE(other.lead(load_state_at(2), load_state_at(2.4), {true, false}, tolerance, at));
+  EXPECT_FALSE(other.lead(load_state_at(2), load_state_at(2), {true, true}, tolerance, at));
+  EXPECT_FALSE(other.lead(load_state_at(1.9), load_state_at(2.4), {true, true}, tolerance, at));
+  EXPECT_TRUE(other.lead(load_state_at(2), load_state_at(2.4), {true, true}, tolerance, at));
   at = straight.at(2);
   at.positions(3, 1) += 1e-9;
-  EXPECT_FALSE(other.lead(demand_at(2), demand_at(2.4), {true, true}, tolerance, at));
+  EXPECT_FALSE(other.lead(load_state_at(2), load_state_at(2.4), {true, true}, tolerance, at));
   at = straight.at(0.4);
-  EXPECT_FALSE(walked(straight, {0, 0.4}).lead(demand_at(0.4), demand_at(0.8), {true, true}, tolerance, at));
+  EXPECT_FALSE(walked(straight, {0, 0.4}).lead(load_state_at(0.4), load_state_at(0.8), {true, true}, tolerance, at));
 }
 
-/// Along a bent way of several loads each equilibrium is that of its own loads, whatever the ones before lead to.
+/// Along a curved path of several loads each equilibrium has the requested loads, whatever the predictions.
 TEST(Trail, LoadsThatAreGivenAreThoseThatAreAskedFor) {
   RobotSpec spec = chambers_beam(3);
   for (ActuatorSpec& chamber : spec.actuators) chamber = by_load(chamber);
@@ -114,17 +114,17 @@ TEST(Trail, LoadsThatAreGivenAreThoseThatAreAskedFor) {
 /// Where tangents do better they are not given up.
 TEST(Trail, FirstOrderIsKeptWhereItIsBetter) {
   const Curve curve(9);
-  const std::vector<double> ways{0, 0.01, 0.02, 0.03};
-  Trail trail = walked(curve, ways);
+  const std::vector<double> paths{0, 0.01, 0.02, 0.03};
+  Trail trail = walked(curve, paths);
   Iterate at = curve.at(0.03);
-  ASSERT_TRUE(trail.lead(demand_at(0.03), demand_at(0.04), {true, true}, tolerance, at));
+  ASSERT_TRUE(trail.lead(load_state_at(0.03), load_state_at(0.04), {true, true}, tolerance, at));
   const double missed = largest_move(at.positions, curve.at(0.04).positions);
   EXPECT_GT(missed, 0);
   at = curve.at(0.03);
-  trail.note_tangent(demand_at(0.02), demand_at(0.03), missed);
-  EXPECT_FALSE(trail.lead(demand_at(0.03), demand_at(0.04), {true, true}, tolerance, at));
-  trail.note_tangent(demand_at(0.02), demand_at(0.03), 1e3 * missed);
-  EXPECT_TRUE(trail.lead(demand_at(0.03), demand_at(0.04), {true, true}, tolerance, at));
+  trail.note_tangent(load_state_at(0.02), load_state_at(0.03), missed);
+  EXPECT_FALSE(trail.lead(load_state_at(0.03), load_state_at(0.04), {true, true}, tolerance, at));
+  trail.note_tangent(load_state_at(0.02), load_state_at(0.03), 1e3 * missed);
+  EXPECT_TRUE(trail.lead(load_state_at(0.03), load_state_at(0.04), {true, true}, tolerance, at));
 }
 
 /// Steps of one length come to the same equilibria as each would alone, in two thirds of the iterations.

@@ -60,7 +60,7 @@ double moment_x(const Model& model, const Statics& statics, const State& at) {
 TEST(TurnedSupport, TwistsABarBySaintVenantsTorque) {
   const Model model = compile(twisted_bar(2));
   const Statics statics(model);
-  const Equilibrium found = settled(statics, model.rest_actuation());
+  const Equilibrium found = solve_converged(statics, model.rest_actuation());
   const double shear = 1 / (2 * 1.4);  // MPa
   const double expected = shear * 0.1406 * std::pow(10, 4) * 2 * degree / 80;
   const double torque = moment_x(model, statics, found.state);
@@ -70,7 +70,7 @@ TEST(TurnedSupport, TwistsABarBySaintVenantsTorque) {
   EXPECT_NEAR(section_turn(model, found.state.positions, 40), 1, 1e-3);
 }
 
-/// Two halves in series: their interface turns by the share of the compliance that lies before it, 1 / (1 + ratio).
+/// Two halves in series: the interface rotates by the first half's fraction of the compliance, 1 / (1 + ratio).
 TEST(TurnedSupport, TurnsTheInterfaceOfTwoMaterialsByTheirShare) {
   for (const double ratio : {4.0, 0.5}) {
     RobotSpec spec = twisted_bar(3);
@@ -80,18 +80,18 @@ TEST(TurnedSupport, TurnsTheInterfaceOfTwoMaterialsByTheirShare) {
     first.elastic->youngs_modulus = ratio;
     spec.materials.push_back(first);
     const Model model = compile(spec);
-    const Equilibrium found = settled(Statics(model), model.rest_actuation());
+    const Equilibrium found = solve_converged(Statics(model), model.rest_actuation());
     EXPECT_NEAR(section_turn(model, found.state.positions, 40) / (3 / (1 + ratio)), 1, 0.02) << ratio;
   }
 }
 
-/// Far around, from rest at once: the bar is twisted, not back at rest, and so by half in its middle. Back the same way
-/// it comes to rest.
+/// After a full turn at once from rest the bar is twisted, not back at rest, so that its middle has turned by half. On
+/// the same path back it returns to rest.
 TEST(TurnedSupport, FollowsAWholeTurn) {
   RobotSpec spec = twisted_bar(0, {16, 2, 2});
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium whole = settled(statics, values({360}));
+  const Equilibrium whole = solve_converged(statics, values({360}));
   EXPECT_GT(whole.report.continuation_steps, 11);
   EXPECT_NEAR(std::abs(section_turn(model, whole.state.positions, 40)), 180, 1);
   EXPECT_NEAR(section_turn(model, whole.state.positions, 20), 90, 2);
@@ -121,7 +121,7 @@ TEST(TurnedSupport, TurnsARobotRigidlyWithAllThatHoldsIt) {
     const Model model = compile(spec);
     const Statics statics(model);
     for (const double degrees : {20.0, 90.0, -250.0, 360.0}) {
-      const Equilibrium found = settled(statics, values({degrees, degrees}));
+      const Equilibrium found = solve_converged(statics, values({degrees, degrees}));
       const Points expected = turned(model.rest, axis, degrees, about).rowwise() + shift.transpose();
       EXPECT_LT(distance(found.state.positions, expected), 1e-7) << physical << " " << degrees;
       EXPECT_LT(std::abs(found.report.energy), 1e-9) << physical << " " << degrees;
@@ -135,7 +135,7 @@ TEST(TurnedSupport, TurnsAboutTheMeanOfWhatItHoldsByTheScenesAngle) {
   spec.fixed = {turning("x_low", {0, 0, 1}, {}, 90)};
   const Model model = compile(spec);
   EXPECT_EQ(model.actuators[0].name, "x_low_turn");
-  const Equilibrium found = settled(Statics(model), model.rest_actuation());
+  const Equilibrium found = solve_converged(Statics(model), model.rest_actuation());
   EXPECT_LT(distance(found.state.positions, turned(model.rest, {0, 0, 1}, 90, {0, 5, 5})), 1e-7);
 }
 
@@ -145,10 +145,10 @@ TEST(TurnedSupport, TwistsTargetShapes) {
   spec.fixed.push_back(turning("x_high", {1, 0, 0}));
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium at_once = settled(statics, values({150}));
+  const Equilibrium at_once = solve_converged(statics, values({150}));
   EXPECT_NEAR(section_turn(model, at_once.state.positions, 30), 75, 1.5);
   EXPECT_GE(at_once.report.continuation_steps, 15);
-  Equilibrium step = settled(statics, values({60}));
+  Equilibrium step = solve_converged(statics, values({60}));
   for (const double degrees : {110.0, 150.0}) step = statics.solve(values({degrees}), step.state, tight());
   EXPECT_LT(distance(step.state.positions, at_once.state.positions), 1e-6);
   StaticsOptions printed = tight(1e-7);
@@ -166,7 +166,7 @@ TEST(TurnedSupport, TurnsARigidRegionThatItHolds) {
     spec.fixed.push_back(turning("x_high", {1, 0, 0}));
     spec.rigid.push_back({{Box{{30, 0, 0}, {40, 10, 10}}, {}}, "end"});
     const Model model = compile(spec);
-    const Equilibrium found = settled(Statics(model), values({40}));
+    const Equilibrium found = solve_converged(Statics(model), values({40}));
     const Points expected = turned(model.rest, {1, 0, 0}, 40, {40, 5, 5});
     for (const Index v : model.rigid[0].vertices)
       EXPECT_LT((found.state.positions.row(v) - expected.row(v)).norm(), 1e-12) << physical;
@@ -181,23 +181,23 @@ TEST(TurnedSupport, HasTheDerivativeOfDifferences) {
   RobotSpec bar = twisted_bar(0, {8, 2, 2});
   bar.fixed[1].displacement = {3, 0, 1};
   expect_differences_at(bar, values({70}));
-  for (const bool least_norm : {true, false}) {
-    RobotSpec mixed = mixed_robot(least_norm, least_norm ? 0.6 : 1);
+  for (const bool minimum_norm : {true, false}) {
+    RobotSpec mixed = mixed_robot(minimum_norm, minimum_norm ? 0.6 : 1);
     mixed.fixed.push_back(turning("x_high", {1, 0, 0.3}));
     expect_differences_at(mixed, values({1.1, 1.2, 0.95, 12}), 1e-5);
   }
 }
 
-/// What is predicted of an angle nearby misses the equilibrium there by the square of the way.
+/// The error of the prediction for a nearby angle is quadratic in the step.
 TEST(TurnedSupport, IsPredictedToFirstOrder) {
   const Model model = compile(twisted_bar(0, {8, 2, 2}));
   const Statics statics(model);
-  const Equilibrium at = settled(statics, values({50}));
+  const Equilibrium at = solve_converged(statics, values({50}));
   Neighbourhood around(statics, at.state);
   double before = 0;
-  for (const double way : {8.0, 4.0, 2.0}) {
-    const Points expected = statics.solve(values({50 + way}), at.state, tight()).state.positions;
-    const double error = distance(around.predict(values({50 + way})).positions, expected);
+  for (const double path : {8.0, 4.0, 2.0}) {
+    const Points expected = statics.solve(values({50 + path}), at.state, tight()).state.positions;
+    const double error = distance(around.predict(values({50 + path})).positions, expected);
     EXPECT_LT(error, 0.2 * distance(at.state.positions, expected));
     if (before > 0) {
       EXPECT_GT(before / error, 3.5);
@@ -206,21 +206,21 @@ TEST(TurnedSupport, IsPredictedToFirstOrder) {
   }
 }
 
-/// A start of which no commands are known tells its angle.
+/// Where the commands of a start are not known, its angle is determined from its shape.
 TEST(TurnedSupport, KnowsTheAngleOfAShape) {
   const Model model = compile(twisted_bar(0, {8, 2, 2}));
   const Statics statics(model);
-  const Equilibrium at = settled(statics, values({100}));
+  const Equilibrium at = solve_converged(statics, values({100}));
   State start = statics.rest();
   start.positions = at.state.positions;
   const Equilibrium again = statics.solve(values({120}), start, tight());
   EXPECT_EQ(again.report.status, Status::converged);
   EXPECT_LT(again.report.continuation_steps, 3);
-  EXPECT_LT(distance(again.state.positions, settled(statics, values({120})).state.positions), 1e-6);
+  EXPECT_LT(distance(again.state.positions, solve_converged(statics, values({120})).state.positions), 1e-6);
 }
 
-/// Where a factor in double precision stands ready, and what it was made of is lost, a support that turns still takes
-/// the body along: the prediction misses by the square of the way.
+/// With a factor in double precision, whose matrix is no longer stored, a support that turns still moves the body
+/// along: the error of the prediction is quadratic in the step.
 TEST(TurnedSupport, IsPredictedWithAFactorInDoublePrecision) {
   const Model model = compile(twisted_bar(10, {8, 2, 2}));
   const Statics statics(model);
@@ -230,7 +230,7 @@ TEST(TurnedSupport, IsPredictedWithAFactorInDoublePrecision) {
   Team team(1);
   const Equilibrium found = statics.solve(model.rest_actuation(), statics.rest(), tight());
   ASSERT_EQ(found.report.status, Status::converged);
-  const physical::Demand here{found.state.actuation, 1};
+  const physical::LoadState here{found.state.actuation, 1};
   const physical::Iterate at = system.iterate(found.state);
   physical::Balance balance;
   const std::vector<bool> none(system.actuators());
@@ -239,7 +239,7 @@ TEST(TurnedSupport, IsPredictedWithAFactorInDoublePrecision) {
   ASSERT_TRUE(work.saddle.factor().in_double());
   double missed[2];
   for (int i = 0; i < 2; ++i) {
-    const physical::Demand there{here.actuation.array() + 2.0 / (1 + i), 1};
+    const physical::LoadState there{here.actuation.array() + 2.0 / (1 + i), 1};
     physical::Iterate predicted = at;
     (void)physical::predict(system, here, there, none, work, team, predicted);
     const Equilibrium exact = statics.solve(there.actuation, found.state, tight());

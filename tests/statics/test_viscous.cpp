@@ -203,8 +203,8 @@ class OneElement {
 };
 
 /// A cycle of stretches from 1 to the largest and back, at one rate.
-double triangle(double share, double largest) {
-  return 1 + (largest - 1) * (share < 0.5 ? 2 * share : 2 - 2 * share);
+double triangle(double fraction, double largest) {
+  return 1 + (largest - 1) * (fraction < 0.5 ? 2 * fraction : 2 - 2 * fraction);
 }
 
 /// Largest difference of the stresses over a cycle, over the largest stress.
@@ -292,7 +292,7 @@ TEST(Viscosity, ABarCreepsUnderALoad) {
   // shear compliance: J(t) = 1/mu - (1/mu - 1/(mu + G)) exp(-t / retardation)
   const double retardation = time * (mu + added) / mu;
   StaticsOptions options;
-  options.history = freely.flow(settled(freely, {}).state).history;
+  options.history = freely.flow(solve_converged(freely, {}).state).history;
   options.elapsed_s = 0;
   State state = statics.rest();
   double at = 0;
@@ -317,7 +317,7 @@ TEST(Viscosity, TimesBeginAfterALongRestUnderTheLoads) {
   spec.loads.gravity = {0, 0, -9.81};
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium relaxed = settled(statics, values({1}));
+  const Equilibrium relaxed = solve_converged(statics, values({1}));
   ASSERT_GT((relaxed.state.positions - model.rest).cwiseAbs().maxCoeff(), 0.05);
   StaticsOptions timed;
   for (const double time : {0.0, 0.5, 100.0}) {
@@ -330,8 +330,8 @@ TEST(Viscosity, TimesBeginAfterALongRestUnderTheLoads) {
   timed.elapsed_s = 0;
   const Equilibrium jumped = statics.solve(values({1.2}), statics.rest(), timed);
   timed.history = statics.flow(relaxed.state).history;
-  const Equilibrium told = statics.solve(values({1.2}), relaxed.state, timed);
-  EXPECT_LT((jumped.state.positions - told.state.positions).cwiseAbs().maxCoeff(), 1e-5);
+  const Equilibrium reported = statics.solve(values({1.2}), relaxed.state, timed);
+  EXPECT_LT((jumped.state.positions - reported.state.positions).cwiseAbs().maxCoeff(), 1e-5);
 }
 
 /// From the shape before as from rest: the same.

@@ -81,7 +81,7 @@ class SheetApart {
 struct Cycle {
   std::vector<double> solved, apart;
 
-  Cycle(double most_kV, double period_s, int steps) {
+  Cycle(double max_kV, double period_s, int steps) {
     const Model model = compile(acrylic_sheet());
     const Statics statics(model);
     SheetApart sheet;
@@ -89,7 +89,7 @@ struct Cycle {
     State state = statics.rest();
     double before = 0;
     for (int i = 1; i <= steps; ++i) {
-      const double voltage = most_kV * (2 * i <= steps ? 2.0 * i / steps : 2 - 2.0 * i / steps);
+      const double voltage = max_kV * (2 * i <= steps ? 2.0 * i / steps : 2 - 2.0 * i / steps);
       options.elapsed_s = period_s / steps;
       const Equilibrium found = statics.solve(values({voltage}), state, options);
       EXPECT_EQ(found.report.status, Status::converged) << found.report.remark;

@@ -15,8 +15,8 @@ using Cell = std::array<int, 3>;
 using Keep = std::function<bool(int, int, int)>;   // of a cell
 using Place = std::function<Vec3(int, int, int)>;  // of a vertex of the grid
 
-/// Cells of a grid in six tetrahedra each, whose vertices go where they are told: those that come to the same place
-/// become one, and what loses its volume by that goes. The lowest layer of vertices is held.
+/// Splits the cells of a grid into six tetrahedra each and places their vertices. Vertices at the same place become
+/// one, and tetrahedra that thereby lose their volume are left out. The lowest layer of vertices is held.
 PressedBody shaped(const Cell& cells, const Place& place, const Keep& keep = {}) {
   Mesh mesh;
   for (int k = 0; k < cells[2]; ++k)

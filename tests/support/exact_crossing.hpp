@@ -13,7 +13,7 @@ struct Crossing {
 };
 
 /// Pairs of triangles that meet where they should not, without any rounding: decided for the doubles as they are.
-/// Shares no code with what it is to judge.
+/// Fractions no code with what it is to judge.
 ///
 /// no common vertex   a point in both, be it that they only touch
 /// one                a point in both other than that vertex

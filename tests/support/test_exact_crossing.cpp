@@ -37,7 +37,7 @@ double below(double x) {
   return std::nextafter(x, -inf);
 }
 
-// By another way than the code under test: whole numbers, and planes that separate.
+// A method that is independent of the code under test: whole numbers, and planes that separate.
 
 Whole operator-(const Whole& a, const Whole& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
@@ -128,8 +128,8 @@ Whole sheared(const Whole& p) {
   return {x, p[1], p[2] + much * x};
 }
 
-/// Pairs that have so many corners in common; compares both ways. Every other pair is sheared, others
-/// so small that products of three coordinates, or of two, are next to nothing.
+/// Compares both methods on random pairs with `shared` common corners. Every other pair is sheared, others are so small
+/// that products of three coordinates, or of two, almost vanish.
 Tally compare_random_pairs(std::size_t shared, int range, int pairs, std::uint64_t seed) {
   Draw draw(seed);
   Tally tally;

@@ -10,7 +10,7 @@
 namespace softkin::testing {
 namespace {
 
-/// A bar of 100 x 12 x 12 rolled up around an axis along y by so many laps, which leave `away` per lap between them.
+/// Returns a bar of 100 x 12 x 12, rolled up around an axis along y; its radius grows by `away` per lap.
 Mesh spiral(Mesh bar, double laps, double away) {
   for (Index v = 0; v < bar.vertices.rows(); ++v) {
     const Vec3 p = vertex_at(bar.vertices, v);

@@ -24,7 +24,7 @@ namespace softkin::view::testing {
 
 using softkin::testing::patient;
 
-/// A socket to 127.0.0.1 that waits no longer than it is told.
+/// A socket to 127.0.0.1 whose waits have a time limit.
 class PlainSocket {
  public:
   /// receive_buffer: of the socket [bytes]; 0: the system's
@@ -48,7 +48,7 @@ class PlainSocket {
       : socket_(std::exchange(other.socket_, -1)), read_(std::move(other.read_)) {}
   PlainSocket& operator=(PlainSocket&&) = delete;
 
-  /// false: the other side has gone
+  /// Returns false after the other side has closed.
   bool send(std::string_view bytes) {
     while (!bytes.empty()) {
       const ssize_t count = ::send(socket_, bytes.data(), bytes.size(), MSG_NOSIGNAL);
@@ -58,10 +58,10 @@ class PlainSocket {
     return true;
   }
 
-  /// No more is sent; what comes is still taken.
+  /// Ends sending; the socket still receives.
   void end_sending() { ::shutdown(socket_, SHUT_WR); }
 
-  /// What comes next, so many bytes; none where less comes until then.
+  /// Returns the next `count` bytes; none where fewer arrive in time.
   std::optional<std::string> take(std::size_t count, double seconds = patient(5)) {
     while (read_.size() < count)
       if (!fill(seconds)) return std::nullopt;

@@ -18,16 +18,16 @@ inline std::string small_page() {
          "<script type=\"application/json\" id=\"softkin-page\">null</script></body></html>\n";
 }
 
-/// A server without a robot: what it is asked is kept.
+/// A server without a robot, which records its requests.
 class Served {
  public:
   explicit Served(const Model& model, const LiveLimits& limits = {}) : server(0, limits), model_(model) {
     run([this](const LiveRequest& request) {
       const std::lock_guard<std::mutex> lock(mutex_);
-      asked_.push_back(request);
+      requested_.push_back(request);
     });
   }
-  /// ask: takes the requests; readings: columns that pages may say what was read of
+  /// ask: receives the requests; readings: number of columns that pages may send readings of
   Served(const Model& model, LiveServer::Ask ask, std::size_t readings = 0) : server(0), model_(model) {
     run(std::move(ask), readings);
   }
@@ -39,12 +39,12 @@ class Served {
     thread_.join();
   }
 
-  [[nodiscard]] std::vector<LiveRequest> asked() const {
+  [[nodiscard]] std::vector<LiveRequest> requested() const {
     const std::lock_guard<std::mutex> lock(mutex_);
-    return asked_;
+    return requested_;
   }
   [[nodiscard]] int port() const { return server.port(); }
-  /// A client that has said hello.
+  /// Returns a client that has sent its hello.
   [[nodiscard]] LiveClient client(const std::string& with = secret, int receive_buffer = 0) const {
     LiveClient client(port(), receive_buffer);
     client.hello(with);
@@ -62,7 +62,7 @@ class Served {
 
   const Model& model_;
   mutable std::mutex mutex_;
-  std::vector<LiveRequest> asked_;
+  std::vector<LiveRequest> requested_;
   std::thread thread_;
 };
 
@@ -88,7 +88,7 @@ struct ServedRobot {
   std::unique_ptr<LiveRobot> robot;
 };
 
-/// A made-up shape of so many vertices.
+/// Returns a synthetic shape with a number of vertices.
 inline std::shared_ptr<const LiveAnswer> made_up_shape(RequestId id, std::size_t vertices, std::uint64_t asker = 1) {
   LiveShape shape;
   shape.id = id;

@@ -83,8 +83,8 @@ TEST(LiveMessages, AreRefusedInASentence) {
       {R"({"type":"target","id":1,"marker":0,"at":[1,1,1e308]})", "at is farther away than "},
       {R"({"type":"target","id":1,"marker":0,"at":[-1e4,1,1]})", "at is farther away than "}};
   for (const auto& [text, why] : table) {
-    const std::string told = refusal_of(text);
-    EXPECT_EQ(told.find(why), 0u) << text << ": " << told;
+    const std::string reported = refusal_of(text);
+    EXPECT_EQ(reported.find(why), 0u) << text << ": " << reported;
   }
   EXPECT_EQ(refusal_of(R"({"type":"target","id":1,"marker":0,"at":[-1e3,1,1]})"), "");
 }

@@ -126,7 +126,7 @@ TEST(LiveServer, WithoutTheSecretOneWatches) {
       return other.next("state").at("watchers") == 1;
     }));
   }
-  EXPECT_TRUE(served.asked().empty());
+  EXPECT_TRUE(served.requested().empty());
 }
 
 TEST(LiveServer, ControlGoesFromHandToHand) {
@@ -149,7 +149,7 @@ TEST(LiveServer, ControlGoesFromHandToHand) {
   first.command(1, {1, 1});
   EXPECT_EQ(first.next("refused").at("id"), 1);
   second.command(2, {1, 1});
-  ASSERT_TRUE(comes_true([&] { return served.asked().size() == 1; }));
+  ASSERT_TRUE(comes_true([&] { return served.requested().size() == 1; }));
 
   second.say(nlohmann::json{{"type", "release"}});
   EXPECT_TRUE(first.comes_to([](const auto& s) { return s.at("free") == true; }));
@@ -161,7 +161,7 @@ TEST(LiveServer, ControlGoesFromHandToHand) {
   EXPECT_TRUE(second.comes_to([](const auto& s) { return s.at("free") == true && s.at("watchers") == 1; }));
   LiveClient third = served.client();  // nobody has it
   EXPECT_TRUE(third.comes_to([](const auto& s) { return s.at("control") == true; }));
-  EXPECT_EQ(served.asked().size(), 1u);
+  EXPECT_EQ(served.requested().size(), 1u);
 }
 
 TEST(LiveServer, AnswersAreNumberedForWhoAsked) {
@@ -170,12 +170,12 @@ TEST(LiveServer, AnswersAreNumberedForWhoAsked) {
   first.next("state");
   watcher.next("state");
   first.command(7, {1, 1});
-  ASSERT_TRUE(comes_true([&] { return served.asked().size() == 1; }));
-  const std::uint64_t asker = served.asked()[0].asker;
+  ASSERT_TRUE(comes_true([&] { return served.requested().size() == 1; }));
+  const std::uint64_t asker = served.requested()[0].asker;
   served.server.show(made_up_shape(7, 10, asker));
   EXPECT_EQ(first.shape()->head.at("id"), 7);
   EXPECT_EQ(watcher.shape()->head.at("commands").at(0), 7);
-  // what was asked before another one took control answers nobody
+  // an answer to a request from before a change of control carries no request id
   LiveClient second = served.client();
   EXPECT_EQ(second.shape()->head.at("id"), 0);
   second.say(nlohmann::json{{"type", "take"}});
@@ -212,13 +212,13 @@ TEST(LiveServer, RefusesWhatIsNoMessage) {
     client.send(R"({"type":"command","id":5,"commands":)" + commands + "}");
     EXPECT_FALSE(client.next("refused").is_null()) << commands;
   }
-  EXPECT_TRUE(served.asked().empty());
+  EXPECT_TRUE(served.requested().empty());
   client.command(5, {1, 1});
   client.command(5, {1, 1});
   EXPECT_EQ(client.next("refused").at("id"), 5) << "numbers grow";
   client.target(6, 1, {1, 2, 3});
-  EXPECT_TRUE(comes_true([&] { return served.asked().size() == 2; }));
-  const auto target = std::get<TargetRequest>(served.asked()[1].what);
+  EXPECT_TRUE(comes_true([&] { return served.requested().size() == 2; }));
+  const auto target = std::get<TargetRequest>(served.requested()[1].what);
   EXPECT_EQ(target.marker, 1);
   EXPECT_EQ(target.at, Vec3(1, 2, 3));
 }
@@ -229,12 +229,12 @@ TEST(LiveServer, MessagesInPiecesAreOneAndTooManyEndIt) {
   client.next("state");
   client.send("{\"type\":\"comm", text, false);
   client.send("and\",\"id\":1,\"commands\":[1,1]}", continued, true);
-  EXPECT_TRUE(comes_true([&] { return served.asked().size() == 1; }));
+  EXPECT_TRUE(comes_true([&] { return served.requested().size() == 1; }));
   for (int id = 2; id < 52; ++id) client.command(static_cast<std::uint64_t>(id), {1, 1});
-  EXPECT_TRUE(comes_true([&] { return served.asked().size() == 51; })) << "50 at once are borne";
+  EXPECT_TRUE(comes_true([&] { return served.requested().size() == 51; })) << "50 at once are borne";
   for (int id = 52; id < 500; ++id) client.command(static_cast<std::uint64_t>(id), {1, 1});
   EXPECT_EQ(client.close_code(), 1008);
-  EXPECT_LT(served.asked().size(), 300u);
+  EXPECT_LT(served.requested().size(), 300u);
   LiveClient pinging = served.client();
   for (int i = 0; i < 500; ++i) pinging.send("", ping);
   EXPECT_EQ(pinging.close_code(), 1008);
@@ -255,7 +255,7 @@ TEST(LiveServer, SlowReadersDelayNobody) {
     slowest = std::max(slowest, seconds_since(begin));
   }
   EXPECT_LT(slowest, patient(1));
-  // one on its way, those that fitted into sockets, and the newest
+  // the shape in transmission, those in the sockets' buffers, and the newest
   std::vector<int> seen;
   while (seen.empty() || seen.back() < static_cast<int>(shapes)) {
     const auto frame = slow.shape();
@@ -287,7 +287,7 @@ TEST(LiveServer, EndsWhatDoesNotComeOn) {
     stalled.send("", pong);
   }
   answers.command(1, {1, 1});
-  EXPECT_TRUE(comes_true([&] { return served.asked().size() == 1; }));
+  EXPECT_TRUE(comes_true([&] { return served.requested().size() == 1; }));
   EXPECT_TRUE(answers.say(nlohmann::json{{"type", "release"}}));
   EXPECT_TRUE(answers.comes_to([](const auto& s) { return s.at("free") == true && s.at("watchers") == 1; }));
 }

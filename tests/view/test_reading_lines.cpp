@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-#include "told_robot.hpp"
+#include "reported_robot.hpp"
 
 namespace softkin::view {
 namespace {
@@ -10,8 +10,8 @@ namespace {
 struct Lines {
   Model model = testing::pushed_model();
   LineColumns columns;
-  explicit Lines(bool timed = false) : columns(model, testing::pushed_setup(model).columns, told(), timed) {}
-  [[nodiscard]] std::vector<Index> told() const {
+  explicit Lines(bool timed = false) : columns(model, testing::pushed_setup(model).columns, reported(), timed) {}
+  [[nodiscard]] std::vector<Index> reported() const {
     std::vector<Index> indices;
     for (std::size_t a = 0; a < model.actuators.size(); ++a)
       if (model.actuators[a].is<ForceCommand>()) indices.push_back(a);
@@ -62,13 +62,13 @@ TEST(ReadingLines, AreRefusedInASentence) {
       {R"({"air_kPa": 301, "tip_x_mm": 1})", "air: 301 kPa is outside its range, -100 to 300 kPa"},
       {R"({"air_kPa": null, "tip_x_mm": 1})", "air_kPa is a command"},
       {R"({"air_kPa": 1, "air": 1, "tip_x_mm": 1})", "air: another key commands the same"},
-      {R"({"push_fy_N": 1, "tip_x_mm": 1})", "push_fy_N is to be told: leave it out"},
+      {R"({"push_fy_N": 1, "tip_x_mm": 1})", "push_fy_N is to be estimated: leave it out"},
       {R"({"t_s": "now", "tip_x_mm": 1})", "t_s must be a finite number"}};
   for (const auto& [text, why] : table)
     EXPECT_EQ(lines.refusal_of(text).find(why), 0u) << text << lines.refusal_of(text);
   EXPECT_EQ(lines.refusal_of(R"({"t_s": 2, "tip_x_mm": 1})", 2), "t_s must increase from line to line");
   EXPECT_EQ(lines.refusal_of(R"({"t_s": 2, "tip_x_mm": 1})", 1.9), "");
-  EXPECT_EQ(timed.refusal_of(R"({"tip_x_mm": 1})"), "t_s is missing: what was told fades in time");
+  EXPECT_EQ(timed.refusal_of(R"({"tip_x_mm": 1})"), "t_s is missing: estimates fade in time");
   EXPECT_EQ(lines.refusal_of(std::string(longest_line, '[')), "a line is a JSON object");
   EXPECT_EQ(lines.refusal_of(std::string(longest_line + 1, ' ')), "a line is at most 65536 bytes long");
   EXPECT_EQ(lines.refusal_of(R"({"tip_x_mm":)" + std::string(2000, '[') + std::string(2000, ']') + "}"),
@@ -82,7 +82,7 @@ TEST(ReadingLines, BeginWithAToken) {
   EXPECT_EQ(nlohmann::json::parse(error_line("no \"such\"\xff")).at("error"), "no \"such\"\xef\xbf\xbd");
 }
 
-/// Of a single marker a table may say x_mm alone.
+/// With a single marker a table may have the column x_mm without the marker's name.
 TEST(ReadingLines, KnowTheOnlyMarker) {
   const Model model = runs::testing::swelling_model();
   const LineColumns columns(model, possible_readings(model), {}, false);

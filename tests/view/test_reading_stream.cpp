@@ -1,19 +1,19 @@
 #include <gtest/gtest.h>
 
-#include "told_robot.hpp"
+#include "reported_robot.hpp"
 
 namespace softkin::view {
 namespace {
 
 using namespace testing;
 
-/// A stream without a robot: what it is asked is kept.
+/// A stream without a robot, which records its requests.
 class Streamed {
  public:
   explicit Streamed(const StreamLimits& limits = {}, double fade_s = 0) : stream(0, limits) {
     stream.begin(
         {model_, pushed_setup(model_).columns, {1, 2}, fade_s > 0}, secret,
-        [this](const LiveRequest& request) { asked_.push_back(request); },
+        [this](const LiveRequest& request) { requested_.push_back(request); },
         [this](bool lent) { lent_ += lent ? "+" : "-"; });
   }
   ~Streamed() { stream.stop(); }
@@ -31,10 +31,10 @@ class Streamed {
     answer.shape.estimate = R"({"status":"converged","chi_square":3,"readings":[1],"forces":[2]})";
     stream.answer(std::make_shared<const LiveAnswer>(std::move(answer)));
   }
-  /// All that was asked and lent, once the stream has ended.
-  [[nodiscard]] const std::vector<LiveRequest>& asked() {
+  /// Returns all requests and loans of control, once the stream has ended.
+  [[nodiscard]] const std::vector<LiveRequest>& requested() {
     stream.stop();
-    return asked_;
+    return requested_;
   }
   [[nodiscard]] const std::string& lent() {
     stream.stop();
@@ -45,7 +45,7 @@ class Streamed {
 
  private:
   const Model model_ = pushed_model();
-  std::vector<LiveRequest> asked_;
+  std::vector<LiveRequest> requested_;
   std::string lent_;
 };
 
@@ -80,15 +80,15 @@ TEST(ReadingStream, LetsInWhoHasTheTokenAndOneAtATime) {
   { const PlainSocket gone = std::move(first); }
   streamed.answer({(std::uint64_t{1} << 63) + 1, ReadingsRequest{1, {}, {}}});  // which is not waited for any more
   bool is_let_in = false;
-  for (int tries = 0; tries < 50 && !is_let_in; ++tries) {  // until it is seen that the first has gone
+  for (int tries = 0; tries < 50 && !is_let_in; ++tries) {  // until the end of the first connection is detected
     PlainSocket next = streamed.writer();
     next.send("{\"tip_x_mm\": 13}\n{\"a\": 1}\n");
     is_let_in = error_of(next).find("there is no column") == 0;
   }
   EXPECT_EQ(streamed.lent(), "+-+-");
-  ASSERT_EQ(streamed.asked().size(), 2u);
-  EXPECT_NE(streamed.asked()[0].asker, streamed.asked()[1].asker);
-  EXPECT_GE(streamed.asked()[0].asker, std::uint64_t{1} << 63);
+  ASSERT_EQ(streamed.requested().size(), 2u);
+  EXPECT_NE(streamed.requested()[0].asker, streamed.requested()[1].asker);
+  EXPECT_GE(streamed.requested()[0].asker, std::uint64_t{1} << 63);
 }
 
 TEST(ReadingStream, MalformedLinesAreToldAndTooManyEndIt) {
@@ -122,7 +122,7 @@ TEST(ReadingStream, EndsLinesThatAreTooLongOrTooMany) {
   PlainSocket writer = streamed.writer();
   for (int i = 0; i < 12; ++i) writer.send("{\"tip_x_mm\": 12}\n");
   EXPECT_EQ(error_of(writer), "too many lines in a short time");
-  EXPECT_EQ(streamed.asked().size(), 9u);
+  EXPECT_EQ(streamed.requested().size(), 9u);
 }
 
 TEST(ReadingStream, SilentOnesMustShowTheirToken) {
@@ -135,7 +135,7 @@ TEST(ReadingStream, SilentOnesMustShowTheirToken) {
   EXPECT_EQ(streamed.lent(), "");
 }
 
-/// The newest line that was asked about is told, and how many were passed over since the one before.
+/// The answer reports the newest line that was requested, and how many lines were passed over since the one before.
 TEST(ReadingStream, TellsWhatWasPassedOver) {
   Streamed streamed;
   PlainSocket writer = streamed.writer();
@@ -156,7 +156,7 @@ TEST(ReadingStream, TellsWhatWasPassedOver) {
   const nlohmann::json last = line_of(writer);
   EXPECT_EQ(last.at("t_s"), 5);
   EXPECT_EQ(last.at("passed_over"), 3);
-  // who has said all is still told what was asked last
+  // after the end of sending, the last request is still answered
   writer.send("{\"t_s\": 6, \"tip_x_mm\": 12}");  // its last line may lack its end
   writer.end_sending();
   EXPECT_EQ(writer.take(1, 0.1), std::nullopt);
@@ -165,14 +165,14 @@ TEST(ReadingStream, TellsWhatWasPassedOver) {
   EXPECT_EQ(line_of(writer).at("t_s"), 6);
   EXPECT_EQ(writer.take_rest(), "");
   EXPECT_EQ(streamed.lent(), "+-");
-  ASSERT_EQ(streamed.asked().size(), 6u);
-  EXPECT_EQ(streamed.asked()[4].asker, request(5).asker);
-  EXPECT_EQ(std::get<ReadingsRequest>(streamed.asked()[4].what).id, 5u);
+  ASSERT_EQ(streamed.requested().size(), 6u);
+  EXPECT_EQ(streamed.requested()[4].asker, request(5).asker);
+  EXPECT_EQ(std::get<ReadingsRequest>(streamed.requested()[4].what).id, 5u);
 }
 
-/// A robot that is told from a stream, and its pages.
-struct ToldRobot {
-  explicit ToldRobot(double fade_s = 0)
+/// A robot that is estimated from a stream, and its pages.
+struct ReportedRobot {
+  explicit ReportedRobot(double fade_s = 0)
       : model(pushed_model()),
         estimator(model, pushed_setup(model, false, fade_s)),
         statics(model),
@@ -188,11 +188,11 @@ struct ToldRobot {
         },
         &estimator);
     stream.begin(
-        {model, estimator.columns(), estimator.told_actuators(), estimator.fades()}, secret,
+        {model, estimator.columns(), estimator.reported_actuators(), estimator.fades()}, secret,
         [this](LiveRequest request) { robot->ask(std::move(request)); },
         [this](bool lent) { served.server.lend(lent); });
   }
-  ~ToldRobot() {
+  ~ReportedRobot() {
     served.end();
     stream.stop();
     robot.reset();
@@ -210,18 +210,18 @@ struct ToldRobot {
 
 /// Pages see the shape follow, without control while it streams.
 TEST(ReadingStream, TellsThePushAndPagesFollow) {
-  ToldRobot told;
-  LiveClient page = told.served.client();
+  ReportedRobot reported;
+  LiveClient page = reported.served.client();
   ASSERT_TRUE(page.comes_to([](const auto& state) { return state.at("control") == true; }));
-  PlainSocket writer(told.stream.port());
+  PlainSocket writer(reported.stream.port());
   writer.send(std::string(R"({"token": ")") + secret + "\"}\n");
   ASSERT_TRUE(page.comes_to([](const auto& state) { return state.at("streamed") == true; }));
   const Eigen::Vector3d pushes[] = {{0, 0.1, -0.05}, {50, -0.2, 0.1}};
   double time_s = 0;
   for (const Eigen::Vector3d& push : pushes) {
-    const Eigen::VectorXd read = read_at(told.model, push);
+    const Eigen::VectorXd read = read_at(reported.model, push);
     nlohmann::json line{{"t_s", time_s += 1}, {"air_kPa", push[0]}};
-    for (std::size_t c = 0; c < 6; ++c) line[told.estimator.columns()[c].name] = read[c];
+    for (std::size_t c = 0; c < 6; ++c) line[reported.estimator.columns()[c].name] = read[c];
     writer.send(line.dump() + "\n");
     const nlohmann::json answer = line_of(writer);
     ASSERT_EQ(answer.at("status"), "converged") << answer;
@@ -243,13 +243,13 @@ TEST(ReadingStream, TellsThePushAndPagesFollow) {
   EXPECT_TRUE(page.comes_to([](const auto& state) { return state.at("control") == true && !state.at("streamed"); }));
 }
 
-/// A page that has control says what was read; it neither commands nor leads markers there.
+/// A page that has control sends readings; it neither commands nor leads markers there.
 TEST(ReadingStream, PagesTellFromWhatIsTyped) {
-  ToldRobot told;
-  LiveClient page = told.served.client();
+  ReportedRobot reported;
+  LiveClient page = reported.served.client();
   ASSERT_TRUE(page.comes_to([](const auto& state) { return state.at("control") == true; }));
   const Eigen::Vector3d push(0, 0.1, -0.05);
-  const Eigen::VectorXd read = read_at(told.model, push);
+  const Eigen::VectorXd read = read_at(reported.model, push);
   nlohmann::json values = nlohmann::json::array();
   for (const double value : read) values.push_back(value);
   page.say({{"type", "readings"}, {"id", 1}, {"commands", {0, 0, 0}}, {"values", values}});
@@ -266,7 +266,7 @@ TEST(ReadingStream, PagesTellFromWhatIsTyped) {
   EXPECT_EQ(nothing->head.at("status"), "converged") << nothing->head;
   EXPECT_NEAR(nothing->head.at("estimate").at("numbers").at(0).at("deviation").get<double>(), 0.5, 1e-3);
   page.command(3, {0, 0, 0});
-  EXPECT_EQ(page.next("refused").at("why"), "what pushes is told here: send readings");
+  EXPECT_EQ(page.next("refused").at("why"), "forces are estimated here: send readings");
   page.say({{"type", "readings"}, {"id", 4}, {"commands", {0, 0, 0}}, {"values", {1, 2}}});
   EXPECT_EQ(page.next("refused").at("why"), "values must be a list of 6 numbers or null, one per column");
   page.say({{"type", "readings"}, {"id", 5}, {"commands", {0, 0, 0}}, {"values", {1, 2, 3, 4, 5, 1e10}}});

@@ -131,14 +131,14 @@ std::vector<std::string> lines_of_table(const std::string& file) {
   return lines;
 }
 
-/// What is streamed is told as softkin estimate tells it.
+/// Readings from a stream give the same estimates as softkin estimate.
 TEST(ViewCommand, TellsWhatIsStreamedAsEstimateDoes) {
   if (!runs::page_is_there()) GTEST_SKIP() << "built without the page";
   const std::string examples = std::string(SOFTKIN_SOURCE_DIR) + "/examples/estimate/";
   const std::string scene = examples + "finger.yaml", readings = examples + "readings.csv";
-  const std::vector<std::string> asked{"--unknown", "touch:place", "--deviation", "0.2", "--threads", "1"};
+  const std::vector<std::string> requested{"--unknown", "touch:place", "--deviation", "0.2", "--threads", "1"};
   const auto with = [&](std::vector<std::string> words) {
-    words.insert(words.end(), asked.begin(), asked.end());
+    words.insert(words.end(), requested.begin(), requested.end());
     return words;
   };
   const TemporaryFolder folder;

@@ -42,15 +42,15 @@ struct Photograph {
   unsigned seed = 1;
 };
 
-/// Straight from above: so many pixels in a mm, the origin at this pixel, y up.
+/// Views a plane straight from above, with a resolution [pixels per mm] and the origin at a given pixel, y up.
 inline Eigen::Matrix3d straight(double pixels, const Vec2& origin) {
   Eigen::Matrix3d map;
   map << pixels, 0, origin.x(), 0, -pixels, origin.y(), 0, 0, 1;
   return map;
 }
 
-/// A pinhole that looks at a plane: turned about x, y and then z [rad], the plane's origin at a distance [mm] along the
-/// axis, shifted by so many mm.
+/// Views a plane through a pinhole: rotated about x, y and then z [rad], with the plane's origin at a distance [mm]
+/// along the axis, shifted [mm].
 inline Eigen::Matrix3d tilted(double focal, const Vec2& middle, const Eigen::Vector3d& turns,
                               const Eigen::Vector3d& shift) {
   const auto c = [](double a) { return std::cos(a); };

@@ -56,7 +56,7 @@ TEST_P(CameraFit, FindsTheLensThatTookThePictures) {
   EXPECT_NEAR(found.fx, 655, 4 * found.focal_error);
   EXPECT_LT(found.reprojection_error, 0.15);
   EXPECT_EQ(errors.size(), 8U);
-  // what counts: where it says that a pixel would be without distortion, but for a shift and a turn of the whole
+  // compares undistorted pixels, up to a translation and rotation of the whole
   for (const Vec2& seen : {Vec2(120, 100), Vec2(520, 110), Vec2(500, 380), Vec2(130, 370)}) {
     const Vec2 a = undistorted(found, seen) - seen, b = undistorted(lens, seen) - seen;
     EXPECT_LT((a - b).norm(), 1.0) << seen.transpose();

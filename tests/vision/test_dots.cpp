@@ -90,7 +90,7 @@ TEST(Dots, PerspectiveAndLensDoNotShiftTheCentre) {
         {worst, (dot.place - discs[i].centre).norm() / pixel, (dot.pixel - seen_pixel(photo, discs[i].centre)).norm()});
   }
   std::printf("worst: %.3f pixel\n", worst);
-  EXPECT_LT(worst, 0.1);  // 0.3 is asked for
+  EXPECT_LT(worst, 0.1);  // the requirement is 0.3
 }
 
 TEST(Dots, RefusesWhatIsNotOneWholeDot) {

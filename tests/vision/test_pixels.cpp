@@ -84,12 +84,12 @@ Places border_of(const Blob& blob) {
 TEST(Outline, IsTheBorderOfRandomBlobsStepByStep) {
   std::mt19937 random(7);
   int blobs = 0;
-  for (const int share : {25, 45, 60, 85})
+  for (const int fraction : {25, 45, 60, 85})
     for (int round = 0; round < 20; ++round) {
       RgbImage picture(48, 40);  // white; 3 x 3 pixels of red a piece, so that their mean is red in the middle
       for (int y = 3; y < 36; y += 3)
         for (int x = 3; x < 44; x += 3)
-          if (static_cast<int>(random() % 100) < share)
+          if (static_cast<int>(random() % 100) < fraction)
             for (int k = 0; k < 9; ++k) {
               std::uint8_t* pixel = picture.pixel(x + k % 3, y + k / 3);
               pixel[0] = 200, pixel[1] = 20, pixel[2] = 20;

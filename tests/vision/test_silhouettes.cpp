@@ -75,7 +75,7 @@ TEST(Silhouettes, AColouredDiscHasItsRadius) {
   EXPECT_NEAR(disc.length, 2 * M_PI * radius, 0.01 * 2 * M_PI * radius);
 }
 
-/// A hole has no part in it, and neither has what lies at the frame.
+/// A silhouette includes no hole and no part at the frame.
 TEST(Silhouettes, HasNoHoleAndEndsAtTheFrame) {
   const Paint ring = discs_on({{{0, 0}, 8, paper}, {{0, 0}, 20, ink}});
   const Silhouette whole = silhouette_in(ring, "dark");

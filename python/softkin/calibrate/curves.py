@@ -30,7 +30,7 @@ class Branch:
 
 @dataclass(frozen=True)
 class ModulusCheck:
-    """What measured pressures say of the moduli behind predicted ones."""
+    """Compares measured and predicted pressures, to check the moduli of the prediction."""
 
     factor: float
     """least squares: measured = factor * predicted; by it all moduli would have to be multiplied [-]"""
@@ -82,11 +82,11 @@ class Curve(Fit[_core.CurveCalibration]):
 
     @property
     def prediction(self) -> Prediction | None:
-        """None: not asked for."""
-        told = self._core.prediction
-        if told is None:
+        """None: not requested."""
+        prediction = self._core.prediction
+        if prediction is None:
             return None
-        ratios, pressures, checks = told
+        ratios, pressures, checks = prediction
         known = [np.nan if pressure is None else pressure for pressure in pressures]
         by_branch = {branch: ModulusCheck(*check) for branch, check in checks.items()}
         return Prediction(np.array(ratios), np.array(known), by_branch)
@@ -171,7 +171,7 @@ def dea(
 
     tests            CSV: voltage_kv or voltage_v; area_ratio or stretch; run, t_s
     law                in place of tests: 'neo-hookean' or 'gent', from the equations of state
-    loading            what pulls at its edges by constant forces: 'equal-biaxial' (both directions alike, default),
+    loading            constant forces on its edges: 'equal-biaxial' (equal in both directions, default),
                        'uniaxial' (one alone), 'constrained' (one; stiff fibres keep the stretch across)
     permittivity       relative to vacuum
     thickness_mm       before any stretch [mm]

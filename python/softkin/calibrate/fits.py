@@ -1,4 +1,4 @@
-"""What calibrations have in common."""
+"""The base class of calibrations."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ Core = TypeVar("Core", bound=_core.Calibration | _core.CurveCalibration | _core.
 
 
 class Fit(Generic[Core]):
-    """What was fitted, and how."""
+    """Fitted parameters, and how they were determined."""
 
     def __init__(self, core: Core) -> None:
         self._core = core

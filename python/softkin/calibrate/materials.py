@@ -78,7 +78,7 @@ def material(
     regions              names of A and B in the scene
     store                file of the simulated tests: a calibration that was stopped goes on where it was; it is removed
                          at the end
-    progress             called with the share that is done, now and then
+    progress             called now and then with the completed fraction
     """
     if formulation not in (None, "physical", "target-shape"):
         raise InvalidInput(f"formulation must be 'physical' or 'target-shape', not {formulation!r}")

@@ -1,4 +1,4 @@
-"""Numbers of a robot from its measured poses: docs/poses.md."""
+"""Identification of a robot's parameters from measured poses: docs/poses.md."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class RobotFit(Fit[_core.RobotCalibration]):
 
     @property
     def deviations(self) -> dict[str, float]:
-        """Standard deviation by name; NaN: the poses do not tell it."""
+        """Standard deviation by name; NaN: the poses do not determine it."""
         known = {number["name"]: number["deviation"] for number in self.report["numbers"]}
         return {name: np.nan if deviation is None else deviation for name, deviation in known.items()}
 
@@ -85,7 +85,7 @@ def robot(
     threads: int = 0,
     progress: Callable[[int, float], object] | None = None,
 ) -> RobotFit:
-    """Numbers of a robot from its measured poses, by Levenberg's and Marquardt's method through equilibria.
+    """Identifies parameters of a robot from its measured poses, by the Levenberg-Marquardt method through equilibria.
 
     scene      YAML, physical formulation
     poses      CSV: commands as in a path, then tip_x_mm, ... of markers, air_pressure_kPa, tendon_tension_N, or
@@ -93,9 +93,9 @@ def robot(
                dot1_x_mm, ... of dots that are markers nobody named; empty cells were not read
     fit        by path: a start, (start, low, high), "mean+-deviation" (known before) or None, the scene's; or texts as
                of --fit; base.x, base.rx, ...: where the robot stands in the measuring frame [mm, degrees]; camera.x, ...:
-               the same, gravity turns along. Empty: the poses are foretold as the scene is
+               the same, gravity turns along. Empty: the poses are predicted from the scene as it is
     changes    of the scene, by path
-    loss       'squares', 'huber' or 'cauchy', which wrong readings hardly move
+    loss       'squares', 'huber' or 'cauchy', which are robust against outliers
     deviation  of a coordinate [mm], pressure [kPa], tension [N], length [mm], volume [mm^3], force [N], angle [deg],
                component of a direction as read; None: by what is left
     match_within_mm   how far a dot without a name may be from the marker that it is [mm]
@@ -104,9 +104,9 @@ def robot(
     outline_points    to which each outline is thinned, evenly along it; each point counts as a coordinate
     outline_within_mm farther from the robot's outline a point does not count [mm]; None: 5 % of the robot's diagonal
     given      numbers of the measuring frame that are known, such as {"camera.rx": -90} where pictures show x and z
-    keep       poses that are not fitted to but foretold, spread evenly
-    ordered    where something rubs or a motor has play: each pose goes on from the one before, the first from rest;
-               else each from rest
+    keep       number of poses, evenly spread, that are left out of the fit and predicted by it
+    ordered    for friction or backlash: each pose is solved from the one before, the first from rest;
+               otherwise each from rest
     threads    poses side by side; 0: as many as the machine has
     progress   called with the iteration and the root mean square of the markers or outlines [mm], now and then
     raises     InvalidInput naming the file, line and column, or the number

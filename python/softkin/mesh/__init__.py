@@ -1,4 +1,4 @@
-"""From surfaces (STL, OBJ, PLY) to volume meshes with named regions. docs/python_mesh.md tells more."""
+"""From surfaces (STL, OBJ, PLY) to volume meshes with named regions. See docs/python_mesh.md."""
 
 import sys as _sys
 

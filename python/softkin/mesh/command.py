@@ -45,7 +45,7 @@ def main(argv: Sequence[str]) -> int:
         warnings.showwarning = _show
         line = ProgressLine()
         try:
-            told = _generate(arguments, line.show)
+            summary = _generate(arguments, line.show)
         except (InvalidInput, ImportError) as error:
             line.clear()
             print(f"error: {error}", file=sys.stderr)
@@ -55,12 +55,12 @@ def main(argv: Sequence[str]) -> int:
             print("interrupted: nothing was written", file=sys.stderr)
             return 1
         line.clear()
-        print(told)
+        print(summary)
     return 0
 
 
 class ProgressLine:
-    """What is being done, on the terminal; elsewhere a line every ten seconds."""
+    """Shows the current operation on the terminal; elsewhere prints a line every ten seconds."""
 
     def __init__(self) -> None:
         self._terminal = sys.stderr.isatty()

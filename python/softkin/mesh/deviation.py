@@ -1,4 +1,4 @@
-"""How far the surface of a mesh is from the one that was given."""
+"""The distance between the surface of a mesh and the given surface."""
 
 from __future__ import annotations
 
@@ -15,8 +15,8 @@ CORNER = np.array([[0.98, 0.01, 0.01], [0.01, 0.98, 0.01], [0.01, 0.01, 0.98]])
 
 
 def deviation(surface: Surface, vertices: Array, faces: Array, tolerance: float) -> float:
-    """Largest distance between a surface and the faces (k, 3) of a mesh, either way, at samples, mm. What of the
-    surface lies inside itself, where it overlaps, bounds nothing and does not count."""
+    """Returns the larger of the two one-sided distances between a surface and the faces (k, 3) of a mesh, at samples,
+    mm. Parts of a self-overlapping surface that lie inside it do not count."""
     made = Surface(vertices, faces, "mesh")
     points, normals = _samples(surface)
     there = distances(made.corners, points)

@@ -1,4 +1,4 @@
-"""Distances of points from surfaces, and what is nearest there."""
+"""Distances of points from surfaces, and the nearest triangles."""
 
 from __future__ import annotations
 
@@ -25,12 +25,12 @@ def nearest(corners: Array, points: Array) -> tuple[Array, Array]:
     triangle = np.zeros(len(points), dtype=np.int64)
     level: list[tuple[Node, Array]] = [(tree.root, np.arange(len(points)))]
     while level:
-        gaps = [np.sqrt(((points[asked] - node.centre) ** 2).sum(axis=1)) for node, asked in level]
-        for (node, asked), gap in zip(level, gaps):  # every group has a triangle within its ball
-            bound[asked] = np.minimum(bound[asked], gap + node.radius)
+        gaps = [np.sqrt(((points[indices] - node.centre) ** 2).sum(axis=1)) for node, indices in level]
+        for (node, indices), gap in zip(level, gaps):  # every group has a triangle within its ball
+            bound[indices] = np.minimum(bound[indices], gap + node.radius)
         following = []
-        for (node, asked), gap in zip(level, gaps):
-            near = asked[gap - node.radius <= bound[asked]]
+        for (node, indices), gap in zip(level, gaps):
+            near = indices[gap - node.radius <= bound[indices]]
             if len(near) and node.children is None:
                 found, which = _nearest_of_few(points[near], tree.corners[node.triangles])
                 closer = found < best[near]
@@ -68,8 +68,8 @@ def _nearest_of_few(points: Array, corners: Array) -> tuple[Array, Array]:
     least, which = np.empty(len(points)), np.empty(len(points), dtype=np.int64)
     step = max(1, PAIRS // len(corners))
     for begin in range(0, len(points), step):
-        asked = points[begin : begin + step, None]
-        gaps = ((feet(asked, corners[None]) - asked) ** 2).sum(axis=2)
+        block = points[begin : begin + step, None]
+        gaps = ((feet(block, corners[None]) - block) ** 2).sum(axis=2)
         which[begin : begin + step] = gaps.argmin(axis=1)
         least[begin : begin + step] = np.sqrt(gaps.min(axis=1))
     return least, which

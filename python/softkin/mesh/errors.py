@@ -1,4 +1,4 @@
-"""What can be wrong with what was given."""
+"""Errors and warnings about the given surfaces and options."""
 
 from .._core import InvalidInput
 from .._warning import SoftkinWarning
@@ -7,4 +7,4 @@ __all__ = ["InvalidInput", "MeshWarning"]
 
 
 class MeshWarning(SoftkinWarning):
-    """What is probably not meant: units, large holes, a boundary farther from its surface than asked for."""
+    """A probable mistake: wrong units, large holes, a boundary farther from its surface than the tolerance."""

@@ -48,15 +48,16 @@ def check_size(surfaces: Sequence[Surface], edge_length: float, backend: str, co
     needed, free = expected * BYTES_PER_TETRAHEDRON[backend], _core.free_memory_bytes()
     body = surfaces[0]
     size = " x ".join(f"{length:.3g}" for length in body.size)
-    told = f"edge_length={edge_length:g} mm for a body of {size} mm makes about {counted(expected)} tetrahedra"
+    message = f"edge_length={edge_length:g} mm for a body of {size} mm makes about {counted(expected)} tetrahedra"
     if needed > free:
         raise InvalidInput(
-            f"{told}, which take about {_core.memory_text(needed)} of memory to make, and {_core.memory_text(free)} are"
-            f" free: take a longer edge, such as {suggested_edge(surfaces, backend):.2g} mm"
+            f"{message}, which take about {_core.memory_text(needed)} of memory to make, and"
+            f" {_core.memory_text(free)} are free: take a longer edge, such as"
+            f" {suggested_edge(surfaces, backend):.2g} mm"
         )
     if expected > MANY and not coarsen:
         warnings.warn(
-            f"{told}, which takes long, and few machines solve for so many: an edge of"
+            f"{message}, which takes long, and few machines solve for so many: an edge of"
             f" {suggested_edge(surfaces, backend):.2g} mm makes about 30,000",
             MeshWarning,
             stacklevel=4,

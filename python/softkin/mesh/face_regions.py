@@ -21,11 +21,12 @@ NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?\d+)?"
 
 
 def choose_faces(name: str, chosen_by: Any, vertices: Array, faces: Array, tolerance: float) -> Array:
-    """The faces (k, 3) of which all corners are within `within` of what is told, default 1.5 times the tolerance.
+    """Returns the faces (k, 3) whose corners all lie within `within` of `chosen_by`, default 1.5 times the tolerance.
 
     chosen_by: 'plane z=0', 'plane 0 0 1 = 0', 'box 0 0 0 1 1 1', 'sphere x y z radius', each in mm; or a map with the
     key plane ('z=0'), box ([[x, y, z], [x, y, z]]), sphere ({'center': [x, y, z], 'radius': r}) or near (a surface
-    in mm), and 'within' (mm). Of a plane only faces along it are taken. Throws InvalidInput, which tells what is near.
+    in mm), and 'within' (mm). A plane selects only faces along it. Throws InvalidInput, which names the
+    nearest face.
     """
     key, value, within = _parse(name, chosen_by)
     within = 1.5 * tolerance if within is None else within
@@ -55,9 +56,9 @@ def choose_faces(name: str, chosen_by: Any, vertices: Array, faces: Array, toler
 def _parse(name: str, chosen_by: Any) -> tuple[str, Any, Any]:
     if isinstance(chosen_by, str):
         key, _, rest = chosen_by.strip().partition(" ")
-        rest, _, told = rest.partition(" within ")
+        rest, _, distance = rest.partition(" within ")
         if key in ("plane", "box", "sphere"):
-            return key, rest.strip(), _length(name, told) if told else None
+            return key, rest.strip(), _length(name, distance) if distance else None
     elif isinstance(chosen_by, Mapping):
         keys = [key for key in chosen_by if key in _MEASURES]
         if len(keys) == 1 and set(chosen_by) <= {keys[0], "within"}:

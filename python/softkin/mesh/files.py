@@ -32,8 +32,8 @@ def info(file: PathLike, unit: str | None = None) -> dict[str, Any]:
     file  .msh, .vtk, .vtu, .mesh, .node, .ele, .inp or .tet; or a scene, .yaml
     unit  of the file's lengths: 'mm', 'cm', 'm', 'um' or 'in'; None: mm, or the scene's
     """
-    told: dict[str, Any] = json.loads(_core.mesh_info(os.fspath(file), _unit(file, unit)))
-    return told
+    report: dict[str, Any] = json.loads(_core.mesh_info(os.fspath(file), _unit(file, unit)))
+    return report
 
 
 def check(file: PathLike, unit: str | None = None) -> tuple[bool, dict[str, Any]]:
@@ -53,5 +53,5 @@ def convert(file: PathLike, output: PathLike, *, ascii: bool = False) -> dict[st
     """
     if ascii and Path(output).suffix != ".msh":
         raise InvalidInput(f"ascii: only a .msh can be written as text, not {os.fspath(output)!r}")
-    told: dict[str, Any] = json.loads(_core.mesh_convert(os.fspath(file), os.fspath(output), ascii))
-    return told
+    report: dict[str, Any] = json.loads(_core.mesh_convert(os.fspath(file), os.fspath(output), ascii))
+    return report

@@ -98,11 +98,11 @@ def from_surfaces(
     _check_apart(points, tetrahedra, labels, given)
     if not open_chambers:
         _check_closed(points, tetrahedra, labels, given)
-    told = {
+    deviations = {
         name: deviation(surface, points, boundary_faces(tetrahedra[labels.inside[name]]), tolerance)
         for name, surface in given.all.items()
     }
-    mesh = _assemble(points, tetrahedra, labels, given, chambers_as, regions or {}, told, tolerance)
+    mesh = _assemble(points, tetrahedra, labels, given, chambers_as, regions or {}, deviations, tolerance)
     _warn(mesh)
     return mesh
 
@@ -202,7 +202,7 @@ def _assemble(
     given: Given,
     chambers_as: str,
     regions: Mapping[str, Any],
-    told: dict[str, float],
+    deviations: dict[str, float],
     tolerance: float,
 ) -> VolumeMesh:
     chambers = np.zeros(len(tetrahedra), dtype=bool)
@@ -230,7 +230,7 @@ def _assemble(
     notes = tuple(note for surface in given.all.values() for note in surface.notes) + labels.notes
     all_volumes = signed_volumes(points, tetrahedra)
     sizes = {n: Volume(float(all_volumes[labels.inside[n]].sum()), s.volume) for n, s in given.all.items()}
-    return VolumeMesh(vertices, cells, volumes, faces, sizes, told, tolerance, notes)
+    return VolumeMesh(vertices, cells, volumes, faces, sizes, deviations, tolerance, notes)
 
 
 def _outer_faces(tetrahedra: Array, kept: Array, meshed: Array) -> Array:
@@ -264,4 +264,4 @@ def _warn(mesh: VolumeMesh) -> None:
     if quality.inverted:
         raise InvalidInput(f"{quality.inverted} tetrahedra have no volume; take another tolerance or edge_length")
     if quality.parts > 1:
-        warnings.warn(f"the mesh is in {quality.parts} parts that share no faces", MeshWarning, stacklevel=3)
+        warnings.warn(f"the mesh is in {quality.parts} parts without common faces", MeshWarning, stacklevel=3)

@@ -74,8 +74,8 @@ def prisms_upon(
 
 
 def _directions(points: Array, triangles: Array, used: Array, place: Array) -> Floats:
-    """Of each vertex, the way for a layer of thickness 1: its product with the normal of every face around is 1, in the
-    least squares weighted by the faces' angles there, and of least length."""
+    """Returns the offset of each vertex for a layer of thickness 1: its product with the normals of all adjacent faces
+    is 1, in the least-squares sense weighted by the faces' angles at the vertex, and its length is minimal."""
     a, b, c = np.moveaxis(points[triangles], 1, 0)
     normals = np.cross(b - a, c - a)
     lengths = np.linalg.norm(normals, axis=1)

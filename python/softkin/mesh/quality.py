@@ -15,7 +15,7 @@ EDGES = ((0, 1, 2, 3), (0, 2, 1, 3), (0, 3, 1, 2), (1, 2, 0, 3), (1, 3, 0, 2), (
 
 @dataclass(frozen=True)
 class Quality:
-    """vertices, elements: counts. inverted: elements of no or negative volume. least_angle_deg: the least dihedral
+    """vertices, elements: counts. inverted: elements of no or negative volume. least_angle_deg: the smallest dihedral
     angle, degrees; angle_1_percent_deg: 1 % of the elements have a smaller one. largest_aspect: longest edge over
     shortest height, 1.22 for a regular tetrahedron. edge_median_mm: median length of edges, mm. parts: how many pieces
     hang together by faces."""

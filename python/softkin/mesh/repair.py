@@ -13,13 +13,13 @@ from .surface import Surface
 from .winding import winding_numbers
 
 WELD = 1e-5  # of the diagonal: about what single precision leaves of a coordinate far from the origin
-ENCLOSING = 20  # shells, the largest ones: which others lie in them is asked
+ENCLOSING = 20  # only the largest shells are tested for enclosing others
 LARGE_HOLE = 0.05  # of the surface's area; more than that is rather a missing part
 
 
 def repaired(surface: Surface) -> Surface:
     """Points at gaps joined, faces turned to agree with their neighbours, holes closed, shells turned as
-    `_shells_turned` says; what was done stands in `notes`. Overlaps and self-intersections stay: winding numbers bear
+    `_shells_turned` says; `notes` lists the repairs. Overlaps and self-intersections stay: winding numbers tolerate
     them."""
     surface = _holes_closed(_faces_turned(_welded(surface)))
     return _shells_turned(surface)
@@ -68,7 +68,7 @@ def _welded(surface: Surface) -> Surface:
         return surface
     cell = WELD * surface.diagonal
     links = [np.stack([loose, loose], axis=1)]
-    for shift in np.ndindex(2, 2, 2):  # what is within half a cell shares one for some shift
+    for shift in np.ndindex(2, 2, 2):  # points within half a cell fall into one cell for some shift
         places = np.floor(surface.vertices[loose] / cell + np.array(shift) / 2)
         _, first, which = np.unique(places, axis=0, return_index=True, return_inverse=True)
         links.append(np.stack([loose, loose[first[which.reshape(-1)]]], axis=1))
@@ -106,7 +106,8 @@ def _faces_turned(surface: Surface) -> Surface:
     for seed in range(len(triangles)):
         if turned[seed] < 0:
             patch = _spread(seed, neighbours, turned)
-            if areas[patch[turned[patch] == 1]].sum() > areas[patch].sum() / 2:  # the larger share stays as it is
+            # the larger part of the area keeps its orientation
+            if areas[patch[turned[patch] == 1]].sum() > areas[patch].sum() / 2:
                 turned[patch] ^= 1
     flipped = turned == 1
     triangles[flipped] = triangles[flipped][:, [0, 2, 1]]
@@ -168,25 +169,25 @@ def _holes_closed(surface: Surface) -> Surface:
 
 
 def _loops(edges: Array) -> tuple[list[Array], int]:
-    """Closed ways along directed edges, and how many edges are in none."""
+    """Returns the closed loops of directed edges, and the number of edges that are in none."""
     following: dict[int, list[int]] = defaultdict(list)
     for start, end in edges.tolist():
         following[start].append(end)
     loops, left = [], 0
     for start in [edge[0] for edge in edges.tolist()]:
-        way, place = [start], {start: 0}
-        while following[way[-1]]:
-            vertex = following[way[-1]].pop()
+        path, place = [start], {start: 0}
+        while following[path[-1]]:
+            vertex = following[path[-1]].pop()
             if vertex in place:  # a loop; where two touch in a vertex, each is one of its own
-                loop = way[place[vertex] :]
+                loop = path[place[vertex] :]
                 loops.append(np.array(loop))
                 for gone in loop[1:]:
                     del place[gone]
-                way = way[: place[vertex] + 1]
+                path = path[: place[vertex] + 1]
             else:
-                place[vertex] = len(way)
-                way.append(vertex)
-        left += len(way) - 1
+                place[vertex] = len(path)
+                path.append(vertex)
+        left += len(path) - 1
     return [loop for loop in loops if len(loop) >= 3], left
 
 

@@ -98,7 +98,7 @@ def _stl(path: Path, content: bytes) -> Surface:
             " or more"
         )
     raise InvalidInput(
-        f"{path}: byte 80: the header tells of {count} facets, which take {84 + 50 * count} bytes, but the file has"
+        f"{path}: byte 80: the header announces {count} facets, which take {84 + 50 * count} bytes, but the file has"
         f" {len(content)}"
     )
 
@@ -239,7 +239,7 @@ def _polygon(path: Path, line: int, words: list[str], properties: Properties) ->
             raise InvalidInput(f"{path}:{line}: no list of indices") from None
         if name.startswith("vert"):
             if len(values) != length:
-                raise InvalidInput(f"{path}:{line}: {length} indices are told and {len(values)} are there")
+                raise InvalidInput(f"{path}:{line}: {length} indices are announced and {len(values)} are present")
             return values
         position += 1 + length
     raise InvalidInput(f"{path}: faces have no list vertex_indices")

@@ -20,7 +20,7 @@ from .surface import Surface
 ROUNDS = 10  # of optimisation; the angles are those that 80 leave, in a third of the time
 INSTALL = "pip install 'softkin[mesh]' (or: pip install pytetwild); or take backend='gmsh'"
 
-# In a process of its own: Ctrl-C ends it, and what it does not bear does not end Python. pytetwild imports PyVista,
+# In a process of its own: Ctrl-C ends it, and a crash of it does not end Python. pytetwild imports PyVista,
 # which is slow to load, only to add to it what is not used here: an empty module does.
 SCRIPT = """
 import json, sys, types
@@ -54,7 +54,7 @@ def background(
         "epsilon": tolerance / float(np.linalg.norm(np.ptp(vertices, axis=0))),
         "coarsen": coarsen,
         "num_opt_iter": ROUNDS,
-        "disable_filtering": True,  # all of the box, so that regions are told apart here
+        "disable_filtering": True,  # keep the whole box: the regions are identified afterwards
         "quiet": True,
     }
     with tempfile.TemporaryDirectory() as name:

@@ -1,4 +1,4 @@
-"""A tree over triangles, asked for many points at once."""
+"""A bounding-sphere tree over triangles, for queries of many points at once."""
 
 from __future__ import annotations
 

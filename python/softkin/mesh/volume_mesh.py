@@ -25,8 +25,9 @@ class VolumeMesh(MeshData):
 
     vertices: (n, 3) float64. tetrahedra: (m, 4) int64, of positive volume. prisms: (p, 6), bottom triangle, then top
     triangle, of which `stacked` makes layers. volume_regions: name to indices of elements, (e,), the tetrahedra first,
-    then the prisms. face_regions: name to triangles, (k, 3) vertices each. What `from_surfaces` tells: `volumes` inside each surface; `deviation_mm`, the largest distance between each surface that was given and that of
-    the mesh, either way, sampled; `tolerance_mm`, which was asked for; `notes`.
+    then the prisms. face_regions: name to triangles, (k, 3) vertices each. `from_surfaces` adds `volumes`
+    inside each surface; `deviation_mm`, the larger of the two sampled one-sided distances between each given surface
+    and that of the mesh; the requested `tolerance_mm`; and `notes`.
     """
 
     def __repr__(self) -> str:

@@ -27,14 +27,14 @@ def winding_numbers(surface: Surface, points: Array, far: float = FAR) -> Array:
     angles = np.zeros(len(points))
     waiting: list[tuple[Node, Array]] = [(tree.root, np.arange(len(points)))]
     while waiting:
-        node, asked = waiting.pop()
-        away = points[asked] - node.centre
+        node, indices = waiting.pop()
+        away = points[indices] - node.centre
         squared = (away**2).sum(axis=1)
         distant = squared > (far * node.radius) ** 2
         if distant.any():
-            one = asked[distant]
+            one = indices[distant]
             angles[one] += -(away[distant] @ node.normal) / squared[distant] ** 1.5
-        near = asked[~distant]
+        near = indices[~distant]
         if len(near) == 0:
             continue
         if node.children is None:

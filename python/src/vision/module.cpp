@@ -24,11 +24,11 @@ using Texts = std::vector<std::string>;
 using PictureIn = nb::ndarray<const std::uint8_t, nb::shape<-1, -1, 3>, nb::c_contig, nb::device::cpu>;
 using PictureOut = Array<std::uint8_t, nb::shape<-1, -1, 3>>;
 
-constexpr std::size_t least_pixels = 16;  // as read_picture() has it
+constexpr std::size_t min_pixels = 16;  // as read_picture() has it
 
 RgbImage image_of(const PictureIn& array, const Text& name) {
   const std::size_t rows = array.shape(0), columns = array.shape(1);
-  if (rows < least_pixels || columns < least_pixels || rows > 100'000 || columns > 100'000)
+  if (rows < min_pixels || columns < min_pixels || rows > 100'000 || columns > 100'000)
     throw InvalidInput({name}, "the picture has " + std::to_string(columns) + " x " + std::to_string(rows) +
                                    " pixels; 16 to 100000 each way can be measured");
   RgbImage image(static_cast<int>(columns), static_cast<int>(rows));
@@ -143,7 +143,7 @@ void bind_series(nb::module_& module) {
           },
           nb::arg("options"), nb::arg("files"), nb::arg("rate").none())
       .def("advance", &FilmTrack::advance, nb::call_guard<nb::gil_scoped_release>())
-      .def("share", &FilmTrack::share)
+      .def("share", &FilmTrack::fraction)
       .def("markers", &FilmTrack::markers)
       .def("table", [](const FilmTrack& self) { return numbers_of(self.table()); })
       .def("csv", &FilmTrack::csv)

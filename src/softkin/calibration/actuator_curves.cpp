@@ -12,8 +12,8 @@ namespace softkin::calibration {
 
 namespace {
 
-constexpr std::size_t most_points = 15, samples_per_point = 4, window_samples = 8;
-constexpr double anchor_share = 0.05, continue_share = 0.02;  // of a branch's range of inputs
+constexpr std::size_t max_points = 15, samples_per_point = 4, window_samples = 8;
+constexpr double anchor_fraction = 0.05, continue_fraction = 0.02;  // of a branch's range of inputs
 
 using Samples = std::vector<std::pair<double, double>>;  // input, ratio; ascending
 
@@ -61,13 +61,13 @@ std::vector<double> places_of(const Samples& samples, Branch branch) {
   std::vector<double> places;
   const double low = samples.front().first, high = samples.back().first, range = high - low;
   const Samples distinct = merged(samples);
-  if (distinct.size() <= most_points) {
+  if (distinct.size() <= max_points) {
     for (const auto& [input, ratio] : distinct) places.push_back(input);
     return places;
   }
-  const double share = branch == Branch::loading ? anchor_share : continue_share;
-  const double begin = std::abs(low) <= share * range ? 0 : low;
-  const std::size_t count = std::clamp<std::size_t>(samples.size() / samples_per_point, 5, most_points);
+  const double fraction = branch == Branch::loading ? anchor_fraction : continue_fraction;
+  const double begin = std::abs(low) <= fraction * range ? 0 : low;
+  const std::size_t count = std::clamp<std::size_t>(samples.size() / samples_per_point, 5, max_points);
   for (std::size_t k = 0; k < count; ++k)
     places.push_back(begin + (high - begin) * static_cast<double>(k) / static_cast<double>(count - 1));
   return places;
@@ -76,7 +76,7 @@ std::vector<double> places_of(const Samples& samples, Branch branch) {
 std::vector<double> values_at(const Samples& samples, const std::vector<double>& places) {
   const Samples distinct = merged(samples);
   std::vector<double> values;
-  if (distinct.size() == places.size() && distinct.size() <= most_points) {
+  if (distinct.size() == places.size() && distinct.size() <= max_points) {
     for (const auto& [input, ratio] : distinct) values.push_back(ratio);
     return values;
   }
@@ -155,7 +155,7 @@ class BranchFit {
       std::vector<double> values;
       const double width = 2 * (places.back() - places.front()) / static_cast<double>(places.size() - 1);
       for (const auto& [number, repeat] : repeats_) {
-        const double margin = anchor_share * (places.back() - places.front());
+        const double margin = anchor_fraction * (places.back() - places.front());
         if (repeat.size() < 2 || places[k] < repeat.front().first - margin || places[k] > repeat.back().first + margin)
           continue;
         values.push_back(local_fit(repeat, places[k], width));

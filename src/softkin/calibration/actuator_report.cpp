@@ -14,7 +14,7 @@ namespace {
 constexpr int table_rows = 10;
 constexpr int drawn_points = 200;
 constexpr int curve_points = 65;
-constexpr double rest_remark = 1e-3;      // from 1, beyond which the table's area ratio without voltage is told
+constexpr double rest_remark = 1e-3;      // from 1, beyond which the table's area ratio without voltage is reported
 constexpr double rest_tolerance = 0.005;  // of the atmosphere, beyond which a sensor's rest is remarked on
 
 std::string unit(const ActuatorCurve& curve) {
@@ -37,8 +37,8 @@ bool holds(const std::vector<double>& ascending, double value) {
 double spread_at(const CurveBranch& branch, double input) {
   const std::vector<double>& x = branch.ratio.x();
   const std::size_t i = std::max<std::ptrdiff_t>(1, std::lower_bound(x.begin(), x.end(), input) - x.begin());
-  const double share = (input - x[i - 1]) / (x[i] - x[i - 1]);
-  return (1 - share) * branch.spread[i - 1] + share * branch.spread[i];
+  const double fraction = (input - x[i - 1]) / (x[i] - x[i - 1]);
+  return (1 - fraction) * branch.spread[i - 1] + fraction * branch.spread[i];
 }
 
 std::vector<double> even(double low, double high, int count) {
@@ -135,7 +135,7 @@ std::string suggestions(double factor, const RobotSpec& spec) {
   return text;
 }
 
-/// The runs of all files. head: a line for each file; more: what else is told of a file's first run
+/// Reads the runs of all files. head: receives a line for each file; more: further remarks on a file's first run
 template <class Read, class More>
 auto read_all(const std::vector<std::string>& files, const Read& read, std::string& head, const More& more) {
   decltype(read(files.front())) all;
@@ -321,7 +321,7 @@ Table syringe_table(const SyringeSetup& setup, const std::vector<SyringeSample>&
 }
 
 std::string comparison_text(const PressureComparison& comparison, const ActuatorCurve& curve, const RobotSpec& spec) {
-  const auto percent = [](double share) { return number(100 * share, 3) + " %"; };
+  const auto percent = [](double fraction) { return number(100 * fraction, 3) + " %"; };
   Table table = input_table(curve, comparison.ratios, 2);
   table.columns.push_back(decimals("predicted", "kPa", 2));
   for (std::size_t i = 0; i < table.rows.size(); ++i)

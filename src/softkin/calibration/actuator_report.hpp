@@ -31,7 +31,7 @@ struct FittedCurve {
 /// The rows of syringe tests after Eq. (19).
 [[nodiscard]] Table syringe_table(const SyringeSetup& setup, const std::vector<SyringeSample>& samples);
 
-/// What is told of a comparison: pressures, misfits, what to write into the scene. spec: of the scene compared with.
+/// Returns the report of a comparison: pressures, misfits, changes of the scene. spec: of the scene compared with.
 [[nodiscard]] std::string comparison_text(const PressureComparison& comparison, const ActuatorCurve& curve,
                                           const RobotSpec& spec);
 

@@ -8,9 +8,9 @@ namespace softkin::calibration {
 
 namespace {
 
-constexpr double noise_share = 0.1;                   // of the drive's range
-constexpr double rest_share = 0.02;                   // of the drive's greatest value
-constexpr double least_ratio = 0.2, most_ratio = 20;  // of a chamber that anybody builds
+constexpr double noise_fraction = 0.1;             // of the drive's range
+constexpr double rest_fraction = 0.02;             // of the drive's greatest value
+constexpr double min_ratio = 0.2, max_ratio = 20;  // of a chamber that anybody builds
 constexpr double rounding = 1e-9;
 
 /// Where the drive turns, with its first row and its last extreme.
@@ -72,8 +72,8 @@ bool makes_sense(const SyringeSetup& setup, const SyringeRun& run, const Reinter
   };
   for (const SyringeRow& row : run.rows)
     if (absolute(setup, reading.scale, row.pressure_kPa) <= 0 ||
-        reading.volume_factor * row.syringe_mm3 > setup.syringe_mm3 || !(ratio(row) > least_ratio) ||
-        !(ratio(row) < most_ratio))
+        reading.volume_factor * row.syringe_mm3 > setup.syringe_mm3 || !(ratio(row) > min_ratio) ||
+        !(ratio(row) < max_ratio))
       return false;
   const auto [low, high] =
       std::minmax_element(run.rows.begin(), run.rows.end(),
@@ -96,7 +96,7 @@ std::optional<double> mean_at_rest(const std::vector<Row>& rows, std::size_t cou
   double greatest = 0, sum = 0, found = 0;
   for (const Row& row : rows) greatest = std::max(greatest, std::abs(row.*drive));
   for (std::size_t i = 0; i < count; ++i) {
-    if (std::abs(rows[i].*drive) > rest_share * greatest) continue;
+    if (std::abs(rows[i].*drive) > rest_fraction * greatest) continue;
     sum += rows[i].*value;
     ++found;
   }
@@ -140,7 +140,7 @@ double checked_ratio(const SyringeSetup& setup, const SyringeRun& run, const Syr
                "the syringe cannot give " + number(row.syringe_mm3, 4) + " mm^3, it holds " +
                    number(setup.syringe_mm3, 4) + " mm^3" + hint(setup, run));
   const double ratio = chamber_ratio(setup, pressure, row.syringe_mm3);
-  if (!(ratio > least_ratio && ratio < most_ratio))
+  if (!(ratio > min_ratio && ratio < max_ratio))
     refuse_row(run, row, "the volume ratio of the chamber would be " + number(ratio, 4) + hint(setup, run));
   return ratio;
 }
@@ -161,12 +161,12 @@ std::vector<Sweep> sweeps_of(const std::vector<double>& drive) {
   if (drive.empty()) return {};
   const auto [low, high] = std::minmax_element(drive.begin(), drive.end());
   if (*low == *high) return {};
-  std::vector<std::size_t> turns = turns_of(drive, noise_share * (*high - *low));
+  std::vector<std::size_t> turns = turns_of(drive, noise_fraction * (*high - *low));
   std::vector<Sweep> sweeps;
   for (std::size_t t = 0; t + 1 < turns.size(); ++t)
     sweeps.push_back(
         {turns[t], turns[t + 1] + 1, drive[turns[t + 1]] > drive[turns[t]] ? Branch::loading : Branch::unloading});
-  sweeps.back().end = drive.size();  // what dwells at the last extreme belongs to the way there
+  sweeps.back().end = drive.size();  // a dwell at the last extreme belongs to the sweep that led there
   return sweeps;
 }
 

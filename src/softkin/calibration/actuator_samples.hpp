@@ -33,15 +33,15 @@ struct SyringeSample {
   std::size_t line = 0;  // of the run's file
 };
 
-/// Volume ratios of all runs, cut into loading and unloading where the syringe turns.
+/// Returns the volume ratios of all runs, cut into loading and unloading where the syringe turns.
 ///
-/// throws  InvalidInput naming file, and run or line: a setup out of range; a run on the wrong pressure scale, which
-///         its pressures at rest tell, or ratios that only make sense on the other scale; a syringe that gives more
-///         than it holds; ratios outside 0.2 to 20, with what would mend them if a factor of 1000 or a sign would
+/// throws  InvalidInput naming file, and run or line: a setup out of range; a run on the wrong pressure scale, detected
+///         from its pressures at rest, or ratios that only make sense on the other scale; a syringe that delivers more
+///         than its volume; ratios outside 0.2 to 20, with the correction if a factor of 1000 or a sign would be one
 [[nodiscard]] std::vector<SyringeSample> chamber_ratios(const SyringeSetup& setup, const std::vector<SyringeRun>& runs);
 
-/// Mean pressure [kPa absolute] of the rows of a run in which the syringe has not moved by more than a fiftieth of its
-/// way; none where there is no such row.
+/// Returns the mean pressure [kPa absolute] of the rows of a run in which the syringe has moved by at most a fiftieth
+/// of its travel; none where there is no such row.
 [[nodiscard]] std::optional<double> rest_pressure(const SyringeSetup& setup, const SyringeRun& run);
 
 /// Samples of the runs of a dielectric elastomer, cut where the voltage turns, areas over that without voltage.

@@ -13,7 +13,7 @@ class Pairs {
   explicit Pairs(const Eigen::MatrixXd& costs)
       : costs_(costs), of_row_(size(costs.rows())), of_column_(size(costs.cols())), row_at_(of_column_.size()) {}
 
-  /// A pair for one row more: along the cheapest way of exchanges to a column that is free.
+  /// Adds a pair for one more row: along the cheapest augmenting path to a free column.
   void add(std::size_t row) {
     const std::size_t columns = row_at_.size();
     std::vector<double> least(columns, infinite);
@@ -58,7 +58,7 @@ class Pairs {
 
 }  // namespace
 
-std::vector<Index> least_assignment(const Eigen::MatrixXd& costs, double alone) {
+std::vector<Index> min_assignment(const Eigen::MatrixXd& costs, double alone) {
   const Eigen::Index rows = costs.rows(), columns = costs.cols();
   Eigen::MatrixXd all(rows, columns + rows);  // a column for each row that has no other
   all.leftCols(columns) = costs.cwiseMin(2 * alone + 1);

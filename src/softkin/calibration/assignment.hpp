@@ -13,6 +13,6 @@ namespace softkin::calibration {
 /// returns  the column of each row; -1: none
 /// source   Kuhn 1955, Munkres 1957; by shortest augmenting paths, Jonker and Volgenant 1987:
 ///          O(rows^2 (rows + columns))
-[[nodiscard]] std::vector<Index> least_assignment(const Eigen::MatrixXd& costs, double alone);
+[[nodiscard]] std::vector<Index> min_assignment(const Eigen::MatrixXd& costs, double alone);
 
 }  // namespace softkin::calibration

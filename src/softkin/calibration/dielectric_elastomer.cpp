@@ -8,8 +8,8 @@ namespace softkin::calibration {
 
 namespace {
 
-constexpr double chain_share = 0.95;  // of a Gent chain's limit at which a curve without pull-in ends
-constexpr double chain_stiffening = 1 / (1 - chain_share);
+constexpr double chain_fraction = 0.95;  // of a Gent chain's limit at which a curve without pull-in ends
+constexpr double chain_stiffening = 1 / (1 - chain_fraction);
 constexpr int scan_steps = 20000;
 constexpr double farthest_stretch = 100;  // over the prestretch; a neo-hookean maximum lies before it
 
@@ -127,7 +127,7 @@ double chain_end(const Dielectric& d) {
     return {balanced_along(stress, chain_stiffening, t), t};
   };
   return falling_root(free_stretch(d, stretch_at_rest(d)), std::sqrt(d.stretch_limit + 3),
-                      [&](double t) { return chain_share * d.stretch_limit - Invariant(at(t)).value; });
+                      [&](double t) { return chain_fraction * d.stretch_limit - Invariant(at(t)).value; });
 }
 
 double last_stretch(const Dielectric& d) {
@@ -148,7 +148,7 @@ void check(const Dielectric& d) {
   require(ratio(d.prestretch_across), "the prestretch across, a ratio of lengths, must be 1 or more");
   if (d.law != DielectricLaw::gent) return;
   require(positive(d.stretch_limit), "the limit J_lim of a Gent material must be above 0");
-  require(Invariant(stretch_at_rest(d)).value < chain_share * d.stretch_limit,
+  require(Invariant(stretch_at_rest(d)).value < chain_fraction * d.stretch_limit,
           "the prestretch is beyond 95 % of the limit J_lim of the Gent material");
 }
 
@@ -206,8 +206,8 @@ DielectricCurve dielectric_curve(const Dielectric& d, int points, double breakdo
     curve.broken_down = true;
   }
   for (int k = 0; k < points; ++k) {
-    const double share = static_cast<double>(k) / (points - 1);
-    const double stretch = begin + (end - begin) * share * share;  // even in voltage at the begin
+    const double fraction = static_cast<double>(k) / (points - 1);
+    const double stretch = begin + (end - begin) * fraction * fraction;  // even in voltage at the begin
     curve.voltages.push_back(k == 0 ? 0 : voltage_of(d, stretch));
     curve.area_ratios.push_back(k == 0 ? 1 : area_ratio(d, stretch));
   }

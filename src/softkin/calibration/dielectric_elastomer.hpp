@@ -69,7 +69,7 @@ struct PullIn {
 struct DielectricCurve {
   std::vector<double> voltages;     // ascending from 0 [kV]
   std::vector<double> area_ratios;  // over the area without voltage [-]
-  std::optional<PullIn> pull_in;    // none: the voltage rises all the way
+  std::optional<PullIn> pull_in;    // none: the voltage rises to the end of the curve
   bool broken_down = false;         // the curve ends where the field reaches the breakdown field
   double end_field_kV_mm = 0;       // true, at the end of the curve
 };
@@ -79,7 +79,7 @@ struct DielectricCurve {
 inline constexpr double constrained_end = 5;
 
 /// points           >= 3, even in the stretch's distance from the end, denser towards it
-/// breakdown_kV_mm  true field that the elastomer bears; 0: not known
+/// breakdown_kV_mm  true field that the elastomer withstands; 0: unknown
 /// throws           InvalidInput on values out of range
 [[nodiscard]] DielectricCurve dielectric_curve(const Dielectric& elastomer, int points, double breakdown_kV_mm = 0);
 

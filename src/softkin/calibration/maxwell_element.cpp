@@ -7,7 +7,7 @@ namespace softkin::calibration {
 
 namespace {
 
-constexpr int most_halvings = 40;
+constexpr int max_halvings = 40;
 
 /// How far a step of length x relaxation times goes.
 struct Relaxing {
@@ -60,15 +60,15 @@ struct BranchStress {
 
 // A step of first order, whose error has all powers of its length, is done in 1, 2, 3 and 4 parts, and extrapolated:
 // order four, and order three from all but the first. At small strains the step is exact by itself.
-constexpr int most_parts = 4;
+constexpr int max_parts = 4;
 
 template <class Value>
-Value fourth_order(const std::array<Value, most_parts>& parts) {
+Value fourth_order(const std::array<Value, max_parts>& parts) {
   return -1.0 / 6 * parts[0] + 4 * parts[1] - 13.5 * parts[2] + 32.0 / 3 * parts[3];
 }
 
 template <class Value>
-Value third_order(const std::array<Value, most_parts>& parts) {
+Value third_order(const std::array<Value, max_parts>& parts) {
   return 2 * parts[1] - 9 * parts[2] + 8 * parts[3];
 }
 
@@ -78,8 +78,8 @@ struct Imposed {
   double log_a = 0, by_log_time = 0;
 
   void advance(double h, double begin, double end, int halvings = 0) {
-    std::array<double, most_parts> ends{}, slopes{};
-    for (int parts = 1; parts <= most_parts; ++parts) {
+    std::array<double, max_parts> ends{}, slopes{};
+    for (int parts = 1; parts <= max_parts; ++parts) {
       const Relaxing r(h / parts / time_s);
       double value = log_a, slope = by_log_time;
       for (int i = 0; i < parts; ++i) {
@@ -91,7 +91,7 @@ struct Imposed {
       ends[parts - 1] = value;
       slopes[parts - 1] = slope;
     }
-    if (std::abs(fourth_order(ends) - third_order(ends)) <= tolerance || halvings >= most_halvings) {
+    if (std::abs(fourth_order(ends) - third_order(ends)) <= tolerance || halvings >= max_halvings) {
       log_a = fourth_order(ends);
       by_log_time = fourth_order(slopes);
       return;
@@ -102,14 +102,14 @@ struct Imposed {
   }
 };
 
-/// Logarithms of the stretch, then of the branches' viscous stretches, and their derivatives by what is asked for.
+/// Logarithms of the stretch, then of the branches' viscous stretches, and their derivatives by the requested numbers.
 struct LoadedState {
   Eigen::VectorXd logs;
   Eigen::MatrixXd slopes;
 };
 
-/// All branches under a stress that is imposed. Derivatives are by the numbers of the law, and by modulus and ln(time)
-/// of each branch; where the law has none of them asked for, there are none at all.
+/// All branches under an imposed stress. Derivatives are by the numbers of the law, and by modulus and ln(time) of each
+/// branch; where derivatives by the law's numbers are not requested, there are none at all.
 class Loaded {
  public:
   Loaded(const MaxwellElement& element, const LawSlopes& law_slopes, double tolerance)
@@ -130,10 +130,10 @@ class Loaded {
   }
 
   [[nodiscard]] bool advance(double h, double begin, double end, int halvings = 0) {
-    std::array<Eigen::VectorXd, most_parts> logs;
-    std::array<Eigen::MatrixXd, most_parts> slopes;
+    std::array<Eigen::VectorXd, max_parts> logs;
+    std::array<Eigen::MatrixXd, max_parts> slopes;
     bool found = true;
-    for (int parts = 1; parts <= most_parts && found; ++parts) {
+    for (int parts = 1; parts <= max_parts && found; ++parts) {
       LoadedState state = now_;
       for (int i = 1; i <= parts && found; ++i) {
         const LoadedState before = state;
@@ -149,7 +149,7 @@ class Loaded {
         return load(end);
       }
     }
-    if (halvings >= most_halvings) return false;
+    if (halvings >= max_halvings) return false;
     const double middle = 0.5 * (begin + end);
     return advance(h / 2, begin, middle, halvings + 1) && advance(h / 2, middle, end, halvings + 1);
   }
@@ -161,11 +161,11 @@ class Loaded {
     std::vector<Stepped> steps;
   };
 
-  /// Newton's method for the stretch at the end of a step of h that bears the stress; h 0: the branches stay.
+  /// Newton's method for the stretch at the end of a step of h that carries the stress; h 0: the branches stay.
   [[nodiscard]] bool balance(const LoadedState& before, LoadedState& after, double h, double stress) const {
-    constexpr int most_iterations = 100;
+    constexpr int max_iterations = 100;
     constexpr double longest = 0.3, enough = 1e-12;
-    for (int i = 0; i < most_iterations; ++i) {
+    for (int i = 0; i < max_iterations; ++i) {
       const Pull pull = pull_at(before, after.logs[0], h);
       const double l = std::exp(after.logs[0]), step = (stress - pull.stress) / (pull.slope * l);
       if (!std::isfinite(step) || !(pull.slope > 0)) return false;

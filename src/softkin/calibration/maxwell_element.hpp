@@ -9,14 +9,14 @@
 
 namespace softkin::calibration {
 
-/// An elastic law and Maxwell branches beside it, incompressible, under tension or compression along one axis.
+/// An elastic law and Maxwell branches in parallel, incompressible, under tension or compression along one axis.
 ///
 /// The nominal stress P is that of the law plus, for every branch of modulus G and relaxation time tau,
 ///   P_i = G (l / a^2 - a / l^2),    da/dt = (l^2 / a - a^2 / l) / (3 tau),
 /// l the stretch, a the branch's viscous stretch; C_v = diag(a^2, 1/a, 1/a), so that this is the energy
 /// G/2 (C_v^-1 : C - 3) with dC_v/dt = (C - (C : C_v^-1) C_v / 3) / tau of the physical formulation's viscosity.
 struct MaxwellElement {
-  IncompressibleLaw law;                // beside which the branches act
+  IncompressibleLaw law;                // parallel to the branches
   std::vector<ViscousBranch> branches;  // moduli G [MPa] and relaxation times tau [s]
 };
 
@@ -34,7 +34,7 @@ struct UnitBranch {
 };
 
 /// Steps are halved until a step of order four agrees with one of order three within the tolerance, in ln(a). Before
-/// that, a step is exact for small strains that are held or change evenly, however long beside the relaxation time.
+/// that, a step is exact for small strains that are held or change evenly, however long over the relaxation time.
 ///
 /// stretches  all > 0
 /// source     the closed form of Shutov, Landgraf, Ihlemann, CMAME 265 (2013): C_v becomes the unimodular part of
@@ -53,7 +53,7 @@ struct LoadedStretch {
   Eigen::MatrixXd slopes;   // its derivatives: by the numbers of the law, then by modulus and ln(time) of each branch
 };
 
-/// Under a history of nominal stresses [MPa]: the same steps, in which the stretch at the end is what bears the stress.
+/// Under a history of nominal stresses [MPa]: the same steps, in which the stretch at the end balances the stress.
 /// None where no stretch is found that does.
 ///
 /// law_slopes  none: no derivatives are made

@@ -6,7 +6,7 @@ namespace softkin::calibration {
 
 namespace {
 
-/// Columns scaled to length 1, and as few rows as columns: what follows costs nothing then.
+/// Columns scaled to length 1, and no more rows than columns, which makes the iterations cheap.
 struct Compressed {
   Compressed(const Eigen::MatrixXd& full, const Eigen::VectorXd& b) : scale(full.cols()) {
     matrix = full;
@@ -61,14 +61,14 @@ Eigen::VectorXd nonnegative_least_squares(const Eigen::MatrixXd& matrix, const E
     Eigen::VectorXd next = solve_over(problem, passive);
     if (!(next[best] > 0)) break;  // rounding: nothing is gained any more
     for (;;) {
-      double share = 1;
+      double fraction = 1;
       Eigen::Index leaves = -1;  // the first that would fall below 0
       for (const Eigen::Index c : passive) {
         if (c < free || next[c] > 0) continue;
         const double own = x[c] > 0 ? x[c] / (x[c] - next[c]) : 0;
-        if (leaves < 0 || own < share) leaves = c, share = own;
+        if (leaves < 0 || own < fraction) leaves = c, fraction = own;
       }
-      x += share * (next - x);
+      x += fraction * (next - x);
       if (leaves < 0) break;
       x[leaves] = 0;
       std::erase(passive, leaves);

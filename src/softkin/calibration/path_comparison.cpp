@@ -25,19 +25,20 @@ Vec3 masked(const Vec3& point, const std::array<bool, 3>& axes) {
   return result;
 }
 
-/// Shares of the length, from 0 to 1.
-std::vector<double> shares_of(const Track& track, const std::array<bool, 3>& axes) {
-  std::vector<double> shares{0};
+/// Fractions of the length, from 0 to 1.
+std::vector<double> fractions_of(const Track& track, const std::array<bool, 3>& axes) {
+  std::vector<double> fractions{0};
   for (std::size_t i = 1; i < track.points.size(); ++i)
-    shares.push_back(shares.back() + masked(track.points[i] - track.points[i - 1], axes).norm());
-  if (!(shares.back() > 0)) throw InvalidInput({track.name}, "the track has no length, so it has no arc to compare by");
-  for (double& share : shares) share /= shares.back();
-  shares.back() = 1;
-  return shares;
+    fractions.push_back(fractions.back() + masked(track.points[i] - track.points[i - 1], axes).norm());
+  if (!(fractions.back() > 0))
+    throw InvalidInput({track.name}, "the track has no length, so it has no arc to compare by");
+  for (double& fraction : fractions) fraction /= fractions.back();
+  fractions.back() = 1;
+  return fractions;
 }
 
 std::vector<double> places_of(const Track& track, Resampling by, const std::array<bool, 3>& axes) {
-  if (by == Resampling::arc) return shares_of(track, axes);
+  if (by == Resampling::arc) return fractions_of(track, axes);
   if (by == Resampling::parameter) {
     if (track.parameter.empty()) throw InvalidInput({track.name}, "the track has no times (column t_s) to compare by");
     return track.parameter;
@@ -55,8 +56,8 @@ std::optional<Vec3> point_at(const Track& track, const std::vector<double>& plac
   if (above == places.begin()) return track.points.front();
   if (above == places.end()) return track.points.back();
   const std::size_t i = above - places.begin();
-  const double share = (place - places[i - 1]) / (places[i] - places[i - 1]);
-  return track.points[i - 1] + share * (track.points[i] - track.points[i - 1]);
+  const double fraction = (place - places[i - 1]) / (places[i] - places[i - 1]);
+  return track.points[i - 1] + fraction * (track.points[i] - track.points[i - 1]);
 }
 
 /// Moves the other points onto the reference's.
@@ -163,15 +164,15 @@ Json comparison_json(const PathComparison& each, const Track& track) {
 }
 
 /// All three views, or the only one that two axes have.
-std::vector<PlotPanel> views(const std::vector<PathComparison>& comparisons, const std::vector<SpaceCurve>& ways) {
+std::vector<PlotPanel> views(const std::vector<PathComparison>& comparisons, const std::vector<SpaceCurve>& paths) {
   std::array<bool, 3> axes{true, true, true};
   for (const PathComparison& each : comparisons)
     for (std::size_t a = 0; a < 3; ++a) axes[a] = axes[a] && each.axes[a];
-  std::vector<PlotPanel> panels = projections(ways);
+  std::vector<PlotPanel> panels = projections(paths);
   if (axes[0] && axes[1] && axes[2]) return panels;
   const std::size_t only = !axes[1] ? 0 : !axes[2] ? 1 : 2;  // seen along y, z and x
   PlotPanel panel = panels[only];
-  for (std::size_t s = 0; s < panel.series.size(); ++s) panel.series[s].label = ways[s].name;
+  for (std::size_t s = 0; s < panel.series.size(); ++s) panel.series[s].label = paths[s].name;
   return {panel};
 }
 
@@ -270,7 +271,7 @@ std::vector<std::string> PathReport::heads() const {
     std::string text = std::to_string(c + 2) + ": " + tracks[c + 1].name + ", " +
                        counted(tracks[c + 1].points.size(), "point") + "; compared by ";
     if (each.by == Resampling::waypoint) text += "waypoint (row by row)";
-    if (each.by == Resampling::arc) text += "arc length (equal shares of each track's length)";
+    if (each.by == Resampling::arc) text += "arc length (equal fractions of each track's length)";
     if (each.by == Resampling::parameter)
       text += (parameter.empty() ? "time" : parameter) + ", straight between its points";
     text += ", along " + axes_text(each);
@@ -340,26 +341,26 @@ std::string PathReport::json() const {
 Plot PathReport::plot() const {
   const Resampling by = comparisons.front().by;
   const std::string place = by == Resampling::waypoint ? "waypoint"
-                            : by == Resampling::arc    ? "share of length [-]"
+                            : by == Resampling::arc    ? "fraction of length [-]"
                             : parameter.empty()        ? "time [s]"
                                                        : parameter;
   PlotPanel panel = panel_of("", place, "error [mm]");
   panel.y.low = 0;
   const std::vector<std::string> names = labels();
-  std::vector<SpaceCurve> ways{{names[0], tracks[0].points, true, true}};
+  std::vector<SpaceCurve> paths{{names[0], tracks[0].points, true, true}};
   for (std::size_t c = 0; c < comparisons.size(); ++c) {
     const std::string& label = names[c + 1];
     PlotSeries series{.label = label, .x = {}, .y = {}, .style = static_cast<int>(c) + 1};
-    ways.push_back({label, {}, true, true});
+    paths.push_back({label, {}, true, true});
     for (const WaypointError& each : comparisons[c].waypoints) {
       series.x.push_back(each.place);
       series.y.push_back(each.error_mm);
-      ways.back().points.push_back(each.other);
+      paths.back().points.push_back(each.other);
     }
     panel.series.push_back(series);
   }
   if (comparisons.front().largest_mm == 0) panel.y.high = 1;
-  return {.title = "distance from " + tracks[0].name, .rows = {{panel}, views(comparisons, ways)}};
+  return {.title = "distance from " + tracks[0].name, .rows = {{panel}, views(comparisons, paths)}};
 }
 
 }  // namespace softkin::calibration

@@ -10,15 +10,15 @@
 namespace softkin::calibration {
 
 /// Which points of two tracks belong together: those of the same row, of the same time (or other parameter), or of the
-/// same share of the track's length.
+/// same fraction of the track's length.
 enum class Resampling { waypoint, parameter, arc };
 
 /// A waypoint of the reference and the other track's point that belongs to it, straight between its points.
 struct WaypointError {
   std::size_t waypoint = 0;  // of the reference, from 0
-  double place = 0;          // row, parameter or share of the length
+  double place = 0;          // row, parameter or fraction of the length
   Vec3 reference, other;     // [mm]; other after the alignment; 0 along axes that are not compared
-  double error_mm = 0;       // distance along the axes that both tracks know
+  double error_mm = 0;       // distance along the axes that both tracks have
 };
 
 struct PathComparison {
@@ -61,7 +61,7 @@ struct SingleSweep {
 /// throws    InvalidInput naming the sweep: a command outside it, a start at another place than that of the first
 [[nodiscard]] Vec3 superposed(const std::vector<SingleSweep>& sweeps, const std::vector<double>& commands);
 
-/// Tracks beside a reference.
+/// Tracks compared with a reference.
 struct PathReport {
   std::vector<Track> tracks;                // the first is the reference
   std::vector<PathComparison> comparisons;  // of each other track

@@ -88,20 +88,20 @@ ModulusCheck check_modulus(const std::vector<double>& measured, const std::vecto
   return {factor, misfit(measured, predicted, 1), misfit(measured, predicted, factor)};
 }
 
-std::size_t tested_chamber(const RobotSpec& spec, const std::string& asked) {
+std::size_t tested_chamber(const RobotSpec& spec, const std::string& requested) {
   std::vector<std::string> names;
   std::size_t chamber = 0;
   for (std::size_t a = 0; a < spec.actuators.size(); ++a) {
     if (!spec.actuators[a].is<PneumaticSpec>()) continue;
     names.push_back(spec.actuators[a].name);
-    if (names.back() == asked || asked.empty()) chamber = a;
+    if (names.back() == requested || requested.empty()) chamber = a;
   }
   if (names.empty()) throw InvalidInput({spec.name}, "the scene has no pneumatic actuator");
-  if (asked.empty() && names.size() > 1)
+  if (requested.empty() && names.size() > 1)
     throw InvalidInput({spec.name},
                        "the scene has several pneumatic actuators: say which one was tested" + suggest_name("", names));
-  if (!asked.empty() && std::find(names.begin(), names.end(), asked) == names.end())
-    throw InvalidInput("there is no pneumatic actuator " + excerpt(asked) + suggest_name(asked, names));
+  if (!requested.empty() && std::find(names.begin(), names.end(), requested) == names.end())
+    throw InvalidInput("there is no pneumatic actuator " + excerpt(requested) + suggest_name(requested, names));
   return chamber;
 }
 

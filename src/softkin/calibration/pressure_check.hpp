@@ -34,16 +34,16 @@ struct ModulusCheck {
 /// throws               InvalidInput where nothing is predicted to resist
 [[nodiscard]] ModulusCheck check_modulus(const std::vector<double>& measured, const std::vector<double>& predicted);
 
-/// The chamber that was tested, its place among the actuators. asked: its name; empty: the only one
+/// Returns the place of the tested chamber among the actuators. requested: its name; empty: the only one
 /// throws  InvalidInput: no chamber, several, none of that name
-[[nodiscard]] std::size_t tested_chamber(const RobotSpec& spec, const std::string& asked);
+[[nodiscard]] std::size_t tested_chamber(const RobotSpec& spec, const std::string& requested);
 
-/// Pressures of a measured curve beside those that a scene's physical formulation predicts.
+/// Pressures of a measured curve compared with those that a scene's physical formulation predicts.
 struct PressureComparison {
   std::string actuator;
   std::vector<double> ratios;
   std::vector<std::optional<double>> predicted;           // per ratio [kPa]; none: no equilibrium
-  std::vector<std::pair<Branch, ModulusCheck>> branches;  // those that share two ratios or more with the prediction
+  std::vector<std::pair<Branch, ModulusCheck>> branches;  // those with two ratios or more that have a prediction
 
   [[nodiscard]] bool is_complete() const;
 };

@@ -10,9 +10,9 @@ namespace softkin::calibration {
 
 namespace {
 
-constexpr double most_log_ratio = 9.210340371976184;  // ln 1e4
-constexpr double tolerance = 1e-6;                    // of the logarithm of Eq. (16)
-constexpr int most_simulations = 60;
+constexpr double max_log_ratio = 9.210340371976184;  // ln 1e4
+constexpr double tolerance = 1e-6;                   // of the logarithm of Eq. (16)
+constexpr int max_simulations = 60;
 
 /// The logarithm of a test's ratio, by the logarithm of what Eq. (16) makes of it: nearly a line of slope 1.
 class Search {
@@ -21,8 +21,8 @@ class Search {
 
   void run(double guess, SpecimenFit& fit) {
     const double wanted = std::log(elasticity_ratio(specimen_));
-    double x = std::clamp(guess, -most_log_ratio, most_log_ratio);
-    while (fit.simulations < most_simulations) {
+    double x = std::clamp(guess, -max_log_ratio, max_log_ratio);
+    while (fit.simulations < max_simulations) {
       const SpecimenResponse found = test_.at(x);
       ++fit.simulations;
       if (found.status != Status::converged) return end(fit, found.status, found.remark);
@@ -34,7 +34,7 @@ class Search {
         return end(fit, Status::converged, "");
       }
       (off < 0 ? low_ : high_) = x;
-      if (std::abs(x) >= most_log_ratio && (x > 0) == (off < 0))
+      if (std::abs(x) >= max_log_ratio && (x > 0) == (off < 0))
         return end(fit, Status::limit, "no ratio from 1e-4 to 1e4 moves the interface so far");
       x = next(x, off);
     }
@@ -64,9 +64,9 @@ class Search {
 
   /// The secant's step, where it stays inside what is known and halves the interval every other time; else the middle.
   double next(double x, double off) {
-    const bool bracketed = low_ > -2 * most_log_ratio && high_ < 2 * most_log_ratio;
+    const bool bracketed = low_ > -2 * max_log_ratio && high_ < 2 * max_log_ratio;
     const double secant = x - std::clamp(off / slope_, -1.0, 1.0);
-    if (!bracketed) return std::clamp(secant, -most_log_ratio, most_log_ratio);
+    if (!bracketed) return std::clamp(secant, -max_log_ratio, max_log_ratio);
     const double width = high_ - low_;
     const bool slow = width > 0.5 * width_before_last_;
     width_before_last_ = last_width_;
@@ -77,7 +77,7 @@ class Search {
 
   const StretchedSpecimen& specimen_;
   SpecimenTest& test_;
-  double low_ = -3 * most_log_ratio, high_ = 3 * most_log_ratio;
+  double low_ = -3 * max_log_ratio, high_ = 3 * max_log_ratio;
   double last_width_ = std::numeric_limits<double>::infinity();
   double width_before_last_ = std::numeric_limits<double>::infinity();
   double slope_ = 1, last_x_ = std::numeric_limits<double>::quiet_NaN(), last_off_ = 0;
@@ -149,7 +149,7 @@ SpecimenResponse response_of(const Specimen& specimen, const SpecimenOptions& op
 template <class Specimen>
 std::vector<SpecimenResponse> responses_of(const std::vector<Specimen>& specimens, const SpecimenOptions& options,
                                            Formulation formulation, double log_ratio, const std::string& kind,
-                                           const ShareDone& progress) {
+                                           const FractionDone& progress) {
   std::vector<SpecimenResponse> responses;
   for (const Specimen& specimen : specimens) {
     const std::size_t number = responses.size();
@@ -170,7 +170,7 @@ double elasticity_ratio(const StretchedSpecimen& s) {
          ((s.length_mm - s.interface_mm) * s.interface_moved_mm);
 }
 
-double rod_share(double ratio, double length_mm, double interface_mm) {
+double rod_fraction(double ratio, double length_mm, double interface_mm) {
   return interface_mm / (interface_mm + ratio * (length_mm - interface_mm));
 }
 
@@ -232,7 +232,7 @@ double closed_form_log_ratio(double elasticity_ratio, double stiffer) {
 }
 
 RatioFit fit_ratio(const std::vector<StretchedSpecimen>& specimens, const SpecimenOptions& options,
-                   Formulation formulation, const ShareDone& progress) {
+                   Formulation formulation, const FractionDone& progress) {
   if (specimens.empty()) throw InvalidInput("a ratio needs at least one specimen");
   RatioFit result;
   result.formulation = formulation;
@@ -273,12 +273,12 @@ RatioFit fit_ratio(const std::vector<StretchedSpecimen>& specimens, const Specim
 }
 
 std::vector<SpecimenResponse> predict(const std::vector<StretchedSpecimen>& specimens, const SpecimenOptions& options,
-                                      Formulation formulation, double log_ratio, const ShareDone& progress) {
+                                      Formulation formulation, double log_ratio, const FractionDone& progress) {
   return responses_of(specimens, options, formulation, log_ratio, "tensile", progress);
 }
 
 std::vector<SpecimenResponse> predict(const std::vector<TwistedSpecimen>& specimens, const SpecimenOptions& options,
-                                      Formulation formulation, double log_ratio, const ShareDone& progress) {
+                                      Formulation formulation, double log_ratio, const FractionDone& progress) {
   return responses_of(specimens, options, formulation, log_ratio, "twist", progress);
 }
 

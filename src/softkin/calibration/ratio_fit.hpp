@@ -13,9 +13,9 @@ namespace softkin::calibration {
 /// throws  InvalidInput on lengths that are not 0 < L_1 < L, 0 < Delta L_1 < Delta L
 [[nodiscard]] double elasticity_ratio(const StretchedSpecimen& specimen);
 
-/// Delta L_1 / Delta L of a rod with this E_A / E_B; equally the share of a twist that its interface turns, where both
-/// materials have the same Poisson's ratio.
-[[nodiscard]] double rod_share(double ratio, double length_mm, double interface_mm);
+/// Returns Delta L_1 / Delta L of a rod with this E_A / E_B; equally the fraction of a twist by which its interface
+/// turns, where both materials have the same Poisson's ratio.
+[[nodiscard]] double rod_fraction(double ratio, double length_mm, double interface_mm);
 
 /// By how much Delta L_1 falls where the logarithm of E_A / E_B grows by 1, of a rod at the measured point [mm]: with
 /// the same error of every Delta L_1 the specimens' logarithms weigh as its square.
@@ -60,15 +60,15 @@ struct Moduli {
 
 /// A ratio from several specimens: E_A / E_B (physical) or R_omega A / R_omega B (target-shape).
 struct RatioFit {
-  Formulation formulation = Formulation::physical;  // of the simulated tests; says which ratio it is
+  Formulation formulation = Formulation::physical;  // of the simulated tests; determines the kind of ratio
   Status status = Status::not_converged;            // converged where every specimen is
   RatioEstimate estimate;                           // of the specimens that are converged; 0 of them: meaningless
   std::vector<SpecimenFit> specimens;               // in the order given
   std::optional<Moduli> moduli;                     // physical, where a force is given
 };
 
-/// Told how much of the simulations is done, 0 to 1.
-using ShareDone = std::function<void(double share)>;
+/// Callback with the completed fraction of the simulations, 0 to 1.
+using FractionDone = std::function<void(double fraction)>;
 
 /// The ratio at which simulated tensile tests move the interface as the measured ones did: for every specimen by
 /// bisection, shortened by the secant, from the closed form on; then all together.
@@ -77,7 +77,7 @@ using ShareDone = std::function<void(double share)>;
 /// source  Fang et al. 2020, Section IV-B, Fig. 7(c)
 /// throws  InvalidInput on no specimen, one that is none, or one that cannot be meshed
 [[nodiscard]] RatioFit fit_ratio(const std::vector<StretchedSpecimen>& specimens, const SpecimenOptions& options,
-                                 Formulation formulation, const ShareDone& progress = {});
+                                 Formulation formulation, const FractionDone& progress = {});
 
 /// Moduli of a rod: force over area over the strain of each part. Nothing where no specimen has a force.
 ///
@@ -90,9 +90,9 @@ using ShareDone = std::function<void(double share)>;
 /// log_ratio  as of SpecimenTest::at
 [[nodiscard]] std::vector<SpecimenResponse> predict(const std::vector<StretchedSpecimen>& specimens,
                                                     const SpecimenOptions& options, Formulation formulation,
-                                                    double log_ratio, const ShareDone& progress = {});
+                                                    double log_ratio, const FractionDone& progress = {});
 [[nodiscard]] std::vector<SpecimenResponse> predict(const std::vector<TwistedSpecimen>& specimens,
                                                     const SpecimenOptions& options, Formulation formulation,
-                                                    double log_ratio, const ShareDone& progress = {});
+                                                    double log_ratio, const FractionDone& progress = {});
 
 }  // namespace softkin::calibration

@@ -16,12 +16,13 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr double grid_per_decade = 4;
-constexpr double finest_share = 1e-4;         // of the answers' rms: nothing finer is measured
+constexpr double finest_fraction = 1e-4;      // of the answers' rms: nothing finer is measured
 constexpr double strong_difference = 6;       // between values of the criterion
 constexpr Eigen::Index rows_per_unknown = 3;  // with fewer rows a criterion means little
-constexpr double least_share = 1e-3;          // of a branch that a fit begins with, of all
+constexpr double min_fraction = 1e-3;         // of a branch that a fit begins with, of all
 
-/// Relaxation times that the rows tell: the shortest interval, but for a few that may be strays, and the longest run.
+/// Relaxation times that the rows resolve: the shortest interval, except for a few possible outliers, and the longest
+/// run.
 std::array<double, 2> resolved_times(const std::vector<RelaxationRun>& runs) {
   std::vector<double> intervals;
   double longest = 0;
@@ -29,8 +30,8 @@ std::array<double, 2> resolved_times(const std::vector<RelaxationRun>& runs) {
     for (std::size_t i = 1; i < run.time_s.size(); ++i) intervals.push_back(run.time_s[i] - run.time_s[i - 1]);
     longest = std::max(longest, run.time_s.back() - run.time_s.front());
   }
-  constexpr std::size_t share = 50;
-  const auto at = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / share);
+  constexpr std::size_t fraction = 50;
+  const auto at = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / fraction);
   std::nth_element(intervals.begin(), at, intervals.end());
   return {*at, longest};
 }
@@ -95,7 +96,7 @@ class Starts {
     double whole = 0;
     for (const ViscousBranch& branch : best.first.branches) whole += branch.modulus_MPa;
     for (ViscousBranch& branch : best.first.branches)  // a branch without modulus would not move
-      branch.modulus_MPa = std::max(branch.modulus_MPa, least_share * whole);
+      branch.modulus_MPa = std::max(branch.modulus_MPa, min_fraction * whole);
     return best.first;
   }
 
@@ -122,7 +123,7 @@ class Starts {
     double least = std::numeric_limits<double>::infinity();
     std::vector<double> tried = constants_;
     for (int k = -6; k <= 8; ++k) {
-      tried.back() = problem_.most_excess() * (1 + std::pow(10, k / 4.0));
+      tried.back() = problem_.max_excess() * (1 + std::pow(10, k / 4.0));
       const double squares = solve(tried, grid_, columns_).second;
       if (squares < least) constants_ = tried, least = squares;
     }
@@ -135,8 +136,8 @@ class Starts {
       if (gap(i) < gap(nearest)) nearest = i;
     if (branches.size() < 2) return branches.clear();
     ViscousBranch &a = branches[nearest - 1], &b = branches[nearest];
-    const double sum = a.modulus_MPa + b.modulus_MPa, share = b.modulus_MPa / sum;
-    a = {sum, a.time_s * std::pow(b.time_s / a.time_s, share)};
+    const double sum = a.modulus_MPa + b.modulus_MPa, fraction = b.modulus_MPa / sum;
+    a = {sum, a.time_s * std::pow(b.time_s / a.time_s, fraction)};
     branches.erase(branches.begin() + static_cast<std::ptrdiff_t>(nearest));
   }
 
@@ -146,19 +147,20 @@ class Starts {
   std::vector<double> constants_;  // those that are not linear, as the starts have them
 };
 
-/// The fits with 0, 1, 2, ... branches, as long as they improve, or up to the number asked for.
+/// The fits with 0, 1, 2, ... branches, as long as they improve, or up to the requested number.
 class Growth {
  public:
-  Growth(const RelaxationProblem& problem, const std::vector<double>& grid, std::optional<std::size_t> asked)
+  Growth(const RelaxationProblem& problem, const std::vector<double>& grid, std::optional<std::size_t> requested)
       : problem_(problem) {
     for (const RelaxationRun& run : problem.runs())
-      floor_ += std::pow(finest_share * rms_of(problem.runs(), run.load_imposed) / problem.scale(run.load_imposed), 2) *
-                static_cast<double>(run.time_s.size());
+      floor_ +=
+          std::pow(finest_fraction * rms_of(problem.runs(), run.load_imposed) / problem.scale(run.load_imposed), 2) *
+          static_cast<double>(run.time_s.size());
     const Starts starts(problem, grid);
-    const std::size_t most = asked.value_or(std::max<std::size_t>(2, grid.size() * 3 / 8));
-    const Eigen::Index most_unknowns = asked ? problem.rows() - 1 : problem.rows() / rows_per_unknown;
-    for (std::size_t n = 0; n <= most && (n == 0 || unknowns_with(n) <= most_unknowns); ++n) {
-      if (!add(n, starts) || (!asked && n >= fewest() + 2)) break;
+    const std::size_t most = requested.value_or(std::max<std::size_t>(2, grid.size() * 3 / 8));
+    const Eigen::Index max_unknowns = requested ? problem.rows() - 1 : problem.rows() / rows_per_unknown;
+    for (std::size_t n = 0; n <= most && (n == 0 || unknowns_with(n) <= max_unknowns); ++n) {
+      if (!add(n, starts) || (!requested && n >= fewest() + 2)) break;
     }
   }
 
@@ -289,26 +291,27 @@ void check_modulus(const MaxwellElement& element) {
       "or give the law's constants");
 }
 
-/// A test of one stretch says one thing of the law.
+/// A test of one stretch determines one constant of the law.
 void check_constants(const RelaxationProblem& problem) {
   std::vector<double> constants;
   std::string fitted;
   for (std::size_t c = 0; c < problem.names().size(); ++c) {
-    const double start = problem.names()[c] == "jm" ? 4 * problem.most_excess() : 1;
+    const double start = problem.names()[c] == "jm" ? 4 * problem.max_excess() : 1;
     constants.push_back(problem.held(c).value_or(start));
     if (!problem.held(c)) fitted += (fitted.empty() ? "" : ", ") + problem.names()[c];
   }
   if (problem.tells_constants(constants)) return;
-  throw InvalidInput("the tests do not tell the constants " + fitted +
+  throw InvalidInput("the tests do not determine the constants " + fitted +
                      " apart: stretch to several lengths, give constants that are known, or take a law with fewer");
 }
 
-/// Weights of stresses beside stretches, where both answered: their residuals with as many branches as they carry.
+/// Weights of stresses relative to stretches, where both are responses: their residuals with as many branches as the
+/// data support.
 void weigh(RelaxationProblem& problem, const Growth& growth) {
   const VectorXd& unknowns = growth.minima()[growth.fewest()].unknowns;
   const auto left = [&](bool load_imposed) {
     return std::max(rms_left(problem, unknowns, load_imposed).value(),
-                    finest_share * rms_of(problem.runs(), load_imposed));
+                    finest_fraction * rms_of(problem.runs(), load_imposed));
   };
   problem.set_scales(left(false), left(true));
 }
@@ -348,7 +351,7 @@ RelaxationFit fit_relaxation(const std::vector<RelaxationRun>& runs, const Relax
       throw InvalidInput("the tests carry " + counted(fit.tried.size() - 1, "branch", "branches") + " at most, not " +
                          std::to_string(*options.branches));
     fit.chosen = *options.branches;
-    fit.by = BranchCount::asked;
+    fit.by = BranchCount::requested;
   }
   growth->polish(fit.chosen);
   fit.tried[fit.chosen] = fit_of_minimum(problem, *growth, fit.chosen);

@@ -32,7 +32,7 @@ struct ElementFit {
 
 /// By what the number of branches was found.
 enum class BranchCount {
-  asked,        // given by the user
+  requested,    // given by the user
   repeats,      // the fewest whose misfit is that between repeated runs
   information,  // the fewest whose criterion no other number is below by more than 6
 };
@@ -42,7 +42,7 @@ struct RelaxationFit {
   std::vector<ElementFit> tried;                     // without branches, with one, ...
   std::size_t chosen = 0;                            // its number of branches
   BranchCount by = BranchCount::information;         // what chose the number
-  double shortest_s = 0, longest_s = 0;              // between which the tests tell relaxation times
+  double shortest_s = 0, longest_s = 0;              // range of relaxation times that the tests resolve
   std::optional<double> repeat_MPa, repeat_stretch;  // deviation between repeated runs; none: there are none
   /// The one that was chosen.
   [[nodiscard]] const ElementFit& best() const { return tried[chosen]; }
@@ -55,17 +55,18 @@ struct RelaxationOptions {
   std::optional<std::size_t> branches{};  // exactly so many; none: as few as the tests carry
 };
 
-/// Branches, and the constants of the law that are not held, by least squares in what answered: every row counts alike.
+/// Fits the branches, and the constants of the law that are not fixed, by least squares of the responses: every row has
+/// the same weight.
 ///
 /// Relaxation times lie between the shortest interval of the rows (the 2nd percentile) and the longest run. The number
 /// of branches grows from 0; each fit starts once from the one before and the time of a logarithmic grid that improves
 /// it most, and once from non-negative least squares over the whole grid, whose neighbours are merged; from there all
-/// constants, moduli and times are refined together. What is below 1e-4 of the answers (rms) counts as noise.
+/// constants, moduli and times are refined together. Residuals below 1e-4 of the responses (rms) count as noise.
 /// There are three rows or more for every unknown.
 ///
 /// source  criterion: BIC = N ln(squares / N) + p ln N; a difference above 6 is strong: Kass, Raftery 1995
-/// throws  InvalidInput on fewer rows than constants, where no stretch differs from 1, or where the tests do not tell
-///         the law's constants apart or show no modulus of the law above 0
+/// throws  InvalidInput on fewer rows than constants, where no stretch differs from 1, or where the tests do not
+///         determine the law's constants or show no modulus of the law above 0
 [[nodiscard]] RelaxationFit fit_relaxation(const std::vector<RelaxationRun>& runs, const RelaxationOptions& options);
 
 }  // namespace softkin::calibration

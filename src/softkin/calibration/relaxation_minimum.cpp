@@ -51,18 +51,18 @@ struct NormalEquations {
     for (std::size_t i = 0; i < moving.size(); ++i) all[moving[i]] = some[i];
     return all;
   }
-  /// Unknowns that take part in a combination that the rows do not tell have none.
+  /// Unknowns in a combination that the rows do not determine have no deviation.
   [[nodiscard]] VectorXd deviations() const {
     constexpr double nan = std::numeric_limits<double>::quiet_NaN(), singular = 1e-13, part = 1e-3;
     if (moving.empty()) return VectorXd::Constant(size, nan);
     const SymmetricEigen eigen = symmetric_eigen(matrix);
     VectorXd variances = VectorXd::Zero(right.size());
     for (Eigen::Index k = 0; k < eigen.values.size(); ++k) {
-      const Eigen::ArrayXd shares = eigen.vectors.col(k).array().square();
-      const bool told = eigen.values[k] > singular * eigen.values.maxCoeff();
-      if (told) variances.array() += shares / eigen.values[k];
-      for (Eigen::Index i = 0; i < shares.size() && !told; ++i)
-        if (shares[i] > part * part) variances[i] = nan;
+      const Eigen::ArrayXd fractions = eigen.vectors.col(k).array().square();
+      const bool reported = eigen.values[k] > singular * eigen.values.maxCoeff();
+      if (reported) variances.array() += fractions / eigen.values[k];
+      for (Eigen::Index i = 0; i < fractions.size() && !reported; ++i)
+        if (fractions[i] > part * part) variances[i] = nan;
     }
     return spread(scale.cwiseProduct(variances.cwiseSqrt()), nan);
   }
@@ -76,23 +76,23 @@ struct NormalEquations {
 }  // namespace
 
 std::optional<Minimum> minimise(const RelaxationProblem& problem, const VectorXd& start, double enough) {
-  constexpr int most_steps = 60;
-  constexpr double least_damping = 1e-12, most_damping = 1e8;
+  constexpr int max_steps = 60;
+  constexpr double min_damping = 1e-12, max_damping = 1e8;
   VectorXd unknowns = within_bounds(problem, start);
   std::optional<VectorXd> residuals = problem.residuals(unknowns);
   if (!residuals) return std::nullopt;
   double damping = 1e-3;
-  for (int i = 0; i < most_steps; ++i) {
+  for (int i = 0; i < max_steps; ++i) {
     const NormalEquations equations(problem, unknowns, *residuals);
     double gained = 0;
-    for (; gained <= 0 && damping <= most_damping; damping *= 8) {
+    for (; gained <= 0 && damping <= max_damping; damping *= 8) {
       const VectorXd tried = within_bounds(problem, unknowns + equations.step(damping));
       std::optional<VectorXd> left = problem.residuals(tried);
       if (!left || !(left->squaredNorm() < residuals->squaredNorm())) continue;
       gained = 1 - left->squaredNorm() / residuals->squaredNorm();
       unknowns = tried;
       residuals = std::move(left);
-      damping = std::max(damping / 64, least_damping);  // the loop multiplies it once more
+      damping = std::max(damping / 64, min_damping);  // the loop multiplies it once more
     }
     if (gained < enough) break;
   }

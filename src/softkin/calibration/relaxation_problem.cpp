@@ -102,10 +102,10 @@ RelaxationProblem::RelaxationProblem(std::vector<RelaxationRun> runs, Law law,
   for (const auto& value : held_) free_constants_ += value ? 0 : 1;
   for (const RelaxationRun& run : runs_) {
     rows_ += run.time_s.size();
-    for (const double stretch : run.stretch) most_excess_ = std::max(most_excess_, excess_of(stretch));
+    for (const double stretch : run.stretch) max_excess_ = std::max(max_excess_, excess_of(stretch));
   }
-  if (law_ == Law::gent && held_[1] && !(*held_[1] > most_excess_))
-    throw InvalidInput("jm must be above " + number(most_excess_) + ", which I1 - 3 comes to in the tests, not " +
+  if (law_ == Law::gent && held_[1] && !(*held_[1] > max_excess_))
+    throw InvalidInput("jm must be above " + number(max_excess_) + ", which I1 - 3 comes to in the tests, not " +
                        number(*held_[1]));
 }
 
@@ -115,7 +115,7 @@ VectorXd RelaxationProblem::unknowns(const std::vector<double>& constants,
   Eigen::Index at = 0;
   for (std::size_t c = 0; c < names_.size(); ++c) {
     if (held_[c]) continue;
-    all[at++] = is_limit(names_[c]) ? std::log(constants[c] - most_excess_) : constants[c];
+    all[at++] = is_limit(names_[c]) ? std::log(constants[c] - max_excess_) : constants[c];
   }
   for (const ViscousBranch& branch : branches) {
     all[at++] = branch.modulus_MPa;
@@ -129,7 +129,7 @@ std::vector<double> RelaxationProblem::constants(const VectorXd& unknowns) const
   Eigen::Index at = 0;
   for (std::size_t c = 0; c < names_.size(); ++c) {
     const double value = held_[c] ? *held_[c] : unknowns[at++];
-    values.push_back(!held_[c] && is_limit(names_[c]) ? most_excess_ + std::exp(value) : value);
+    values.push_back(!held_[c] && is_limit(names_[c]) ? max_excess_ + std::exp(value) : value);
   }
   return values;
 }
@@ -151,7 +151,7 @@ std::array<double, 2> RelaxationProblem::bounds(Eigen::Index unknown) const {
   for (Eigen::Index left = unknown;; ++constant)
     if (!held_[constant] && left-- == 0) break;
   constexpr double nearest = 1e-3, farthest = 1e3;  // of jm above the runs' I1 - 3, over it
-  if (is_limit(names_[constant])) return {std::log(nearest * most_excess_), std::log(farthest * most_excess_)};
+  if (is_limit(names_[constant])) return {std::log(nearest * max_excess_), std::log(farthest * max_excess_)};
   return {is_signless(names_[constant]) ? -infinite : 0, infinite};
 }
 

@@ -17,10 +17,11 @@ namespace softkin::calibration {
 /// The law of these constants, in the order of their names.
 [[nodiscard]] IncompressibleLaw law_of_constants(Law law, const std::vector<double>& values);
 
-/// What was imposed in a run, and what answered: stretch [-] and nominal stress [MPa], or the other way round.
+/// The imposed and the measured history of a run: stretch [-] and nominal stress [MPa], or stress and stretch.
 [[nodiscard]] History imposed_in(const RelaxationRun& run);
 [[nodiscard]] Eigen::VectorXd answer_in(const RelaxationRun& run);
-/// What a run would have answered. None where a stress finds no stretch, or a stretch is beyond the law's limit.
+/// Returns the computed response of a run. None where no stretch balances a stress, or a stretch exceeds the law's
+/// limit.
 [[nodiscard]] std::optional<Eigen::VectorXd> answer_of(const MaxwellElement& element, const RelaxationRun& run);
 
 /// Constants of a law and branches by least squares in what answered. The unknowns are the constants that are not held,
@@ -37,7 +38,7 @@ class RelaxationProblem {
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
   /// None: it is fitted.
   [[nodiscard]] const std::optional<double>& held(std::size_t constant) const { return held_[constant]; }
-  [[nodiscard]] double most_excess() const { return most_excess_; }  // I1 - 3 [-]
+  [[nodiscard]] double max_excess() const { return max_excess_; }  // I1 - 3 [-]
   [[nodiscard]] Eigen::Index rows() const { return rows_; }
 
   /// Residuals are over these: deviations of stresses [MPa] and stretches [-], or what is in proportion to them.
@@ -56,7 +57,7 @@ class RelaxationProblem {
   [[nodiscard]] double slope(const Eigen::VectorXd& unknowns, Eigen::Index unknown) const;
   [[nodiscard]] bool is_modulus(Eigen::Index unknown) const;  // else a logarithm
 
-  /// Do the stretches of the runs tell the constants apart that are not held?
+  /// Do the stretches of the runs determine the constants that are not fixed?
   [[nodiscard]] bool tells_constants(const std::vector<double>& constants) const;
 
   /// Answers less what was measured, over the scales, run after run. None as of answer_of.
@@ -91,7 +92,7 @@ class RelaxationProblem {
   std::array<double, 2> times_;
   std::array<double, 2> scales_{1, 1};
   Eigen::Index rows_ = 0, free_constants_ = 0;
-  double most_excess_ = 0;
+  double max_excess_ = 0;
 };
 
 /// Where a search for the least squares ended.
@@ -101,9 +102,9 @@ struct Minimum {
   Eigen::VectorXd deviations;  // of the unknowns, if those of the residuals are 1; NaN: at a bound or not determined
 };
 
-/// Levenberg-Marquardt within the bounds. None where the start has no answer.
+/// Minimises by Levenberg-Marquardt within the bounds. None where the start has no response.
 ///
-/// enough  a step that makes the squares less by no more than this share is the last
+/// enough  a step that reduces the squares by no more than this fraction is the last
 [[nodiscard]] std::optional<Minimum> minimise(const RelaxationProblem& problem, const Eigen::VectorXd& start,
                                               double enough = 1e-7);
 

@@ -52,7 +52,7 @@ std::string fit_name(const RelaxationTask& task, const RelaxationFit& fit) {
 }
 
 std::string choice_text(const RelaxationFit& fit) {
-  if (fit.by == BranchCount::asked) return "as asked for";
+  if (fit.by == BranchCount::requested) return "as requested";
   if (fit.by == BranchCount::repeats) return "the fewest that are off by no more than repeated runs differ";
   return "the fewest that no other number is better than by more than 6 (BIC)";
 }
@@ -119,16 +119,16 @@ Table branch_table(const RelaxationFit& fit) {
   return table;
 }
 
-/// Estimates that the tests do not tell, in words.
+/// Returns notes on the estimates that the tests do not determine.
 std::string relaxation_notes(const RelaxationTask& task, const RelaxationFit& fit) {
   std::string text;
   const std::vector<std::string> names = constant_names(fit.best().element.law.law);
   for (std::size_t c = 0; c < names.size(); ++c)
     if (!fit.best().constants[c].deviation && !task.constants.contains(names[c]))
-      text += "note: the tests do not tell " + names[c] + ": it is at a bound, or others make up for it\n";
+      text += "note: the tests do not determine " + names[c] + ": it is at a bound, or others make up for it\n";
   for (std::size_t b = 0; b < fit.best().branches.size(); ++b)
     if (!fit.best().branches[b].time_s.deviation)
-      text += "note: the tests do not tell the time of branch " + std::to_string(b + 1) +
+      text += "note: the tests do not determine the time of branch " + std::to_string(b + 1) +
               ": it is at an end of the range, or another branch makes up for it\n";
   return text;
 }
@@ -146,11 +146,11 @@ Json estimate_with_deviation(const Estimate& estimate) {
 /// Does what is imposed come back? Then the run is a loop, else something over time.
 bool is_loop(const RelaxationRun& run) {
   if (run.load_imposed) return false;
-  double way = 0;
-  for (std::size_t i = 1; i < run.stretch.size(); ++i) way += std::abs(run.stretch[i] - run.stretch[i - 1]);
+  double route = 0;
+  for (std::size_t i = 1; i < run.stretch.size(); ++i) route += std::abs(run.stretch[i] - run.stretch[i - 1]);
   const auto [least, most] = std::minmax_element(run.stretch.begin(), run.stretch.end());
   constexpr double there_and_back = 1.5;
-  return way > there_and_back * (*most - *least) && *most > *least;
+  return route > there_and_back * (*most - *least) && *most > *least;
 }
 
 /// A run in its panel: what was measured, and the fit as a line.
@@ -213,7 +213,7 @@ RelaxationResults evaluate(const RelaxationTask& task) {
 
 std::string relaxation_text(const RelaxationTask& task, const RelaxationResults& results) {
   const RelaxationFit& fit = results.fit;
-  return read_text(results) + "the tests tell relaxation times of " + number(fit.shortest_s, 3) + " to " +
+  return read_text(results) + "the tests determine relaxation times of " + number(fit.shortest_s, 3) + " to " +
          number(fit.longest_s, 4) + " s; " + noise_text(fit) + "\n\n" + text_of(tried_table(fit)) +
          fit_name(task, fit) + ": " + choice_text(fit) + "\n\n" + text_of(constants_table(task, fit)) +
          (fit.chosen > 0 ? text_of(branch_table(fit)) : "") + relaxation_notes(task, fit) +

@@ -9,7 +9,7 @@
 
 namespace softkin::calibration {
 
-/// What is asked of relaxation, creep and cyclic tests.
+/// The options of a fit to relaxation, creep and cyclic tests.
 struct RelaxationTask {
   std::vector<std::string> tests, creep;  // CSV: of imposed stretches, and of imposed stresses
   std::string law = "neo-hookean";        // or mooney-rivlin, yeoh, gent

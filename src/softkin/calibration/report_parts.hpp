@@ -8,7 +8,7 @@
 #include <softkin/io/table/table.hpp>
 #include <string>
 
-// What the .cpp files of the reports share; no header of the room includes it.
+// Declarations for the .cpp files of the reports; no header of the module includes this one.
 
 namespace softkin::calibration {
 

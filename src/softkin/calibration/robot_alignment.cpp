@@ -6,8 +6,8 @@ namespace softkin::calibration {
 
 namespace {
 
-constexpr int most_alignments = 200;
-constexpr double first_alignment_damping = 1e-3, most_alignment_damping = 1e6;
+constexpr int max_alignments = 200;
+constexpr double first_alignment_damping = 1e-3, max_alignment_damping = 1e6;
 constexpr double gained_by_alignment = 1e-9;  // of the sum of squares, less is none
 constexpr double frame_step = 1e-4;           // for differences [mm, degrees]
 constexpr double known_within = 3;            // deviations of a prior
@@ -100,11 +100,11 @@ Eigen::VectorXd RobotProblem::aligned(const RobotPoint& start) {
   RobotPoint point = start;
   (void)match(point, false);
   double damping = first_alignment_damping;
-  for (int i = 0; i < most_alignments; ++i) {
+  for (int i = 0; i < max_alignments; ++i) {
     const MarkerMisses misses = marker_misses(point, numbers);
     if (misses.off.empty()) break;
     bool moved = false;
-    for (; !moved && damping < most_alignment_damping; damping *= 8) {
+    for (; !moved && damping < max_alignment_damping; damping *= 8) {
       Eigen::VectorXd values = point.values;
       const Eigen::VectorXd step = misses.step(damping);
       for (std::size_t k = 0; k < numbers.size(); ++k) values[numbers[k]] += step[k];

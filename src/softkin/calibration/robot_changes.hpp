@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <softkin/calibration/robot_problem.hpp>
 
-// What the .cpp files of a robot's problem share; no header of the room includes it.
+// Declarations for the .cpp files of a robot's problem; no header of the module includes this one.
 
 namespace softkin::calibration {
 
@@ -15,7 +15,7 @@ struct RobotProblem::Changes {
   std::vector<Model> models;  // those of a number side by side
   std::vector<Perturbed> perturbed;
   std::vector<Index> numbers;                  // of which they are
-  std::vector<std::vector<Actuation>> acting;  // per such number, per pose: the derivative of what acts
+  std::vector<std::vector<Actuation>> acting;  // per such number, per pose: the derivative of the acting commands
   std::unique_ptr<Perturbations> perturbations;
   std::vector<double> differences;  // per number of the robot
   std::vector<MeasuringFrame> more, less;

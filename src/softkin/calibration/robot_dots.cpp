@@ -35,7 +35,7 @@ struct DotMatcher::Costs {
 };
 
 DotMatcher::DotMatcher(const MeasuredPoses& poses, const Model& model, double within_mm)
-    : seen_(poses), named_(poses), asked_mm_(within_mm) {
+    : seen_(poses), named_(poses), requested_mm_(within_mm) {
   if (any() && !(within_mm > 0))
     throw InvalidInput(
         {poses.file},
@@ -91,7 +91,7 @@ double DotMatcher::typical_mm(const Eigen::MatrixXd& computed, const std::vector
   for (std::size_t pose = 0; pose < markers_.size(); ++pose) {
     if (!counts[pose]) continue;
     const Costs all = costs(computed, pose);
-    const std::vector<Index> columns = least_assignment(all.squares, all.any());
+    const std::vector<Index> columns = min_assignment(all.squares, all.any());
     for (std::size_t row = 0; row < columns.size(); ++row)
       if (columns[row] >= 0) distances.push_back(std::sqrt(all.squares(row, columns[row])));
   }
@@ -103,12 +103,12 @@ double DotMatcher::typical_mm(const Eigen::MatrixXd& computed, const std::vector
 
 bool DotMatcher::match(const Eigen::MatrixXd& computed, const std::vector<bool>* counts) {
   if (!any()) return false;
-  const double within = counts ? std::max(asked_mm_, loose * typical_mm(computed, *counts)) : asked_mm_;
+  const double within = counts ? std::max(requested_mm_, loose * typical_mm(computed, *counts)) : requested_mm_;
   const std::vector<std::vector<Index>> before = markers_;
   within_mm_ = within;
   for (std::size_t pose = 0; pose < markers_.size(); ++pose) {
     const Costs all = costs(computed, pose);
-    name(pose, all, least_assignment(all.squares, within * within));
+    name(pose, all, min_assignment(all.squares, within * within));
   }
   return markers_ != before;
 }
@@ -133,10 +133,10 @@ void DotMatcher::name(Index pose, const Costs& costs, const std::vector<Index>& 
 /// What a dot is in the best match in which it is not what it is.
 std::optional<Index> DotMatcher::rival(const Costs& costs, Eigen::Index row, double deviation_mm) const {
   const double alone = within_mm_ * within_mm_;
-  const std::vector<Index> best = least_assignment(costs.squares, alone);
+  const std::vector<Index> best = min_assignment(costs.squares, alone);
   Costs other = costs;
   other.squares(row, best[row]) = std::numeric_limits<double>::infinity();
-  const std::vector<Index> second = least_assignment(other.squares, alone);
+  const std::vector<Index> second = min_assignment(other.squares, alone);
   if (costs.sum(second, alone) - costs.sum(best, alone) >= std::pow(doubtful * deviation_mm, 2)) return std::nullopt;
   const Index column = second[row];
   return column < 0 ? -1 : costs.markers[column];

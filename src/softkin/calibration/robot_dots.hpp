@@ -37,9 +37,9 @@ class DotMatcher {
   /// Matches the dots anew.
   ///
   /// computed  poses by columns of poses(); NaN: a pose without equilibrium, whose dots match nothing
-  /// counts    the poses that tell how far off dots may be while the numbers are far off: three times the median of
-  ///           their distances where all dots are matched; null: no farther than was asked
-  /// returns   is it another match?
+  /// counts    the poses that set the limit of the distance while the numbers are far from the solution: three times
+  ///           the median distance of a complete match; null: the limit is the requested distance
+  /// returns   has the match changed?
   bool match(const Eigen::MatrixXd& computed, const std::vector<bool>* counts);
 
   /// The last match. deviation_mm  of a coordinate: what is another match but by less than two of them is a rival
@@ -54,7 +54,7 @@ class DotMatcher {
   [[nodiscard]] std::optional<Index> rival(const Costs& costs, Eigen::Index row, double deviation_mm) const;
 
   MeasuredPoses seen_, named_;
-  double asked_mm_, within_mm_ = std::numeric_limits<double>::infinity();
+  double requested_mm_, within_mm_ = std::numeric_limits<double>::infinity();
   std::vector<std::vector<Index>> columns_;  // of poses(), per marker, per axis of the dots
   std::vector<std::vector<Index>> markers_;  // per pose, per dot: -1: none
 };

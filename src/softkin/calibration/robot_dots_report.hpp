@@ -3,7 +3,7 @@
 #include <softkin/calibration/report_parts.hpp>
 #include <softkin/calibration/robot_report_parts.hpp>
 
-// What a robot's report says of dots without names; no header of the room includes it.
+// The part of a robot's report about dots without names; no header of the module includes this one.
 
 namespace softkin::calibration {
 

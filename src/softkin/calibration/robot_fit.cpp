@@ -14,9 +14,9 @@ namespace {
 using Eigen::VectorXd;
 
 constexpr double enough = 1e-6;     // of the sum of squares, that an iteration gains
-constexpr double most_step = 0.5;   // of what a number began with: a robot that is much softer at once is a knot
+constexpr double max_step = 0.5;    // of what a number began with: a robot that is much softer at once is a knot
 constexpr double no_effect = 1e-8;  // of the largest: rounding, which would ask for steps beyond all measure
-constexpr double least_damping = 1e-10, most_damping = 1e8;
+constexpr double min_damping = 1e-10, max_damping = 1e8;
 
 VectorXd within_bounds(const NumberedRobot& robot, VectorXd values) {
   for (std::size_t i = 0; i < robot.numbers().size(); ++i) {
@@ -31,7 +31,7 @@ VectorXd limited(const NumberedRobot& robot, const VectorXd& step) {
   double longest = 0;
   for (std::size_t i = 0; i < robot.numbers().size(); ++i)
     if (*robot.numbers()[i].start != 0) longest = std::max(longest, std::abs(step[i]) / robot.size(i));
-  return longest > most_step ? VectorXd(most_step / longest * step) : step;
+  return longest > max_step ? VectorXd(max_step / longest * step) : step;
 }
 
 int side(const FittedNumber& number, double value) {
@@ -73,8 +73,8 @@ struct RobotEquations {
   VectorXd right;
 };
 
-/// Deviations and correlations; those of a combination that the readings do not tell are none.
-void tell_deviations(const RobotEquations& equations, RobotFit& fit) {
+/// Deviations and correlations; a combination that the readings do not determine has none.
+void report_deviations(const RobotEquations& equations, RobotFit& fit) {
   constexpr double nan = std::numeric_limits<double>::quiet_NaN(), singular = 1e-12, part = 1e-2;
   fit.deviations = VectorXd::Constant(equations.size, nan);
   fit.correlations = Eigen::MatrixXd::Identity(equations.size, equations.size);
@@ -83,20 +83,20 @@ void tell_deviations(const RobotEquations& equations, RobotFit& fit) {
   const VectorXd root = equations.matrix.diagonal().cwiseSqrt().cwiseInverse();
   const SymmetricEigen eigen = symmetric_eigen(root.asDiagonal() * equations.matrix * root.asDiagonal());
   Eigen::MatrixXd covariance = Eigen::MatrixXd::Zero(count, count);
-  std::vector<bool> told(count, true);
+  std::vector<bool> reported(count, true);
   for (Index k = 0; k < std::ssize(eigen.values); ++k) {
     if (eigen.values[k] > singular * eigen.values.maxCoeff()) {
       covariance += eigen.vectors.col(k) * eigen.vectors.col(k).transpose() / eigen.values[k];
       continue;
     }
     for (Index i = 0; i < count; ++i)
-      if (std::abs(eigen.vectors(i, k)) > part) told[i] = false;
+      if (std::abs(eigen.vectors(i, k)) > part) reported[i] = false;
   }
   for (Index i = 0; i < count; ++i) {
     const Index u = equations.moving[i];
-    if (told[i]) fit.deviations[u] = equations.scales[u] * root[i] * std::sqrt(covariance(i, i));
+    if (reported[i]) fit.deviations[u] = equations.scales[u] * root[i] * std::sqrt(covariance(i, i));
     for (Index j = 0; j < i; ++j) {
-      if (!told[i] || !told[j]) continue;
+      if (!reported[i] || !reported[j]) continue;
       const Index v = equations.moving[j];
       fit.correlations(u, v) = fit.correlations(v, u) =
           covariance(i, j) / std::sqrt(covariance(i, i) * covariance(j, j));
@@ -104,7 +104,7 @@ void tell_deviations(const RobotEquations& equations, RobotFit& fit) {
   }
 }
 
-/// Numbers that readings alone tell.
+/// Returns how many numbers only the readings determine.
 std::size_t free_numbers(const NumberedRobot& robot) {
   return std::count_if(robot.numbers().begin(), robot.numbers().end(),
                        [](const FittedNumber& n) { return !n.deviation; });
@@ -162,7 +162,7 @@ void conclude(const NumberedRobot& robot, const RobotPoint& point, const RobotFi
     fit.remark = "its iterations were not enough";
   }
   finish(problem, point, fit);
-  tell_deviations(RobotEquations(robot, point.values, problem.linearised(point)), fit);
+  report_deviations(RobotEquations(robot, point.values, problem.linearised(point)), fit);
   for (std::size_t i = 0; i < robot.numbers().size(); ++i)
     fit.at_bound.push_back(side(robot.numbers()[i], point.values[i]));
   if (fit.status == Status::converged && problem.matched_readings() < free_numbers(robot)) {
@@ -217,7 +217,7 @@ RobotFit fit_robot(const NumberedRobot& robot, const MeasuredPoses& poses, const
     double gained = 0;
     bool stopped = false;
     std::string refusal;
-    for (; !(gained > 0) && damping <= most_damping && !stopped; damping *= 8) {
+    for (; !(gained > 0) && damping <= max_damping && !stopped; damping *= 8) {
       const VectorXd tried = within_bounds(robot, point->values + limited(robot, equations.step(damping)));
       if ((tried - point->values).cwiseQuotient(equations.scales).norm() < 1e-12) break;
       std::optional<RobotPoint> next = problem.solve(tried, &*point, true);
@@ -228,15 +228,15 @@ RobotFit fit_robot(const NumberedRobot& robot, const MeasuredPoses& poses, const
       if (!(after < before)) continue;
       gained = 1 - after / before;
       point = std::move(next);
-      damping = std::max(damping / 64, least_damping);  // the loop multiplies it once more
+      damping = std::max(damping / 64, min_damping);  // the loop multiplies it once more
     }
     if (stopped) break;
-    const bool settled = gained < enough, matched_anew = problem.match(*point, settled);
-    if (settled && matched_anew) {
+    const bool stationary = gained < enough, matched_anew = problem.match(*point, stationary);
+    if (stationary && matched_anew) {
       damping = first_damping;
       continue;
     }
-    if (settled) {
+    if (stationary) {
       fit.status = refusal.empty() ? Status::converged : Status::not_converged;
       if (!refusal.empty()) fit.remark = "what would fit better is refused, so give bounds: " + refusal;
       break;

@@ -8,28 +8,28 @@
 
 namespace softkin::calibration {
 
-/// What a reading counts that is far off: its square; or no more than its distance (huber); or hardly more than a near
-/// one (cauchy).
+/// The loss of an outlier: its squared distance; or its distance (huber); or hardly more than that of a good reading
+/// (cauchy).
 enum class Loss { squares, huber, cauchy };
 
-/// Of Loss, as options have them.
+/// The names of Loss in options.
 constexpr const char* loss_names[] = {"squares", "huber", "cauchy"};
 
 /// How a robot is fitted to its poses.
 struct RobotFitOptions {
   StaticsOptions solver{};                    // of each equilibrium
-  Loss loss = Loss::squares;                  // of a reading that is far off
-  std::array<double, readings> deviations{};  // of each kind of reading; 0: told by what is left
+  Loss loss = Loss::squares;                  // of outliers
+  std::array<double, readings> deviations{};  // of each kind of reading; 0: estimated from the residuals
   int max_iterations = 30;                    // of the fit
   int threads = 0;                            // poses side by side; 0: as many as the machine has
-  bool ordered = false;        // where something rubs or a motor has play: each pose goes on from the one before, the
-                               // first from rest; else each from rest
-  std::vector<bool> kept{};    // per pose: not fitted to; empty: none
+  bool ordered = false;                       // with friction or backlash: each pose starts from the one before, the
+                                              // first from rest; else each from rest
+  std::vector<bool> kept{};                   // per pose: not fitted to; empty: none
   double match_within_mm = 0;  // how far a dot without a name may be from its marker; 0: there are no such dots
   OutlineOptions outlines{};   // of pictures
 };
 
-/// What the robot does where numbers are as they are.
+/// The poses of the robot with given numbers.
 struct ComputedPoses {
   Eigen::MatrixXd values;               // as values of the named poses; NaN where a pose has no equilibrium
   std::vector<Equilibrium> equilibria;  // per pose
@@ -41,12 +41,12 @@ struct Misfit {
   std::size_t readings = 0;     // that it is of
 };
 
-/// Outlines in pictures beside the robot's.
+/// Outlines in pictures compared with the robot's.
 struct OutlineFit {
-  std::vector<std::vector<OutlineReading>> poses;  // per pose: the points that are fitted to or foretold
+  std::vector<std::vector<OutlineReading>> poses;  // per pose: the points that are fitted to or predicted
   std::vector<OutlineLines> lines;                 // per pose: the outline of the robot [mm]
   double within_mm = 0;                            // farther off a point does not count
-  double scale_mm = 0;                             // deviation of a distance: given, or by what is left; 0: none
+  double scale_mm = 0;                             // deviation of a distance: given, or from the residuals; 0: none
   Misfit fitted_mm, kept_mm;                       // distances of points that count, of poses fitted to, of the others
 };
 
@@ -54,8 +54,8 @@ struct OutlineFit {
 struct RobotFit {
   Status status = Status::not_converged;  // interrupted: the best so far
   std::string remark{};                   // why it is not converged
-  Eigen::VectorXd values, deviations;     // deviation NaN: the poses do not tell it
-  Eigen::MatrixXd correlations;           // of those that are told; else 0
+  Eigen::VectorXd values, deviations;     // deviation NaN: the poses do not determine it
+  Eigen::MatrixXd correlations;           // of those that are determined; else 0
   std::vector<int> at_bound;              // per number: -1 low, +1 high, else 0
   MeasuredPoses named;                    // the poses, dots as readings of the markers that they are matched to
   DotMatches dots;                        // which these are
@@ -69,29 +69,29 @@ struct RobotFit {
   double seconds = 0;                     // that it took [s]
 };
 
-/// What a fit tells while it runs.
+/// The progress report of a fit.
 struct FitProgress {
   int iteration = 0, poses_done = 0, poses = 0;  // from 1; poses solved in it, of so many
   double rms_mm = 0;                             // of the last iteration; 0: none yet
 };
-/// False: stop.
+/// Returns false to stop.
 using FitCallback = std::function<bool(const FitProgress&)>;
 
-/// So many poses, spread evenly, that are not fitted to.
+/// Chooses poses, spread evenly, that are not fitted to.
 ///
 /// throws  InvalidInput naming the option: none would be left
 [[nodiscard]] std::vector<bool> kept_aside(const std::string& option, int keep, std::size_t poses);
 
-/// The numbers at which the robot does what was measured, by Levenberg's and Marquardt's method through equilibria,
-/// with exact derivatives.
+/// Finds the numbers at which the robot reproduces the measurements, by Levenberg's and Marquardt's method through
+/// equilibria, with exact derivatives.
 ///
 /// minimises  sum over readings of loss((computed - measured) / scale) + sum over priors of
 ///            ((value - mean) / deviation)^2 within the bounds; a marker's coordinates are one reading; dots without
-///            names and points of outlines are matched anew after each step, until the match stays, and then as far
-///            off as was asked; the distance of a point is by the nearest place of the outline wherever the robot is
+///            names and points of outlines are matched anew after each step, until the match stays, and then within the
+///            requested distance; the distance of a point is by the nearest place of the outline wherever the robot is
 /// deviations of the normal equations at the end, scaled by the deviation of readings
-/// throws     InvalidInput: a target-shape robot, no pose to fit to, fewer readings than numbers, what DotMatcher
-///            and RobotOutlines throw
+/// throws     InvalidInput: a target-shape robot, no pose to fit to, fewer readings than numbers, and the exceptions of
+///            DotMatcher and RobotOutlines
 [[nodiscard]] RobotFit fit_robot(const NumberedRobot& robot, const MeasuredPoses& poses, const RobotFitOptions& options,
                                  const FitCallback& progress = {});
 

@@ -11,10 +11,10 @@ namespace {
 
 using Eigen::Vector2d;
 
-constexpr double within_share = 0.05;   // of the robot's diagonal
-constexpr double loose_outline = 3;     // of the median distance: how far off points may be while the numbers are
-constexpr double gap_outline = 5;       // of the median step: what follows is not the same piece of the outline
-constexpr double on_outline_mm = 1e-9;  // nearer the direction to the outline is that of its normal
+constexpr double within_fraction = 0.05;  // of the robot's diagonal
+constexpr double loose_outline = 3;       // of the median distance: limit while the numbers are far from the solution
+constexpr double gap_outline = 5;         // of the median step: a longer one is a gap of the outline
+constexpr double on_outline_mm = 1e-9;    // closer than this the direction to the outline is its normal
 
 /// A closed outline with gaps.
 struct Loop {
@@ -70,10 +70,10 @@ OutlineMiss miss_of(const OutlinePoint& point, const std::optional<OutlinePlace>
   miss.nearest = *nearest;
   const Vector2d arm = point.place - nearest->place;
   const double side = arm.dot(nearest->outward);
-  // beyond the end of an edge, at a corner, the way is that to the corner
+  // beyond the end of an edge, at a corner, the direction is that to the corner
   const double distance = arm.norm();
   miss.off_mm = side < 0 ? -distance : distance;
-  miss.way = distance > on_outline_mm ? Vector2d(arm / miss.off_mm) : nearest->outward;
+  miss.path = distance > on_outline_mm ? Vector2d(arm / miss.off_mm) : nearest->outward;
   return miss;
 }
 
@@ -111,7 +111,7 @@ RobotOutlines::RobotOutlines(const MeasuredPoses& poses, const Model& model, con
   }
   surface_.emplace(runs::body_surface(model).triangles);
   if (surface_->triangles().empty()) throw InvalidInput({poses.outlines.file}, "the robot has no surface to be seen");
-  asked_mm_ = options.within_mm.value_or(within_share * model.diagonal_mm);
+  requested_mm_ = options.within_mm.value_or(within_fraction * model.diagonal_mm);
   for (const std::vector<Vector2d>& points : poses.outlines.points) {
     points_.push_back(points.empty() ? std::vector<OutlinePoint>() : thinned_outline(points, options.points));
     counts_.emplace_back(points_.back().size(), true);
@@ -135,7 +135,7 @@ OutlineLines RobotOutlines::lines(const Points& positions, const MeasuringFrame&
 
 bool RobotOutlines::match(const OutlineMisses& misses, const std::vector<bool>* fitted) {
   if (!any()) return false;
-  double within = asked_mm_;
+  double within = requested_mm_;
   std::vector<double> distances;
   for (std::size_t pose = 0; fitted && pose < misses.size(); ++pose)
     for (const OutlineMiss& miss : misses[pose])
@@ -175,11 +175,12 @@ Eigen::VectorXd outline_slopes(const std::vector<OutlineMiss>& misses, const Poi
     if (!std::isfinite(misses[k].off_mm)) continue;
     const OutlinePlace& place = misses[k].nearest;
     const auto at = [&](const Points& of) -> Vec3 {
-      return ((1 - place.share) * of.row(place.vertices[0]) + place.share * of.row(place.vertices[1])).transpose();
+      return ((1 - place.fraction) * of.row(place.vertices[0]) + place.fraction * of.row(place.vertices[1]))
+          .transpose();
     };
     Vec3 moved = turns * at(positions) + shifts;
     if (moves) moved += frame.rotation * at(*moves);
-    slopes[k] = -misses[k].way.dot(moved.head<2>());
+    slopes[k] = -misses[k].path.dot(moved.head<2>());
   }
   return slopes;
 }

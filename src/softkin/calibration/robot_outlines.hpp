@@ -22,14 +22,14 @@ struct OutlinePoint {
 /// times farther than most, the outline has a gap. Which side is outwards is by the area that all of them enclose.
 [[nodiscard]] std::vector<OutlinePoint> thinned_outline(const std::vector<Eigen::Vector2d>& points, int count);
 
-/// Where a measured point lies beside the outline of the robot.
+/// The distance of a measured point from the outline of the robot.
 struct OutlineMiss {
   OutlinePlace nearest;
   double off_mm = std::numeric_limits<double>::quiet_NaN();  // > 0: outside; NaN: the robot has no outline there
-  Eigen::Vector2d way{0, 0};                                 // derivative of off_mm by the point
+  Eigen::Vector2d path{0, 0};                                // derivative of off_mm by the point
 };
 
-/// A point of an outline and what is computed, as it is told.
+/// A point of an outline with its computed counterpart, for reports.
 struct OutlineReading {
   Eigen::Vector2d measured{0, 0}, nearest{0, 0};  // [mm]
   double off_mm = std::numeric_limits<double>::quiet_NaN();
@@ -48,14 +48,15 @@ class RobotOutlines {
 
   [[nodiscard]] bool any() const { return surface_.has_value(); }
   [[nodiscard]] std::size_t points(Index pose) const { return any() ? points_[std::size_t(pose)].size() : 0; }
-  [[nodiscard]] double asked_mm() const { return asked_mm_; }
+  [[nodiscard]] double requested_mm() const { return requested_mm_; }
 
   /// Of a pose, as the shape is seen along z of the measuring frame.
   [[nodiscard]] std::vector<OutlineMiss> misses(Index pose, const Points& positions, const MeasuringFrame& frame) const;
   [[nodiscard]] OutlineLines lines(const Points& positions, const MeasuringFrame& frame) const;
 
-  /// Lets points count that are near enough: as asked, or, where the numbers may be far off, thrice as far as half of
-  /// them are in the poses that are fitted to. fitted: which these are; null: as asked. Are they others than before?
+  /// Selects the points that are near enough: within the requested distance, or, while the numbers may be far from the
+  /// solution, within three times the median distance in the poses that are fitted to. fitted: these poses; null: the
+  /// requested distance. Has the selection changed?
   bool match(const OutlineMisses& misses, const std::vector<bool>* fitted);
   [[nodiscard]] bool counts(Index pose, std::size_t point) const { return counts_[std::size_t(pose)][point]; }
   [[nodiscard]] std::vector<OutlineReading> readings(Index pose, const std::vector<OutlineMiss>& misses) const;
@@ -63,7 +64,7 @@ class RobotOutlines {
  private:
   std::vector<std::vector<OutlinePoint>> points_;  // per pose
   std::optional<SurfaceEdges> surface_;
-  double asked_mm_ = 0;
+  double requested_mm_ = 0;
   std::vector<std::vector<bool>> counts_;
 };
 
@@ -71,7 +72,7 @@ class RobotOutlines {
 ///
 /// turns, shifts  of the measuring frame [per unit of the number]
 /// moves          of the vertices, #V by 3 [mm per unit]; null: they do not move
-/// equation       d off / d p = -way . d place / d p, the place being a fixed share of its edge
+/// equation       d off / d p = -path . d place / d p, the place being at a fixed fraction of its edge
 [[nodiscard]] Eigen::VectorXd outline_slopes(const std::vector<OutlineMiss>& misses, const Points& positions,
                                              const MeasuringFrame& frame, const Mat3& turns, const Vec3& shifts,
                                              const Points* moves);

@@ -114,14 +114,18 @@ std::vector<GivenNumber> parse_given_numbers(const std::string& option, const st
   return numbers;
 }
 
-NumberedRobot::NumberedRobot(const AskedScene& asked, const std::vector<FittedNumber>& numbers,
+NumberedRobot::NumberedRobot(const RequestedScene& requested, const std::vector<FittedNumber>& numbers,
                              std::vector<std::filesystem::path>& inputs, const std::vector<GivenNumber>& given)
-    : file_(asked.scene), asked_(asked), numbers_(numbers), given_(given), files_(std::make_shared<FileContents>()) {
+    : file_(requested.scene),
+      requested_(requested),
+      numbers_(numbers),
+      given_(given),
+      files_(std::make_shared<FileContents>()) {
   check_names();
-  root_ = scene::parse_yaml(read_scene_file(asked.scene), asked.scene);
-  for (const std::string& material : asked.materials)
+  root_ = scene::parse_yaml(read_scene_file(requested.scene), requested.scene);
+  for (const std::string& material : requested.materials)
     root_ = scene::changed(root_, "--material", material, "materials");
-  for (const std::string& each : asked.changes) root_ = scene::changed(root_, "--change", each, "");
+  for (const std::string& each : requested.changes) root_ = scene::changed(root_, "--change", each, "");
   for (FittedNumber& number : numbers_) {
     if (!number.start)
       number.start = is_of_frame(number.name) ? 0.0 : scene::number_at(root_, number.option, number.name);
@@ -163,7 +167,7 @@ RobotSpec NumberedRobot::spec(const Eigen::VectorXd& values) const {
     if (!is_of_frame(numbers_[i].name))
       root = scene::changed(root, numbers_[i].option, numbers_[i].name + "=" + exact(values[i]), "");
   RobotSpec spec = parse_scene(*root, file_, files_->kept(true));
-  change(spec, asked_);
+  change(spec, requested_);
   spec.loads.gravity = turned(six_of(values, "base").degrees).transpose() * spec.loads.gravity;
   return spec;
 }

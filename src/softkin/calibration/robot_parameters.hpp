@@ -57,7 +57,7 @@ class NumberedRobot {
   /// given   coordinates of the measuring frame that stay; others are 0 where they are not among the numbers
   /// throws  InvalidInput: what reading the scene throws; numbers that it does not have, starts outside their bounds,
   ///         a number that is there twice
-  NumberedRobot(const AskedScene& asked, const std::vector<FittedNumber>& numbers,
+  NumberedRobot(const RequestedScene& requested, const std::vector<FittedNumber>& numbers,
                 std::vector<std::filesystem::path>& inputs, const std::vector<GivenNumber>& given = {});
 
   /// Those that are fitted, in the order of all values below.
@@ -86,7 +86,7 @@ class NumberedRobot {
   [[nodiscard]] RobotSpec spec(const Eigen::VectorXd& values) const;
 
   std::string file_;
-  AskedScene asked_;
+  RequestedScene requested_;
   std::shared_ptr<const scene::Node> root_;
   std::vector<FittedNumber> numbers_;
   std::vector<GivenNumber> given_;

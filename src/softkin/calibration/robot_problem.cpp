@@ -124,9 +124,9 @@ double RobotProblem::scale(const RobotPoint& point, Reading kind) const {
 double RobotProblem::scale_of(std::vector<double> distances, double squares, std::size_t count) const {
   constexpr double least = 1e-9;  // of what is fitted without any miss
   if (options_.loss == Loss::squares) {
-    std::size_t told = 0;  // freedoms that the numbers take
-    for (const FittedNumber& number : robot_.numbers()) told += !number.deviation;
-    const double freedoms = std::max(1.0, static_cast<double>(count) - static_cast<double>(told));
+    std::size_t reported = 0;  // freedoms that the numbers take
+    for (const FittedNumber& number : robot_.numbers()) reported += !number.deviation;
+    const double freedoms = std::max(1.0, static_cast<double>(count) - static_cast<double>(reported));
     return std::max(least, std::sqrt(squares / freedoms));
   }
   std::nth_element(distances.begin(), distances.begin() + static_cast<std::ptrdiff_t>(distances.size() / 2),
@@ -140,7 +140,7 @@ Scales RobotProblem::scales(const RobotPoint& point) const {
   return scales;
 }
 
-double RobotProblem::share_by_loss(double distance) const {
+double RobotProblem::fraction_by_loss(double distance) const {
   if (options_.loss == Loss::huber && distance > huber_at) return huber_at / distance;
   return options_.loss == Loss::cauchy ? 1 / (1 + distance * distance / (cauchy_at * cauchy_at)) : 1;
 }
@@ -156,7 +156,7 @@ Eigen::VectorXd RobotProblem::residuals(const RobotPoint& point, const Eigen::Ve
   for (std::size_t i = 0; i < robot_.numbers().size(); ++i)
     if (robot_.numbers()[i].deviation) all[rows++] = point.values[i] - *robot_.numbers()[i].start;
   for (Index i = 0; i < std::ssize(all); ++i)
-    if (!std::isfinite(all[i])) all[i] = 0;  // of a pose without equilibrium, which is told apart
+    if (!std::isfinite(all[i])) all[i] = 0;  // of a pose without equilibrium, which is counted separately
   return weights.cwiseSqrt().cwiseProduct(all);
 }
 
@@ -169,7 +169,7 @@ Linearised RobotProblem::linearised(const RobotPoint& point) const {
   each_reading([&](Index pose, const Group& group, Index row) {
     const Eigen::VectorXd off = miss(point, pose, group);
     const double scale = of[static_cast<std::size_t>(group.kind)];
-    const double weight = share_by_loss(off.norm() / scale) / (scale * scale);
+    const double weight = fraction_by_loss(off.norm() / scale) / (scale * scale);
     const bool known = off.allFinite();
     Index r = row;
     for (const Index c : group.columns) {
@@ -252,7 +252,7 @@ void RobotProblem::linearise_outlines(const RobotPoint& point, Linearised& linea
   each_outline_point([&](Index pose, std::size_t k, Index row) {
     const double off = off_outline(point, pose, k);
     if (!outlines_.counts(pose, k) || !std::isfinite(off)) return;
-    linear.weights[row] = share_by_loss(std::abs(off) / scale) / (scale * scale);
+    linear.weights[row] = fraction_by_loss(std::abs(off) / scale) / (scale * scale);
     linear.slopes.row(row) = point.outline_slopes[pose].row(k);
   });
 }
@@ -260,7 +260,7 @@ void RobotProblem::linearise_outlines(const RobotPoint& point, Linearised& linea
 OutlineFit RobotProblem::outline_fit(const RobotPoint& point) const {
   OutlineFit fit;
   if (!outlines_.any()) return fit;
-  fit.within_mm = outlines_.asked_mm();
+  fit.within_mm = outlines_.requested_mm();
   fit.scale_mm = outline_scale(point);
   double squares[2] = {0, 0};
   for (Index pose = 0; pose < std::ssize(poses_.commands); ++pose) {
@@ -283,9 +283,9 @@ OutlineFit RobotProblem::outline_fit(const RobotPoint& point) const {
 }
 
 /// Poses side by side, or one after another. False: the user stopped it.
-bool RobotProblem::each_pose(int most_threads, const std::function<bool(Index, const ProgressCallback&)>& act) {
+bool RobotProblem::each_pose(int max_threads, const std::function<bool(Index, const ProgressCallback&)>& act) {
   const auto count = static_cast<int>(poses_.commands.size());
-  const int asked = options_.threads > 0 ? options_.threads : static_cast<int>(std::thread::hardware_concurrency());
+  const int requested = options_.threads > 0 ? options_.threads : static_cast<int>(std::thread::hardware_concurrency());
   std::atomic<int> next = 0, done = 0;
   std::atomic<bool> stopped = false;
   std::mutex mutex;
@@ -297,7 +297,7 @@ bool RobotProblem::each_pose(int most_threads, const std::function<bool(Index, c
     stopped = !progress_(progress_state_);
     return !stopped;
   };
-  work_together(std::clamp(asked, 1, std::min(count, most_threads)), stopped, [&] {
+  work_together(std::clamp(requested, 1, std::min(count, max_threads)), stopped, [&] {
     const int pose = next++;
     if (pose >= count) return false;
     if (!act(pose, go_on)) stopped = true;
@@ -311,7 +311,8 @@ bool RobotProblem::each_pose(int most_threads, const std::function<bool(Index, c
 std::vector<Actuation> RobotProblem::acting(const Model& model) const {
   if (options_.ordered) return acting_in_order(model, model.rest_actuation(), poses_.commands);
   std::vector<Actuation> all;
-  for (const Actuation& told : poses_.commands) all.push_back(softkin::acting(model, model.rest_actuation(), told));
+  for (const Actuation& reported : poses_.commands)
+    all.push_back(softkin::acting(model, model.rest_actuation(), reported));
   return all;
 }
 
@@ -347,8 +348,8 @@ std::optional<RobotPoint> RobotProblem::solve(const Eigen::VectorXd& values, con
   point.outline_slopes.resize(slopes ? count : 0);
   point.computed.resize(count, poses_.columns.size());
   StaticsOptions solver = one_of_many(options_.solver);
-  // what rubs is elsewhere on another way
-  const bool way_counts = rubs(*point.model), chained = way_counts && options_.ordered;
+  // with friction, equilibria depend on the path
+  const bool way_counts = has_friction(*point.model), chained = way_counts && options_.ordered;
   if (chained) solver.threads = options_.threads;
   const bool whole =
       each_pose(chained ? 1 : static_cast<int>(count), [&](Index pose, const ProgressCallback& progress) {

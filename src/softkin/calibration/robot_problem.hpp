@@ -13,10 +13,10 @@ struct RobotPoint {
   std::shared_ptr<const Model> model;
   std::shared_ptr<const Statics> statics;
   MeasuringFrame frame;
-  std::vector<Actuation> acting;                // per pose: what acts of its commands
+  std::vector<Actuation> acting;                // per pose: the commands that act, behind any backlash
   std::vector<Equilibrium> equilibria;          // per pose
   Eigen::MatrixXd computed;                     // as MeasuredPoses::values; NaN where a pose has no equilibrium
-  std::vector<Eigen::MatrixXd> slopes;          // per pose: of the computed by the numbers; none: not asked for
+  std::vector<Eigen::MatrixXd> slopes;          // per pose: of the computed by the numbers; none: not requested
   OutlineMisses outline_misses;                 // per pose; none where it has no equilibrium
   std::vector<Eigen::MatrixXd> outline_slopes;  // per pose: of their distances by the numbers; none: as slopes
   int without_equilibrium = 0;
@@ -44,12 +44,12 @@ class RobotProblem {
   /// seen, and with those that are matched.
   [[nodiscard]] std::size_t readings() const { return readings_ + dots_seen_ + outline_rows_; }
   [[nodiscard]] std::size_t matched_readings() const { return readings_ + outline_points_that_count(); }
-  /// Matches dots to the markers of a point, and points of outlines to its outline, from then on no farther off than
-  /// was asked if that is strict, else as far as most are. Is it another match? What is told of points is by the last
+  /// Matches dots to the markers of a point, and points of outlines to its outline; from then on within the requested
+  /// distance if strict, else within three times the median. Has the match changed? Outlines are reported by the last
   /// match.
   bool match(const RobotPoint& point, bool strict);
   [[nodiscard]] const DotMatcher& dots() const { return dots_; }
-  /// What is told of outlines at a point; drawn: with the computed ones.
+  /// Returns the readings and misfits of outlines at a point, with the computed outlines.
   [[nodiscard]] OutlineFit outline_fit(const RobotPoint& point) const;
   /// The numbers of a point with those of the measuring frame where its markers are nearest to what was seen, its
   /// shapes as they are: with dots without names, which else are matched to wrong markers at first. Else as they are.
@@ -98,7 +98,7 @@ class RobotProblem {
   [[nodiscard]] double outline_scale(const RobotPoint& point) const;
   void linearise_outlines(const RobotPoint& point, Linearised& linear) const;
   /// Of a reading that is so many deviations off: by the loss.
-  [[nodiscard]] double share_by_loss(double distance) const;
+  [[nodiscard]] double fraction_by_loss(double distance) const;
   [[nodiscard]] double scale(const RobotPoint& point, Reading kind) const;
   [[nodiscard]] double scale_of(std::vector<double> distances, double squares, std::size_t count) const;
   [[nodiscard]] Eigen::VectorXd residuals(const RobotPoint& point, const Eigen::VectorXd& weights) const;
@@ -115,14 +115,14 @@ class RobotProblem {
   void add_outline_slopes(RobotPoint& point, const Changes& changes, Index pose,
                           const ParameterSensitivity& found) const;
   void add_slopes(RobotPoint& point, const Changes& changes, Index pose, const Points& reactions) const;
-  bool each_pose(int most_threads, const std::function<bool(Index, const ProgressCallback&)>& act);
+  bool each_pose(int max_threads, const std::function<bool(Index, const ProgressCallback&)>& act);
 
   void count();
 
   const NumberedRobot& robot_;
   const RobotFitOptions& options_;
   const FitCallback& progress_;
-  std::shared_ptr<const Model> first_model_;  // whose patterns all others share
+  std::shared_ptr<const Model> first_model_;  // all others use its patterns
   DotMatcher dots_;
   RobotOutlines outlines_;
   const MeasuredPoses& poses_;  // of the matcher of dots

@@ -11,8 +11,8 @@ namespace softkin::calibration {
 
 namespace {
 
-constexpr double alike = 0.95;  // correlation from which two numbers are said not to be told apart
-constexpr double vague = 0.5;   // deviation over the value from which a number is hardly told
+constexpr double alike = 0.95;  // correlation from which two numbers are reported as inseparable
+constexpr double vague = 0.5;   // deviation over the value from which a number is reported as poorly determined
 
 /// Distance of a marker in a pose from where it was measured; NaN: it was not, or there is no equilibrium.
 double marker_error(const RobotFitReport& r, Index pose, Index marker) {
@@ -45,30 +45,30 @@ std::string numbers_text(const RobotFitReport& r) {
                significant("deviation", "", 2),
                significant("start", "", 5),
                {.key = "", .left = true}}};
-  int untold = 0;
+  int unreported = 0;
   for (std::size_t i = 0; i < r.robot.numbers().size(); ++i) {
     const FittedNumber& number = r.robot.numbers()[i];
     const Index k = i;
-    untold += r.fit.at_bound[i] == 0 && !std::isfinite(r.fit.deviations[k]);
+    unreported += r.fit.at_bound[i] == 0 && !std::isfinite(r.fit.deviations[k]);
     const double value = r.fit.values[k], deviation = r.fit.deviations[k];
     std::string remark;
     if (r.fit.at_bound[i] != 0)
       remark = r.fit.at_bound[i] < 0 ? "at its low bound" : "at its high bound";
     else if (!std::isfinite(deviation))
-      remark = "the poses do not tell it";
+      remark = "the poses do not determine it";
     else if (!number.deviation && deviation > vague * std::abs(value) && !r.robot.of_frame(i))
-      remark = "hardly told";
+      remark = "hardly determined";
     table.rows.push_back({number.name, value, known_cell(deviation), *number.start, remark});
   }
   std::string text = text_of(table);
-  if (untold > 1)
+  if (unreported > 1)
     text +=
-        "what the poses do not tell may be told by them where one of these numbers is known: leave one out of the "
+        "the poses may determine the rest where one of these numbers is known: leave one out of the "
         "fit\n";
   for (Index i = 0; i < r.fit.correlations.rows(); ++i)
     for (Index j = 0; j < i; ++j)
       if (std::abs(r.fit.correlations(i, j)) > alike)
-        text += "not told apart: " + r.robot.numbers()[j].name + " and " + r.robot.numbers()[i].name +
+        text += "not distinguished: " + r.robot.numbers()[j].name + " and " + r.robot.numbers()[i].name +
                 " (correlation " + decimal(r.fit.correlations(i, j), 3) + ")\n";
   return text;
 }
@@ -144,15 +144,15 @@ Json numbers_json(const RobotFitReport& r) {
   Json numbers = Json::array();
   for (std::size_t i = 0; i < r.robot.numbers().size(); ++i) {
     const Index k = i;
-    const bool told = r.fit.deviations.size() > 0;
+    const bool reported = r.fit.deviations.size() > 0;
     Json correlations = Json::object();
-    for (std::size_t j = 0; told && j < r.robot.numbers().size(); ++j)
+    for (std::size_t j = 0; reported && j < r.robot.numbers().size(); ++j)
       if (j != i) correlations[r.robot.numbers()[j].name] = r.fit.correlations(k, j);
     numbers.push_back({{"name", r.robot.numbers()[i].name},
                        {"value", r.fit.values[k]},
-                       {"deviation", told ? finite(r.fit.deviations[k]) : Json()},
+                       {"deviation", reported ? finite(r.fit.deviations[k]) : Json()},
                        {"start", *r.robot.numbers()[i].start},
-                       {"at_bound", told ? Json(r.fit.at_bound[i]) : Json()},
+                       {"at_bound", reported ? Json(r.fit.at_bound[i]) : Json()},
                        {"correlations", correlations}});
   }
   return numbers;
@@ -177,7 +177,7 @@ Json poses_json(const RobotFitReport& r) {
   return poses;
 }
 
-/// A row of a reading, without what dots and outlines have beside.
+/// A row of a reading, without the columns of dots and outlines.
 Row& add_reading(const RobotFitReport& r, Index pose, Table& table, const std::string& column, double measured,
                  double computed) {
   const bool found = std::isfinite(computed);
@@ -282,9 +282,9 @@ void begin_where_fit_ended(const std::string& file, std::vector<FittedNumber>& n
     json = Json::parse(read_file(file));
     if (json.at("softkin_robot_fit") != 1) refuse("is no report of a robot's fit of this version");
     const Json& found = json.at("numbers");
-    if (found.size() != numbers.size()) refuse("is of other numbers than those asked for");
+    if (found.size() != numbers.size()) refuse("is of other numbers than those requested");
     for (std::size_t i = 0; i < numbers.size(); ++i) {
-      if (found[i].at("name").get<std::string>() != numbers[i].name) refuse("is of other numbers than those asked for");
+      if (found[i].at("name").get<std::string>() != numbers[i].name) refuse("is of other numbers than those requested");
       const double value = found[i].at("value").get<double>();
       if (!numbers[i].deviation) numbers[i].start = value;
     }

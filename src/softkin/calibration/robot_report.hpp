@@ -7,7 +7,7 @@
 
 namespace softkin::calibration {
 
-/// A robot, its poses, what was fitted and, where poses were kept aside, how well it foretells these.
+/// A robot, its poses, the fit and, where poses were kept aside, its prediction of these.
 struct RobotFitReport {
   const NumberedRobot& robot;
   const MeasuredPoses& poses;
@@ -16,7 +16,7 @@ struct RobotFitReport {
   const Model& model;
 };
 
-/// Numbers with their deviations, what cannot be told apart, misfits by marker and pose, and what the scene takes.
+/// Numbers with their deviations, pairs that are inseparable, misfits by marker and pose, and changes of the scene.
 [[nodiscard]] std::string robot_fit_text(const RobotFitReport& report);
 [[nodiscard]] std::string robot_fit_json(const RobotFitReport& report);
 /// A row for each reading: measured, computed, and their difference.

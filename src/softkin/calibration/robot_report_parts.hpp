@@ -3,7 +3,7 @@
 #include <softkin/calibration/robot_report.hpp>
 #include <utility>
 
-// What the .cpp files of a robot's report share; no header of the room that others include has it.
+// Declarations for the .cpp files of a robot's report; no public header of the module includes this one.
 
 namespace softkin::calibration {
 

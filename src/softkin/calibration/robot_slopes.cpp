@@ -87,7 +87,7 @@ void RobotProblem::compute(RobotPoint& point, const Changes* changes, Index pose
   if (changes) add_slopes(point, *changes, pose, reactions.reactions);
 }
 
-/// Numbers change what acts of commands, too, where there is backlash.
+/// With backlash, numbers also change the acting commands.
 void RobotProblem::add_changes_of_acting(ParameterSensitivity& found, const RobotPoint& point, const Changes& changes,
                                          Index pose) const {
   const std::size_t p = pose;

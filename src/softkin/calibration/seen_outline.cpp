@@ -10,8 +10,8 @@ namespace {
 using Eigen::Vector2d;
 
 constexpr double flat = 1e-9;      // twice the area over the squares of sides: a triangle seen on its edge
-constexpr double beyond = 1e-4;    // of an edge's length: how far beyond it nothing must lie
-constexpr double off_ends = 1e-2;  // the same: so far from its ends is looked, where its neighbours are not in the way
+constexpr double beyond = 1e-4;    // of an edge's length: distance beyond it that must be free
+constexpr double off_ends = 1e-2;  // the same: minimum distance of the tested places from its ends
 constexpr double triangles_a_cell = 2;
 constexpr double squares_along = 160;
 constexpr int squares_nearby = 2;
@@ -62,8 +62,8 @@ void SeenOutline::find_folds() {
 
 std::size_t SeenOutline::cell(double place, int axis) const {
   const auto count = static_cast<double>(cells_[axis]);
-  const double share = (place - low_[axis]) / (high_[axis] - low_[axis]);
-  return static_cast<std::size_t>(std::clamp(std::floor(share * count), 0.0, count - 1));
+  const double fraction = (place - low_[axis]) / (high_[axis] - low_[axis]);
+  return static_cast<std::size_t>(std::clamp(std::floor(fraction * count), 0.0, count - 1));
 }
 
 void SeenOutline::fill_grid() {
@@ -148,16 +148,16 @@ bool SeenOutline::enclosed(const Vector2d& point, const Vector2d& outward) const
   return any;
 }
 
-bool SeenOutline::is_open(const Fold& fold, double share) const {
+bool SeenOutline::is_open(const Fold& fold, double fraction) const {
   const Vector2d along = fold.end - fold.begin;
   const Vector2d place =
-      fold.begin + std::clamp(share, off_ends, 1 - off_ends) * along + beyond * along.norm() * fold.outward;
+      fold.begin + std::clamp(fraction, off_ends, 1 - off_ends) * along + beyond * along.norm() * fold.outward;
   return !covered(place) && !enclosed(place, fold.outward);
 }
 
 std::optional<OutlinePlace> SeenOutline::nearest(const Vector2d& point, const Vector2d& outward) const {
   struct Candidate {
-    double square, share;
+    double square, fraction;
     std::size_t fold;
   };
   std::vector<Candidate> candidates;
@@ -165,17 +165,17 @@ std::optional<OutlinePlace> SeenOutline::nearest(const Vector2d& point, const Ve
     const Fold& fold = folds_[f];
     if (!outward.isZero(0) && !(fold.outward.dot(outward) > 0)) continue;
     const Vector2d along = fold.end - fold.begin;
-    const double share = std::clamp((point - fold.begin).dot(along) / along.squaredNorm(), 0.0, 1.0);
-    candidates.push_back({(fold.begin + share * along - point).squaredNorm(), share, f});
+    const double fraction = std::clamp((point - fold.begin).dot(along) / along.squaredNorm(), 0.0, 1.0);
+    candidates.push_back({(fold.begin + fraction * along - point).squaredNorm(), fraction, f});
   }
   std::sort(candidates.begin(), candidates.end(), [](const Candidate& a, const Candidate& b) {
     return std::pair(a.square, a.fold) < std::pair(b.square, b.fold);
   });
   for (const Candidate& each : candidates) {
     const Fold& fold = folds_[each.fold];
-    if (!is_open(fold, each.share)) continue;
-    return OutlinePlace{surface_.edges()[fold.edge].vertices, each.share,
-                        fold.begin + each.share * (fold.end - fold.begin), fold.outward};
+    if (!is_open(fold, each.fraction)) continue;
+    return OutlinePlace{surface_.edges()[fold.edge].vertices, each.fraction,
+                        fold.begin + each.fraction * (fold.end - fold.begin), fold.outward};
   }
   return std::nullopt;
 }

@@ -11,7 +11,7 @@ namespace softkin::calibration {
 /// A place of an outline: on an edge of the surface, between two of its vertices.
 struct OutlinePlace {
   std::array<Index, 2> vertices{-1, -1};
-  double share = 0;                            // of the way from the first to the second [-]
+  double fraction = 0;                         // of the edge from the first to the second [-]
   Eigen::Vector2d place{0, 0}, outward{0, 0};  // [mm]; normal of the edge, of length 1
 };
 
@@ -32,9 +32,9 @@ class SurfaceEdges {
   std::vector<Edge> edges_;
 };
 
-/// The outer border of a surface as seen along z from far away: edges along which it turns back, or ends, where nothing
-/// of it lies beyond, and what is there is not enclosed by it. What is enclosed is told on a grid of a 160th of its
-/// size: holes that are smaller count as outside, what is reached through a smaller gap alone as enclosed.
+/// The outer border of a surface as seen along z from far away: edges along which the surface turns back, or ends, with
+/// a free region beyond that the surface does not enclose. Enclosed regions are detected on a grid of a 160th of the
+/// size: smaller holes count as outside, regions that are connected through a smaller gap alone as enclosed.
 class SeenOutline {
  public:
   /// surface  must outlive the object
@@ -62,10 +62,10 @@ class SeenOutline {
   [[nodiscard]] std::size_t cell(double place, int axis) const;
   [[nodiscard]] bool covered(const Eigen::Vector2d& point) const;
   [[nodiscard]] Ground ground_at(const std::array<int, 2>& square) const;
-  /// Is an uncovered place, and what lies further in a direction, enclosed by the surface?
+  /// Is an uncovered place, with the region further in a direction, enclosed by the surface?
   [[nodiscard]] bool enclosed(const Eigen::Vector2d& point, const Eigen::Vector2d& outward) const;
   /// Does it lie open beyond a place of an edge, and outside?
-  [[nodiscard]] bool is_open(const Fold& fold, double share) const;
+  [[nodiscard]] bool is_open(const Fold& fold, double fraction) const;
 
   const SurfaceEdges& surface_;
   const Points& seen_;

@@ -88,9 +88,9 @@ std::size_t number_of_tests(const SpecimenTask& task, std::size_t specimens, std
 SpecimenResults evaluate(const SpecimenTask& task, std::vector<StretchedSpecimen> specimens,
                          std::vector<TwistedSpecimen> twists,
                          const std::function<void(const std::string&, double)>& progress) {
-  const auto told = [&](const std::string& what) -> ShareDone {
+  const auto reported = [&](const std::string& what) -> FractionDone {
     if (!progress) return {};
-    return [&progress, what](double share) { progress(what, share); };
+    return [&progress, what](double fraction) { progress(what, fraction); };
   };
   SpecimenResults results{std::move(specimens), std::move(twists), {}, {}, {}, false};
   results.rod = rod_ratio(results.specimens);
@@ -105,12 +105,12 @@ SpecimenResults evaluate(const SpecimenTask& task, std::vector<StretchedSpecimen
   };
   const auto fit = [&](Formulation formulation) {
     SimulatedTests tests{formulation_name(formulation), {}, 1, {}, {}};
-    tests.fit = fit_ratio(results.specimens, task.options, formulation, told(tests.name + " tensile tests"));
+    tests.fit = fit_ratio(results.specimens, task.options, formulation, reported(tests.name + " tensile tests"));
     tests.ratio = tests.fit->estimate.ratio;
     for (const SpecimenFit& each : tests.fit->specimens) tests.stretched.push_back(each.response);
     if (tests.fit->status != Status::interrupted && tests.fit->estimate.specimens > 0)
-      tests.twisted =
-          predict(results.twists, task.options, formulation, std::log(tests.ratio), told(tests.name + " twist tests"));
+      tests.twisted = predict(results.twists, task.options, formulation, std::log(tests.ratio),
+                              reported(tests.name + " twist tests"));
     add(std::move(tests));
   };
   if (task.physical) fit(Formulation::physical);
@@ -118,7 +118,7 @@ SpecimenResults evaluate(const SpecimenTask& task, std::vector<StretchedSpecimen
   for (const double ratio : task.tried) {
     if (!task.target_shape || results.interrupted) break;
     const auto predicted = [&](const auto& tests) {
-      return predict(tests, task.options, Formulation::target_shape, std::log(ratio), told("ratios to try"));
+      return predict(tests, task.options, Formulation::target_shape, std::log(ratio), reported("ratios to try"));
     };
     add({"R_A / R_B " + number(ratio), std::nullopt, ratio, predicted(results.specimens), predicted(results.twists)});
   }

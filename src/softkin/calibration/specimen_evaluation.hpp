@@ -9,13 +9,13 @@
 
 namespace softkin::calibration {
 
-/// What is asked of specimens of two materials.
+/// The options of an evaluation of specimens of two materials.
 struct SpecimenTask {
   std::string file, twist_file;     // of the specimens, for messages
-  std::vector<std::string> set_up;  // what the simulations take as given, a line each, to be told
+  std::vector<std::string> set_up;  // assumptions of the simulations, a line each, for the report
   SpecimenOptions options;
   bool physical = true, target_shape = true;     // formulations to fit
-  std::vector<double> tried;                     // target-shape: R_omega A / R_omega B to look at beside the fit
+  std::vector<double> tried;                     // target-shape: R_omega A / R_omega B to simulate besides the fit
   std::optional<double> modulus_b;               // [MPa], where no force was measured
   std::array<std::string, 2> regions{"A", "B"};  // of the scene
 };
@@ -41,24 +41,24 @@ struct SpecimenResults {
   RatioEstimate rod;  // Eq. (16)
   std::optional<Moduli> rod_moduli;
   std::vector<SimulatedTests> simulated;  // physical, target-shape, then the ratios to look at
-  bool interrupted = false;               // the last simulation; nothing else may be asked of the results then
+  bool interrupted = false;               // in the last simulation; then no other result may be read
 
-  /// Null where it was not asked for.
+  /// Returns the fit of a formulation; null where it was not requested.
   [[nodiscard]] const RatioFit* fit(Formulation formulation) const;
 };
 
-/// throws  InvalidInput where a modulus is given beside measured forces
+/// throws  InvalidInput where a modulus is given in addition to measured forces
 void check_modulus_b(const SpecimenTask& task, const std::vector<StretchedSpecimen>& specimens);
 /// What is probably not meant: areas of the file that are not the simulated one; empty: nothing.
 [[nodiscard]] std::string doubt_about_areas(const SpecimenTask& task, const std::vector<StretchedSpecimen>& specimens);
 
-/// One line that says what the tests of a task depend on, for TestLog.
+/// Returns one line with all inputs of the tests of a task, for TestLog.
 [[nodiscard]] std::string tests_set_up(const SpecimenTask& task, const std::vector<StretchedSpecimen>& specimens,
                                        const std::vector<TwistedSpecimen>& twists);
 /// How many tests TestLog keeps of a task that is done, if all of them converge.
 [[nodiscard]] std::size_t number_of_tests(const SpecimenTask& task, std::size_t specimens, std::size_t twists);
 
-/// Fits the ratios by simulated tests. progress: what is simulated, and the share of it that is done.
+/// Fits the ratios by simulated tests. progress: receives the current simulation, and its completed fraction.
 /// throws  InvalidInput as fit_ratio does
 [[nodiscard]] SpecimenResults evaluate(const SpecimenTask& task, std::vector<StretchedSpecimen> specimens,
                                        std::vector<TwistedSpecimen> twists,

@@ -131,7 +131,7 @@ Json measured_json(const SpecimenResults& results) {
 }
 
 double rod_deg(const SpecimenResults& results, const TwistedSpecimen& t) {
-  return t.twist_deg * rod_share(results.rod.ratio, t.length_mm, t.interface_mm);
+  return t.twist_deg * rod_fraction(results.rod.ratio, t.length_mm, t.interface_mm);
 }
 
 Json twists_json(const SpecimenTask& task, const SpecimenResults& results) {
@@ -164,7 +164,7 @@ PlotSeries points(const std::string& label, int style = -1) {
 }
 
 /// Delta L_1 / Delta L over L_1 / L.
-void add_share(PlotSeries& series, const StretchedSpecimen& specimen, double moved_mm) {
+void add_fraction(PlotSeries& series, const StretchedSpecimen& specimen, double moved_mm) {
   series.x.push_back(specimen.interface_mm / specimen.length_mm);
   series.y.push_back(moved_mm / specimen.stretch_mm);
 }
@@ -173,7 +173,7 @@ PlotSeries rod_curve(double ratio) {
   PlotSeries series{.label = "rod, E_A / E_B " + decimal(ratio, 2), .x = {}, .y = {}, .marks = false};
   for (int i = 0; i <= 100; ++i) {
     series.x.push_back(0.01 * i);
-    series.y.push_back(i == 100 ? 1 : rod_share(ratio, 1, 0.01 * i));
+    series.y.push_back(i == 100 ? 1 : rod_fraction(ratio, 1, 0.01 * i));
   }
   return series;
 }
@@ -181,11 +181,11 @@ PlotSeries rod_curve(double ratio) {
 PlotPanel stretch_panel(const SpecimenResults& results) {
   PlotPanel panel = panel_of("Stretched", "L1 / L [-]", "dL1 / dL [-]");
   panel.series = {rod_curve(results.rod.ratio), points("measured")};
-  for (const StretchedSpecimen& s : results.specimens) add_share(panel.series.back(), s, s.interface_moved_mm);
+  for (const StretchedSpecimen& s : results.specimens) add_fraction(panel.series.back(), s, s.interface_moved_mm);
   for (const SimulatedTests& tests : results.simulated) {
     PlotSeries& series = panel.series.emplace_back(points(tests.name));
     for (std::size_t i = 0; i < tests.stretched.size(); ++i)
-      add_share(series, results.specimens[i], tests.stretched[i].moved_mm);
+      add_fraction(series, results.specimens[i], tests.stretched[i].moved_mm);
   }
   return panel;
 }

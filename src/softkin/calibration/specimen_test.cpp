@@ -11,7 +11,7 @@ namespace softkin::calibration {
 
 namespace {
 
-constexpr double most_tetrahedra = 1e6;
+constexpr double max_tetrahedra = 1e6;
 
 /// Vertices along x, y, z.
 struct Grid {
@@ -51,7 +51,7 @@ void check(const BarShape& shape) {
   if (shape.cells < 1) throw InvalidInput("a specimen needs at least one cell across its height");
   const double cell = shape.height_mm / shape.cells;
   const double count = 5 * (shape.length_mm / cell + 2) * (shape.width_mm / cell + 1) * shape.cells;
-  if (!(count < most_tetrahedra))
+  if (!(count < max_tetrahedra))
     throw InvalidInput("the specimen is too long or too wide for " + std::to_string(shape.cells) +
                        " cells across its height: its mesh would have more than a million tetrahedra");
 }

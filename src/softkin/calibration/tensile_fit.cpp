@@ -56,8 +56,8 @@ double nearly_incompressible_stress(const ElasticLaw& scene_law, double stretch)
   return isochoric_slope(law, s) * s / stretch;
 }
 
-constexpr std::size_t least_points = 5;
-constexpr double least_modulus = 0.01;  // of the data's mean secant modulus
+constexpr std::size_t min_points = 5;
+constexpr double min_modulus = 0.01;  // of the data's mean secant modulus
 
 FitQuality quality_of(const Eigen::VectorXd& data, const Eigen::VectorXd& fitted) {
   const Eigen::VectorXd off = data - fitted;
@@ -199,7 +199,7 @@ IncompressibleLaw fitted_law(const LawChoice& choice, const Points2& points, Law
   }
   const double secant = points.stress.dot(points.strain) / points.strain.squaredNorm();
   const BoundedFit found =
-      bounded_fit(choice, columns_of(choice.law, points.strain), points, least_modulus * std::max(secant, 0.0) / 6);
+      bounded_fit(choice, columns_of(choice.law, points.strain), points, min_modulus * std::max(secant, 0.0) / 6);
   fit.at_bound = found.at_bound;
   fit.free_rms_mpa = found.free_rms;
   return law_of(choice.law, found.constants);
@@ -255,14 +255,14 @@ double uniaxial_stress(const ElasticLaw& law, double strain) {
 LinearRange linear_range(const TensileCurve& curve, double tolerance) {
   const Points2 points = points_of(curve, 0);
   const std::size_t total = points.strain.size();
-  if (total < least_points) throw InvalidInput("a tensile test needs at least five points");
+  if (total < min_points) throw InvalidInput("a tensile test needs at least five points");
   LinearRange range;
   double x = 0, y = 0, xx = 0, xy = 0;
   for (std::size_t n = 1; n <= total; ++n) {
     const Index last = n - 1;
     const double strain = points.strain[last], stress = points.stress[last];
     x += strain, y += stress, xx += strain * strain, xy += strain * stress;
-    if (n < least_points || !(xx > 0)) continue;
+    if (n < min_points || !(xx > 0)) continue;
     const Line line = line_of(x, y, xx, xy, static_cast<double>(n));
     const Index count = n;
     const double off = (points.stress.head(count) - line.slope * points.strain.head(count)).cwiseAbs().maxCoeff();

@@ -45,7 +45,7 @@ struct FitQuality {
 };
 
 /// The linear range of a tensile test: the longest one from its first point on in which no stress is off the straight
-/// line through the origin that fits them all by more than a share of that line's stress at the range's end.
+/// line through the origin that fits them all by more than a fraction of that line's stress at the range's end.
 struct LinearRange {
   double modulus_mpa = 0;  // slope of that line
   double end_strain = 0;   // [-]
@@ -55,7 +55,7 @@ struct LinearRange {
   FitQuality quality;      // over the range
 };
 
-/// tolerance  the share, > 0
+/// tolerance  that fraction, > 0
 /// throws     InvalidInput on fewer than five points, or where no range of five has a line with a slope > 0
 [[nodiscard]] LinearRange linear_range(const TensileCurve& curve, double tolerance = 0.05);
 

@@ -21,7 +21,7 @@ double peak_of(const TensileResults& results) {
                            stress.begin() + static_cast<std::ptrdiff_t>(results.laws.front().fit.points));
 }
 
-/// The first law whose rms is small beside the stresses fitted, else the best; of Ogden's alone where the law is
+/// The first law whose rms is small relative to the fitted stresses, else the best; of Ogden's alone where the law is
 /// requested.
 std::string choose(const TensileTask& task, const TensileResults& results) {
   constexpr double enough = 0.01;
@@ -119,9 +119,9 @@ std::string stability_note(const TensileResults& results, const FittedLaw& each)
 std::string notes(const TensileResults& results) {
   std::string text;
   for (const std::string& note : results.curve.notes) text += "note: " + note + "\n";
-  constexpr double most_offset = 0.02;
+  constexpr double max_offset = 0.02;
   const LinearRange& linear = results.linear;
-  if (std::abs(linear.offset_mpa) > most_offset * linear.modulus_mpa * linear.end_strain)
+  if (std::abs(linear.offset_mpa) > max_offset * linear.modulus_mpa * linear.end_strain)
     text += "note: the straight line that fits the linear range best passes " + number(linear.offset_mpa, 3) +
             " MPa at strain 0: was the test zeroed?\n";
   for (const FittedLaw& each : results.laws) {
@@ -232,11 +232,11 @@ TensileResults evaluate(const TensileTask& task, TensileCurve curve) {
     if (results.curve.strain.size() < 5) (void)linear_range(results.curve, task.tolerance_percent / 100);
     for (LawChoice choice : fitted_laws()) {
       choice.stable = task.stable;
-      if (choice.name() != task.law && !has_points_for(results.curve, choice, task.most_strain)) continue;
-      const LawFit fit = fit_law(results.curve, choice, task.most_strain);
+      if (choice.name() != task.law && !has_points_for(results.curve, choice, task.max_strain)) continue;
+      const LawFit fit = fit_law(results.curve, choice, task.max_strain);
       const ElasticSpec scene = scene_constants(fit.law, task.poisson_ratio);
       const double largest = 1 + results.curve.strain[fit.points - 1];
-      results.laws.push_back({choice, fit, scene, scene_quality(results.curve, scene, task.most_strain),
+      results.laws.push_back({choice, fit, scene, scene_quality(results.curve, scene, task.max_strain),
                               stability_limit(isochoric(fit.law), 2 * largest)});
     }
     find_linear_range(task, results);
@@ -301,7 +301,7 @@ Plot tensile_plot(const TensileTask& task, const TensileResults& results) {
                              true,
                              false});
   std::vector<double> even;
-  const double end = task.most_strain > 0 ? std::min(task.most_strain, curve.strain.back()) : curve.strain.back();
+  const double end = task.max_strain > 0 ? std::min(task.max_strain, curve.strain.back()) : curve.strain.back();
   for (int i = 0; i <= 200; ++i) even.push_back(end * i / 200);
   int style = 2;
   for (const FittedLaw& law : results.laws) {

@@ -9,12 +9,12 @@
 
 namespace softkin::calibration {
 
-/// What is asked of a tensile test.
+/// The options of a tensile test's evaluation.
 struct TensileTask {
   std::string file;  // of the test, for messages
   double poisson_ratio = 0.45;
   double tolerance_percent = 5;  // of the linear range
-  double most_strain = 0;        // that laws are fitted to; 0: all
+  double max_strain = 0;         // that laws are fitted to; 0: all
   std::string law;               // of the scene: "linear", "ogden" or that of a fit; empty: the one that fits
   std::string region = "body";   // of the scene
   bool stable = true;            // laws are kept stable over the range that is fitted
@@ -37,10 +37,10 @@ struct TensileResults {
   std::string linear_failure{};  // why there is no linear range
 };
 
-/// The linear range and all laws. Where none is asked for, the first of fitted_laws() is chosen whose rms is 1 % of the
-/// largest stress or less, else the best.
-/// A curve without a linear range is taken where a law comes within 10 % of its largest stress (rms): its beginning is
-/// noisy or slack, but it is a tensile test.
+/// Finds the linear range and fits all laws. Where no law is requested, the first of fitted_laws() is chosen whose rms
+/// is 1 % of the largest stress or less, else the best.
+/// A curve without a linear range is accepted where a law comes within 10 % of its largest stress (rms): its beginning
+/// is noisy or slack, but it is a tensile test.
 ///
 /// throws  InvalidInput naming the file, as linear_range and fit_law do
 [[nodiscard]] TensileResults evaluate(const TensileTask& task, TensileCurve curve);

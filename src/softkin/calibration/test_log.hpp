@@ -13,7 +13,7 @@ class Store;
 
 namespace softkin::calibration {
 
-/// What a specimen says about a ratio, by simulations of its test.
+/// The ratio that a specimen determines, by simulations of its test.
 struct SpecimenFit {
   Status status = Status::not_converged;  // limit: no ratio from 1e-4 to 1e4 moves its interface so far
   std::string remark;                     // why, where status is not converged
@@ -29,8 +29,8 @@ struct SpecimenFit {
 class TestLog {
  public:
   /// path    of the journal; empty: nothing outlives the program
-  /// set_up  one line that says what is simulated
-  /// resume  goes on with the journal, where there is one
+  /// set_up  one line that identifies the simulations
+  /// resume  continues the journal, where there is one
   /// throws  InvalidInput where the journal is of another set-up, or another softkin is at work on it
   TestLog(const std::filesystem::path& path, const std::string& set_up, bool resume);
   ~TestLog();

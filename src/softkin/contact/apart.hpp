@@ -5,7 +5,7 @@
 
 namespace softkin::contact {
 
-/// Points of one feature and of the other. What lies between two features is a mean of what lies between such points.
+/// Points of one feature and of the other. A vector between two features is a mean of vectors between such points.
 using PointPair = std::array<int, 2>;
 inline constexpr std::array<PointPair, 3> of_triangle{{{0, 1}, {0, 2}, {0, 3}}};
 inline constexpr std::array<PointPair, 4> of_edges{{{0, 2}, {0, 3}, {1, 2}, {1, 3}}};
@@ -28,8 +28,8 @@ bool apart_along(const Vec3& direction, const FourPoints& x, const std::array<Po
   return all;
 }
 
-/// Do they stay farther apart than that for certain, all along a linear motion? Looks along the way between their
-/// middles alone, which costs little and tells of most; false: not known.
+/// Do they certainly stay farther apart than this distance, all along a linear motion? Tests the direction between
+/// their centroids alone, which is cheap and decides most cases; false: undecided.
 template <std::size_t N>
 bool clearly_apart(const FourPoints& from, const FourPoints& to, const std::array<PointPair, N>& pairs,
                    double distance) {

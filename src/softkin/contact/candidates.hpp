@@ -35,7 +35,7 @@ using Nodes = std::array<Index, 4>;
   return x;
 }
 
-/// Pairs that are left out beside those that share a vertex. Nothing keeps these from passing through each other.
+/// Pairs that are left out besides those with a common vertex. Nothing prevents these from passing through each other.
 struct Exclusions {
   /// For every row of the positions others, ascending, e.g. neighbours_of: a pair is left out where a vertex of one
   /// feature has one of the other in its list. Lists that are empty: none.
@@ -63,9 +63,9 @@ class BroadPhase {
   /// positions  finite [mm]
   void find(const Points& positions, double reach, Team& team, Candidates& out);
 
-  /// The same along a linear motion: all pairs whose boxes are so near at any instant of it, for all that is known of
-  /// moves by their boxes, too; what moves together is not near for that. Clear is what the way between their middles
-  /// tells, mean of both ends, or the shortest way at the end.
+  /// The same along a linear motion: all pairs whose boxes come within reach at any instant of it. Boxes bound the
+  /// moves, too, so that a common motion brings no pair into reach. Pairs are left out that stay clearly apart along
+  /// the direction between their centroids, averaged over both ends, or along the shortest vector at the end.
   void find(const Points& from, const Points& to, double reach, Team& team, Candidates& out);
 
  private:
@@ -82,7 +82,7 @@ class BroadPhase {
   template <int of_query, int of_other, class Keep>
   void pair_up(const Features<of_query>& queries, const Features<of_other>& others, double reach, Team& team,
                const Keep& keep, std::vector<Pair>& out);
-  /// Beside those that share a vertex.
+  /// Besides those with a common vertex.
   [[nodiscard]] bool left_out(const Index* a, int of_a, const Index* b, int of_b) const;
   [[nodiscard]] bool neighbours(Index a, Index b) const;
 

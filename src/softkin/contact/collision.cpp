@@ -31,8 +31,9 @@ double time_apart(const FourPoints& x, const FourPoints& motion, const std::arra
   return least;
 }
 
-/// How long the triangle's plane and the vertex, or the parallel planes through two edges, stay more than `apart` from
-/// each other, up to `horizon`: they may turn on the way, which to time_apart is an approach. 0 where they are not.
+/// Returns how long the triangle's plane and the vertex, or the parallel planes through two edges, stay more than
+/// `apart` from each other, up to `horizon`: they may turn during the motion, which time_apart counts as an approach. 0
+/// where they are closer at once.
 ///
 /// equation  (u x v) . w > apart |u x v| with u, v, w linear in time: left a cubic, right bounded by its polynomials
 double time_of_planes(const FourPoints& x, const FourPoints& motion, const Separation& between, const PointPair& pair,
@@ -63,49 +64,49 @@ double time_of_planes(const FourPoints& x, const FourPoints& motion, const Separ
 }
 
 template <std::size_t N>
-double safe_share(const FourPoints& from, const FourPoints& to, double keep, double until,
-                  const std::array<PointPair, N>& pairs, Separation (*separation)(const FourPoints&)) {
-  constexpr int most_advances = 100;
+double safe_fraction(const FourPoints& from, const FourPoints& to, double keep, double until,
+                     const std::array<PointPair, N>& pairs, Separation (*separation)(const FourPoints&)) {
+  constexpr int max_advances = 100;
   constexpr int patience = 2;             // advances after which it is worth more to look longer
-  constexpr double small_advance = 3e-4;  // of the share so far: what is left is not worth a distance
+  constexpr double small_advance = 3e-4;  // of the safe fraction: the remainder is not worth a distance computation
   const FourPoints motion = to - from;
   const double speed = largest_speed(motion, pairs);
   if (speed == 0) return until;
   // of all that is rounded here, and of positions that are rounded once more
   const double rounding =
       32 * std::numeric_limits<double>::epsilon() * (from.cwiseAbs().maxCoeff() + to.cwiseAbs().maxCoeff());
-  double share = 0, floor = 0;
-  for (int advance = 0; advance < most_advances; ++advance) {
-    const FourPoints x = from + share * motion;
+  double fraction = 0, floor = 0;
+  for (int advance = 0; advance < max_advances; ++advance) {
+    const FourPoints x = from + fraction * motion;
     const Separation between = separation(x);
     const double distance = std::sqrt(between.squared);
     if (advance == 0) floor = keep * distance + rounding;
     if (!(distance > floor)) break;
     double step = std::max((distance - floor) / speed, time_apart(x, motion, pairs, between.vector / distance, floor));
     if (advance >= patience && between.free == 2)
-      step = std::max(step, time_of_planes(x, motion, between, pairs[0], floor, 1 - share));
-    if (!(share + step < until)) return until;
-    share += step;
-    if (step < small_advance * share) break;
+      step = std::max(step, time_of_planes(x, motion, between, pairs[0], floor, 1 - fraction));
+    if (!(fraction + step < until)) return until;
+    fraction += step;
+    if (step < small_advance * fraction) break;
   }
-  return share;
+  return fraction;
 }
 
 }  // namespace
 
 double safe_vertex_triangle(const FourPoints& from, const FourPoints& to, double keep, double until) {
-  return safe_share(from, to, keep, until, of_triangle, vertex_triangle);
+  return safe_fraction(from, to, keep, until, of_triangle, vertex_triangle);
 }
 
 double safe_edge_edge(const FourPoints& from, const FourPoints& to, double keep, double until) {
-  return safe_share(from, to, keep, until, of_edges, edge_edge);
+  return safe_fraction(from, to, keep, until, of_edges, edge_edge);
 }
 
 namespace {
 
 /// The least value of all candidates, from a value that none exceeds; value(nodes, is of edges, the least so far)
 template <class Value>
-double least_of(const Surface& surface, const Candidates& candidates, double most, Team& team, const Value& value) {
+double min_of(const Surface& surface, const Candidates& candidates, double most, Team& team, const Value& value) {
   std::atomic<double> least{most};
   const auto lower = [&](double found) {
     double before = least.load(std::memory_order_relaxed);
@@ -128,14 +129,13 @@ double least_of(const Surface& surface, const Candidates& candidates, double mos
 double safe_motion(const Surface& surface, const Candidates& candidates, const Points& from, const Points& to,
                    double keep, Team& team) {
   // a pair that is safe beyond what others are stops there: the least does not depend on who was first
-  return least_of(surface, candidates, 1, team, [&](const Nodes& nodes, bool edges, double least) {
+  return min_of(surface, candidates, 1, team, [&](const Nodes& nodes, bool edges, double least) {
     return (edges ? safe_edge_edge : safe_vertex_triangle)(points_of(from, nodes), points_of(to, nodes), keep, least);
   });
 }
 
-double least_squared_distance(const Surface& surface, const Candidates& candidates, const Points& positions,
-                              Team& team) {
-  return least_of(surface, candidates, HUGE_VAL, team, [&](const Nodes& nodes, bool edges, double) {
+double min_squared_distance(const Surface& surface, const Candidates& candidates, const Points& positions, Team& team) {
+  return min_of(surface, candidates, HUGE_VAL, team, [&](const Nodes& nodes, bool edges, double) {
     const FourPoints x = points_of(positions, nodes);
     return edges ? edge_edge(x).squared : vertex_triangle(x).squared;
   });

@@ -7,7 +7,7 @@ namespace softkin::contact {
 
 namespace {
 
-/// A point and an edge among the four: one of the ways in which the boundaries of the features may be closest.
+/// A point and an edge among the four: one case of closest boundaries of the features.
 struct Side {
   int point, from, to;
   double sign;  // of the point's weight
@@ -26,48 +26,48 @@ FreeWeight move(const FourPoints& x, int plus, int minus) {
   return {x.col(plus) - x.col(minus), static_cast<std::uint8_t>(plus), static_cast<std::uint8_t>(minus)};
 }
 
-struct SideWay {
-  double squared = std::numeric_limits<double>::infinity(), share = 0;
-  Vec3 way = Vec3::Zero();  // to the side's point
+struct SidePath {
+  double squared = std::numeric_limits<double>::infinity(), fraction = 0;
+  Vec3 motion = Vec3::Zero();  // to the side's point
   std::uint8_t nodes = 0;
 };
 
-SideWay way_to(const FourPoints& x, const Side& side) {
+SidePath path_to(const FourPoints& x, const Side& side) {
   const Vec3 edge = x.col(side.to) - x.col(side.from), reach = x.col(side.point) - x.col(side.from);
   const double length = edge.squaredNorm();
-  SideWay out;
-  out.share = length >= smallest ? std::clamp(edge.dot(reach) / length, 0.0, 1.0) : 0;
+  SidePath out;
+  out.fraction = length >= smallest ? std::clamp(edge.dot(reach) / length, 0.0, 1.0) : 0;
   // from the end itself, so that it is met exactly
-  out.way = out.share < 1 ? Vec3(reach - out.share * edge) : Vec3(x.col(side.point) - x.col(side.to));
-  out.squared = out.way.squaredNorm();
+  out.motion = out.fraction < 1 ? Vec3(reach - out.fraction * edge) : Vec3(x.col(side.point) - x.col(side.to));
+  out.squared = out.motion.squaredNorm();
   out.nodes = bit(side.point);
-  if (out.share < 1) out.nodes |= bit(side.from);
-  if (out.share > 0) out.nodes |= bit(side.to);
+  if (out.fraction < 1) out.nodes |= bit(side.from);
+  if (out.fraction > 0) out.nodes |= bit(side.to);
   return out;
 }
 
 /// The closest of the sides; of several as close the first.
 template <std::size_t N>
 Separation closest_side(const FourPoints& x, const std::array<Side, N>& sides) {
-  std::array<SideWay, N> ways;
+  std::array<SidePath, N> motions;
   std::size_t closest = 0;
   for (std::size_t k = 0; k < N; ++k) {
-    ways[k] = way_to(x, sides[k]);
-    if (ways[k].squared < ways[closest].squared) closest = k;
+    motions[k] = path_to(x, sides[k]);
+    if (motions[k].squared < motions[closest].squared) closest = k;
   }
   // A side that is closest between its ends is closer than at them, though rounding may hide by how much: by its
   // square root the gradient would be wrong.
-  const std::uint8_t nodes = ways[closest].nodes;
+  const std::uint8_t nodes = motions[closest].nodes;
   for (std::size_t k = 0; k < N; ++k)
-    if ((ways[k].nodes & nodes) == nodes && ways[k].nodes != nodes) closest = k;
+    if ((motions[k].nodes & nodes) == nodes && motions[k].nodes != nodes) closest = k;
   const Side& side = sides[closest];
-  const SideWay& found = ways[closest];
-  const double share = found.share;
-  Separation out{found.squared, Eigen::Vector4d::Zero(), side.sign * found.way, share > 0 && share < 1, {},
+  const SidePath& found = motions[closest];
+  const double fraction = found.fraction;
+  Separation out{found.squared, Eigen::Vector4d::Zero(), side.sign * found.motion, fraction > 0 && fraction < 1, {},
                  found.nodes};
   out.weights[side.point] = side.sign;
-  out.weights[side.from] = -side.sign * (1 - share);
-  out.weights[side.to] = -side.sign * share;
+  out.weights[side.from] = -side.sign * (1 - fraction);
+  out.weights[side.to] = -side.sign * fraction;
   if (out.free == 1) out.moves[0] = side.sign > 0 ? move(x, side.from, side.to) : move(x, side.to, side.from);
   return out;
 }
@@ -89,8 +89,8 @@ Crossing crossing(const Vec3& start, const Vec3& u, const Vec3& v) {
   const double a = -start.cross(v).dot(normal) / size, b = -u.cross(start).dot(normal) / size;
   const Vec3 s = start + a * u + b * v;
   if (size < doubtful * scale) return {a, b, s.squaredNorm(), s, Crossing::Trust::some};
-  const double height = normal.dot(s), share = height / size;
-  return {a, b, height * share, share * normal, Crossing::Trust::full};
+  const double height = normal.dot(s), fraction = height / size;
+  return {a, b, height * fraction, fraction * normal, Crossing::Trust::full};
 }
 
 /// Both weights inside, unless a side is closer.
@@ -118,8 +118,8 @@ Separation vertex_side(const FourPoints& x, int side) {
 }
 
 Separation vertex_corner(const FourPoints& x, int corner) {
-  const Vec3 way = x.col(0) - x.col(1 + corner);
-  Separation out{way.squaredNorm(), Eigen::Vector4d::UnitX(), way, 0, {}, 0};
+  const Vec3 motion = x.col(0) - x.col(1 + corner);
+  Separation out{motion.squaredNorm(), Eigen::Vector4d::UnitX(), motion, 0, {}, 0};
   out.weights[1 + corner] = -1;
   out.nodes = static_cast<std::uint8_t>(1 | bit(1 + corner));
   return out;

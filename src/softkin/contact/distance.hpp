@@ -20,7 +20,7 @@ struct FreeWeight {
   std::uint8_t plus = 0, minus = 0;
 };
 
-/// The shortest way between two features: s = sum_i c_i x_i, and d^2 = s . s is least among the free weights.
+/// The shortest vector between two features: s = sum_i c_i x_i, with the minimum of d^2 = s . s over the free weights.
 struct Separation {
   double squared;           // d^2 [mm^2]
   Eigen::Vector4d weights;  // c: of the vertex 1, of the corners -b_i <= 0; of the edges 1 - a, a, -(1 - b), -b

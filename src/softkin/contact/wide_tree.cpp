@@ -45,7 +45,7 @@ MovingBox WideTree::joint(const EightBoxes& boxes) {
   MovingBox box;
   for (int k = 0; k < 3; ++k) {
     box.at.min()[k] = least(boxes.low[k]), box.at.max()[k] = most(boxes.high[k]);
-    box.move.min()[k] = least(boxes.least_move[k]), box.move.max()[k] = most(boxes.most_move[k]);
+    box.move.min()[k] = least(boxes.min_move[k]), box.move.max()[k] = most(boxes.max_move[k]);
   }
   return box;
 }

@@ -25,20 +25,20 @@ struct MovingBox {
 /// Eight things or groups of them; lanes without any overlap with nothing.
 struct EightBoxes : EightLanes {
   EightBoxes() {
-    for (double* all : {&low[0][0], &least_move[0][0]}) std::fill_n(all, 24, std::numeric_limits<double>::infinity());
-    for (double* all : {&high[0][0], &most_move[0][0]}) std::fill_n(all, 24, -std::numeric_limits<double>::infinity());
+    for (double* all : {&low[0][0], &min_move[0][0]}) std::fill_n(all, 24, std::numeric_limits<double>::infinity());
+    for (double* all : {&high[0][0], &max_move[0][0]}) std::fill_n(all, 24, -std::numeric_limits<double>::infinity());
   }
   void set(int lane, const MovingBox& box) {
     for (int k = 0; k < 3; ++k) {
       low[k][lane] = box.at.min()[k], high[k][lane] = box.at.max()[k];
-      least_move[k][lane] = box.move.min()[k], most_move[k][lane] = box.move.max()[k];
+      min_move[k][lane] = box.move.min()[k], max_move[k][lane] = box.move.max()[k];
     }
   }
   [[nodiscard]] MovingBox at(int lane) const {
     const auto place = [lane](const double(&values)[3][8]) {
       return Vec3(values[0][lane], values[1][lane], values[2][lane]);
     };
-    return {{place(low), place(high)}, {place(least_move), place(most_move)}};
+    return {{place(low), place(high)}, {place(min_move), place(max_move)}};
   }
 };
 

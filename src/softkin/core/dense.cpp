@@ -58,7 +58,7 @@ void CholeskyFactor::solve_lower(Eigen::MatrixXd& columns) const {
   lower_.triangularView<Eigen::Lower>().solveInPlace(columns);
 }
 
-Eigen::VectorXd lopsided(Eigen::Index size) {
+Eigen::VectorXd unsymmetric(Eigen::Index size) {
   Eigen::VectorXd vector(size);
   for (Eigen::Index i = 0; i < size; ++i) vector[i] = std::sin(1.0 + 1.618 * static_cast<double>(i));
   return vector;

@@ -32,8 +32,8 @@ struct NearestRotation {
 };
 [[nodiscard]] NearestRotation nearest_rotation(const Mat3& map);
 
-/// A vector that no symmetry of a robot shares, the same each time.
-[[nodiscard]] Eigen::VectorXd lopsided(Eigen::Index size);
+/// Returns a vector without any symmetry that a robot may have, the same each time.
+[[nodiscard]] Eigen::VectorXd unsymmetric(Eigen::Index size);
 
 /// Minimises |A x - b| by QR with pivoting of columns.
 struct LeastSquares {
@@ -74,7 +74,7 @@ class CholeskyFactor {
 class MinimumNorm {
  public:
   MinimumNorm() = default;
-  /// threshold  pivots below that share of the largest count as zero; negative: by rounding
+  /// threshold  pivots below that fraction of the largest count as zero; negative: by rounding
   explicit MinimumNorm(const Eigen::MatrixXd& matrix, double threshold = -1);
   [[nodiscard]] Eigen::Index rank() const;
   [[nodiscard]] Eigen::MatrixXd solve(const Eigen::MatrixXd& right) const;

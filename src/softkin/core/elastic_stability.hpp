@@ -11,8 +11,8 @@ namespace softkin {
 /// strain.
 [[nodiscard]] Mat3 logarithmic_stiffness(const ElasticLaw& law, const Vec3& stretches);
 
-/// Ways in which a sheet of rubber is stretched: along one axis with free sides, along one axis with a fixed width, and
-/// along two axes alike. The last one is also compression along one axis.
+/// Modes in which a sheet of rubber is stretched: along one axis with free sides, along one axis with a fixed width,
+/// and equally along two axes. The last one is also compression along one axis.
 enum class StretchMode { uniaxial, planar, equibiaxial };
 inline constexpr StretchMode stretch_modes[] = {StretchMode::uniaxial, StretchMode::planar, StretchMode::equibiaxial};
 

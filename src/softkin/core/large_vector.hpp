@@ -9,7 +9,7 @@
 
 namespace softkin {
 
-/// Memory for megabytes of numbers that are written before they are read: values that no one asked for are left
+/// Memory for megabytes of numbers that are written before they are read: values without an initialiser stay
 /// uninitialised, and pages are large where the system has them, which saves most of the time of first use and of
 /// scattered access.
 template <class Value>

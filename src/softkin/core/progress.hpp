@@ -10,12 +10,12 @@
 
 namespace softkin {
 
-/// What a long computation tells while it runs.
+/// The progress report of a long computation.
 struct Progress {
   int iteration = 0;        // how many were done
   double step_mm = 0;       // largest move of a vertex in the last iteration [mm]
   double tolerance_mm = 0;  // the step at which it stops [mm]
-  double share = -1;        // of the way to what was asked for, at the last equilibrium on it [-]; < 0: not known
+  double fraction = -1;     // of the path to the requested state, at the last equilibrium on it [-]; < 0: unknown
 };
 
 /// Called now and then; returning false stops the computation, which then reports status interrupted.
@@ -39,13 +39,13 @@ class Deadline {
   double budget_s_ = std::numeric_limits<double>::infinity();
 };
 
-/// Time left at the pace of late: work that slows down says so, instead of promising what its beginning did.
+/// Estimates the time left from the recent rate of progress, so that it follows work that slows down.
 class TimeLeft {
  public:
   /// seconds  since the work began
-  /// share    of it that is done, 0 to 1
+  /// fraction  of it that is done, 0 to 1
   /// returns  [s]; none before there is a pace, and where the work stands still
-  [[nodiscard]] std::optional<double> at(double seconds, double share);
+  [[nodiscard]] std::optional<double> at(double seconds, double fraction);
 
  private:
   std::deque<std::pair<double, double>> seen_;

@@ -42,7 +42,7 @@ struct BendingJoint {
   double penalty = 0;                               // [N]
   Eigen::Vector2d along = Eigen::Vector2d::Zero();  // the edge, in x_1 and x_2 of the first side
   std::array<double, 2> upwards{1, 1};              // -1: a side's normal x_1 x x_2 points down
-  std::array<double, 2> share{0.5, 0.5};            // of either side in the mean moment
+  std::array<double, 2> fraction{0.5, 0.5};         // of either side in the mean moment
   std::array<double, 2> moment{0, 0};               // at rest [N]
   double angle = 0;                                 // J0 [rad]
 };

@@ -17,12 +17,12 @@ std::string names_of(const std::vector<Target>& targets) {
 Target choose() {
   const std::vector<Target> here = targets_here();
   if (here.empty()) throw InvalidInput("this processor has no SSE4.2, without which softkin does not run");
-  const char* asked = std::getenv("SOFTKIN_TARGET");
-  if (asked == nullptr || *asked == '\0') return here.front();
+  const char* requested = std::getenv("SOFTKIN_TARGET");
+  if (requested == nullptr || *requested == '\0') return here.front();
   const auto found =
-      std::find_if(here.begin(), here.end(), [&](Target each) { return asked == std::string(name_of(each)); });
+      std::find_if(here.begin(), here.end(), [&](Target each) { return requested == std::string(name_of(each)); });
   if (found != here.end()) return *found;
-  throw InvalidInput("SOFTKIN_TARGET=" + std::string(asked) +
+  throw InvalidInput("SOFTKIN_TARGET=" + std::string(requested) +
                      ": not an instruction set that softkin is made for and this "
                      "processor has; those are " +
                      names_of(here));

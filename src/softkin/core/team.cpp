@@ -71,7 +71,7 @@ Team::~Team() {
 }
 
 void Team::run(Index count, Call call, const void* body) {
-  if (workers_.empty() || count < 2) {  // nothing of the team is touched: threads may share one without helpers
+  if (workers_.empty() || count < 2) {  // uses no state of the team: threads may share one without helpers
     for (Index i = 0; i < count; ++i) call(body, i);
     return;
   }

@@ -20,8 +20,8 @@ namespace softkin {
                                                      const std::function<void()>& stop);
 
 /// Threads that work on one loop after another. Idle ones sleep, and a loop waits only for threads that have begun a
-/// piece of it: a busy machine slows the team down no more than its share of the processors does (OpenMP's barriers,
-/// which wait for every thread, were five times slower there). A team of one may be shared by several threads.
+/// piece of it: a busy machine slows the team down only in proportion to the processors that it takes (OpenMP's
+/// barriers, which wait for every thread, were five times slower there). Several threads may share a team of one.
 class Team {
  public:
   /// threads >= 1, the caller's included; 0: as many as the machine has. Throws as start_threads, and target()

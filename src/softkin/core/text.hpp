@@ -17,7 +17,7 @@ namespace softkin {
 /// A number with so many digits behind the point; never "-0.000".
 [[nodiscard]] std::string decimal(double value, int decimals);
 
-/// "(x, y, z)" to so many digits; what is less than a share of the largest coordinate, its rounding, counts as 0.
+/// "(x, y, z)" to so many digits; rounding: over the largest coordinate, below which a coordinate counts as 0.
 [[nodiscard]] std::string point_text(const Vec3& point, int digits = 6, double rounding = 1e-12);
 
 /// "45 s", "3 min 20 s", "2 h 5 min".

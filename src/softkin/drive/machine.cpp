@@ -93,7 +93,7 @@ SyringeSetup air_of(const SyringeSpec& spec, const Actuator& actuator, double at
   double chamber_ml = actuator.rest_measure / mm3_per_ml, dead_ml = 0;
   take(chamber_ml, spec.chamber_mL, "chamber_mL");
   take(dead_ml, spec.dead_volume_mL, "dead_volume_mL");
-  // not by way of mL where the model has it: the last digit would differ
+  // without a conversion to mL where the model has the volume: the last digit would differ
   const double chamber_mm3 = spec.chamber_mL ? chamber_ml * mm3_per_ml : actuator.rest_measure;
   return {chamber_mm3, dead_ml * mm3_per_ml, spec.syringe_mL * mm3_per_ml, atmosphere_kpa};
 }

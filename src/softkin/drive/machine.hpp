@@ -12,7 +12,7 @@
 namespace softkin::drive {
 
 /// A stepper that moves a cable or a plunger: what it moves is measured in mm from home, where its axis reads 0. Here
-/// and below the numbers hold where the hardware file says nothing.
+/// and below the numbers hold where the hardware file does not set them.
 struct Motor {
   Origin origin;              // of its entry in the hardware file
   std::string name;           // of the actuator
@@ -26,7 +26,7 @@ struct Motor {
 
   /// Steps from home at which the motor has moved so much (backlash included).
   [[nodiscard]] double steps(double mm) const { return direction * mm * axis_mm_per_mm * steps_per_mm; }
-  /// The other way round.
+  /// Returns the motion of a number of steps [mm].
   [[nodiscard]] double mm(double steps) const { return direction * steps / (axis_mm_per_mm * steps_per_mm); }
 };
 

@@ -149,7 +149,7 @@ class Session {
     disturbed_ = true;
     const long index = number - base - 1;
     if (index < 0 || index > static_cast<long>(high_)) {
-      if (!started_) throw Restart{"the board asked for line " + std::to_string(number)};
+      if (!started_) throw Restart{"the board requested line " + std::to_string(number)};
       foreign_ = number == foreign_number_ ? foreign_ + 1 : 1;
       foreign_number_ = number;
       if (foreign_ >= foreign_limit)
@@ -172,7 +172,7 @@ class Session {
     write(line);
   }
 
-  /// Sends the line at the cursor; returns once it is accepted, or another one is asked for.
+  /// Sends the line at the cursor; returns once it is accepted, or another one is requested.
   void exchange() {
     while (const auto answer = read(seconds_now())) {  // nothing should be there
       disturbed_ = disturbed_ || answer->kind == Kind::ok;
@@ -206,7 +206,7 @@ class Session {
         obey(*answer->number);
         if (cursor_ <= before) {
           ++report_.resends;
-          fail_once("line " + std::to_string(base + 1 + static_cast<long>(before)) + " was asked for again");
+          fail_once("line " + std::to_string(base + 1 + static_cast<long>(before)) + " was requested again");
         }
         return;
       }
@@ -258,7 +258,7 @@ class Session {
     }
     report_.position_known = false;
     throw Ended{StreamEnd::wrong_position,
-                (before.empty() ? "the board does not tell its position (M114)" : before) +
+                (before.empty() ? "the board does not report its position (M114)" : before) +
                     std::string(started_ ? ": the position is unknown" : ", before anything was moved")};
   }
 
@@ -308,9 +308,9 @@ class Session {
 
   void send_program() {
     for (const GcodeLine& line : program_.lines) {
-      Order now_asked = order();
-      if (now_asked == Order::pause) now_asked = pause();
-      if (now_asked == Order::stop) return finish(StreamEnd::stopped, "stopped");
+      Order now_requested = order();
+      if (now_requested == Order::pause) now_requested = pause();
+      if (now_requested == Order::stop) return finish(StreamEnd::stopped, "stopped");
       ++next_;
       report_.position_known = false;
       send(line.text, line.patience_s);
@@ -321,12 +321,12 @@ class Session {
 
   Order pause() {
     log('!', "paused");
-    Order asked = Order::pause;
-    while ((asked = order()) == Order::pause)
+    Order requested = Order::pause;
+    while ((requested = order()) == Order::pause)
       if (const auto answer = read(seconds_now() + slice_s); answer && answer->kind == Kind::resend)
         obey(*answer->number);
     log('!', "goes on");
-    return asked;
+    return requested;
   }
 
   void finish(StreamEnd end, const std::string& message) {
@@ -359,7 +359,7 @@ class Session {
   std::size_t high_ = 0;        // entries that were sent at least once
   std::size_t next_ = 0;        // lines of the program that are entries
   bool started_ = false;        // from here on no M110, and a boot ends the stream
-  bool disturbed_ = false;      // something may still be on its way
+  bool disturbed_ = false;      // answers may still be pending
   int since_silence_ = 0;       // lines
   int failures_ = 0;            // in a row
   int foreign_ = 0;

@@ -9,13 +9,13 @@ namespace softkin::drive {
 /// How a program is streamed. Defaults suit boards on USB.
 struct LinkOptions {
   double timeout_s = 2;       // a line without an answer for so long, beside its own patience, is sent again; > 0
-  double quiet_s = 0.05;      // silence after which nothing more is taken to be on its way; > 0
+  double quiet_s = 0.05;      // silence after which no further answer is expected; > 0
   double boot_s = 3;          // wait for boards that boot when the port is opened; >= 0
   int attempts = 10;          // failures of one line in a row after which the stream ends; > 0
   int checkpoint_lines = 64;  // lines after which a silence is waited for; > 0
 };
 
-/// What the user wants at the moment. pause: no more lines are sent, the board ends the moves that it has. stop: the
+/// The current order of the user. pause: no more lines are sent, the board completes the moves that it has. stop: the
 /// same, and the stream ends. quick_stop: M410, in the middle of a move.
 enum class Order { go, pause, stop, quick_stop };
 
@@ -41,15 +41,15 @@ struct StreamReport {
   StreamEnd end = StreamEnd::no_answer;               // why it ended
   std::string message;                                // the same for people, in a sentence
   std::size_t lines = 0, acknowledged = 0, sent = 0;  // of the program; accepted; sent
-  bool position_known = false;                        // was the board asked where it stands, and answered
+  bool position_known = false;                        // has the board reported its position
   std::vector<double> position;                       // per axis, where it is known
-  std::size_t resends = 0;                            // lines that the board asked for again
+  std::size_t resends = 0;                            // lines that the board requested again
   std::size_t timeouts = 0;                           // lines sent again because no answer came
 };
 
-/// What is asked and told while a program is streamed; each may be empty.
+/// Callbacks while a program is streamed; each may be empty.
 struct LinkHooks {
-  std::function<Order()> order;                       // asked at least every 50 ms
+  std::function<Order()> order;                       // called at least every 50 ms
   std::function<void(char, const std::string&)> log;  // '>' sent, '<' received, '!' event
   std::function<void(std::size_t)> progress;          // lines acknowledged
 };
@@ -67,7 +67,7 @@ struct LinkHooks {
 /// - A board that has booted expects line 1. No line has that number (they begin at 10001), so that it would refuse
 ///   all; M110, which sets the number, is sent at the start alone, before anything moves. "start", or requests for a
 ///   number that is not of this stream, end it.
-/// - Before the first move and after the last the board is asked where it is (M114). Only that ends a stream as
+/// - Before the first move and after the last the board has to report its position (M114). Only that ends a stream as
 ///   finished: an "ok" may have been another line's.
 /// - Positions are absolute: a move that a board were to make twice would lead nowhere the second time.
 /// Marlin's checksum is the exclusive or of all bytes: it notices every single damaged byte, but not one in 256 of

@@ -188,7 +188,7 @@ class Planner {
                " its limit of " + number(gauge_kpa < least ? least : most, 6) + " kPa");
   }
 
-  /// Time that motors need to a place where nothing says when: at the approach speed, and within the accelerations.
+  /// Time that motors need to a place without a given time: at the approach speed, and within the accelerations.
   [[nodiscard]] double free_seconds(const std::vector<double>& places) const {
     double seconds = 0;
     for (std::size_t i = 0; i < places.size(); ++i) {

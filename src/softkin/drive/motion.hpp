@@ -20,7 +20,7 @@ struct Move {
 struct Motion {
   std::vector<Move> approach;  // from home to the first row; may be empty
   std::vector<Move> moves;     // from the first row on: the file's clock runs
-  std::vector<Move> back;      // home again, if asked; may be empty
+  std::vector<Move> back;      // home again, if requested; may be empty
   bool timed = false;          // do the commands have times; else moves take as long as they need
   double seconds = 0;          // of moves
 };

@@ -56,7 +56,7 @@ struct PressureSchedule {
 
 /// What is to be driven, within all limits.
 struct Plan {
-  Commands commands;          // asked for
+  Commands commands;          // requested
   Machine machine;            // that carries them out
   Motion motion;              // of its motors
   GcodeProgram program;       // no lines where there is no motor

@@ -8,14 +8,14 @@ namespace softkin::drive {
 
 namespace {
 
-/// What a motor does on the whole way; mm_per_turn: of what it moves.
+/// Adds the motion of a motor over the whole program; mm_per_turn: of the driven part.
 void add_motion(const Plan& plan, std::size_t index, const Motor& motor, const std::optional<double>& mm_per_turn,
                 MotorUse& use) {
   std::int64_t here = 0;
   for (const auto* moves : {&plan.motion.approach, &plan.motion.moves, &plan.motion.back})
     for (const Move& move : *moves) {
-      const double way = std::abs(motor.mm(static_cast<double>(move.target[index] - here)));
-      use.fastest_mm_per_s = std::max(use.fastest_mm_per_s, way / move.seconds);
+      const double path = std::abs(motor.mm(static_cast<double>(move.target[index] - here)));
+      use.fastest_mm_per_s = std::max(use.fastest_mm_per_s, path / move.seconds);
       here = move.target[index];
       use.lowest = std::min(use.lowest, here);
       use.highest = std::max(use.highest, here);
@@ -59,12 +59,12 @@ std::vector<PlungerRow> plunger_rows(const Plan& plan, std::size_t index) {
   std::vector<PlungerRow> rows;
   double plunger = 0;
   for (std::size_t i = 0; i < steps.size(); ++i) {
-    const CommandRow& asked = plan.commands.rows[i];
+    const CommandRow& requested = plan.commands.rows[i];
     const double motor = syringe.mm(static_cast<double>(steps[i]));
     plunger = std::clamp(plunger, motor, motor + syringe.backlash_mm);  // it is taken along at the ends of the play
-    const double gauge_kpa = asked.pressures_kpa[syringe.actuator];
+    const double gauge_kpa = requested.pressures_kpa[syringe.actuator];
     const double volume = plunger * syringe.mm3_per_mm;
-    rows.push_back({asked.line, asked.time_s, asked.actuation[syringe.actuator], gauge_kpa, plunger, volume,
+    rows.push_back({requested.line, requested.time_s, requested.actuation[syringe.actuator], gauge_kpa, plunger, volume,
                     syringe.by_pushed_mL ? volume / 1000 : syringe.ratio(plunger, gauge_kpa)});
   }
   return rows;

@@ -60,7 +60,7 @@ Number joint_energy(const BendingJoint& joint, const SideShape& first, const Sid
   const Jump<Number> jump(joint, first, second);
   const Number angle = jump.angle - joint.angle;
   Number moment = (joint.penalty / 2) * angle;
-  for (std::size_t s = 0; s < 2; ++s) moment = moment + joint.share[s] * (jump.moment[s] - joint.moment[s]);
+  for (std::size_t s = 0; s < 2; ++s) moment = moment + joint.fraction[s] * (jump.moment[s] - joint.moment[s]);
   return joint.length * (moment * angle);
 }
 

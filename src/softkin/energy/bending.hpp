@@ -17,7 +17,7 @@ template <int N>
 struct BendingResponse {
   double energy = 0;  // [mJ]; NaN where a tangent plane has no area
   Eigen::Matrix<double, N, 1> gradient = Eigen::Matrix<double, N, 1>::Zero();  // by the columns
-  Eigen::Matrix<double, N, N> hessian = Eigen::Matrix<double, N, N>::Zero();   // where asked for
+  Eigen::Matrix<double, N, N> hessian = Eigen::Matrix<double, N, N>::Zero();   // where requested
 };
 
 [[nodiscard]] Vec3 curvature_of(const SheetShape& shape);

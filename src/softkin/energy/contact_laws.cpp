@@ -5,10 +5,10 @@ namespace softkin::energy {
 
 LengthLaw barrier(double gap, double reach) {
   if (!(gap < reach)) return {};
-  const double z = gap / reach, less = (gap - reach) / reach, share = less / z;
+  const double z = gap / reach, less = (gap - reach) / reach, fraction = less / z;
   const double logarithm = z < 0.5 ? std::log(z) : std::log1p(less);  // each to rounding
-  return {-reach * less * less * logarithm, -less * (2 * logarithm + share),
-          (share * (share - 4) - 2 * logarithm) / reach};
+  return {-reach * less * less * logarithm, -less * (2 * logarithm + fraction),
+          (fraction * (fraction - 4) - 2 * logarithm) / reach};
 }
 
 LengthLaw friction(double slip, double creep) {

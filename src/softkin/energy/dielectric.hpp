@@ -7,8 +7,8 @@ namespace softkin::energy {
 // DielectricPrisms, prisms between two electrodes: the potential is 0 on their first triangle and the voltage on the
 // second, and between them what the interpolation of the nodes makes of it.
 //
-// Energy per rest volume: -eps/2 J |F^-T E_0|^2, with E_0 = voltage grad(zeta), zeta the share of the voltage at a
-// point: the electric enthalpy of a linear dielectric whose voltage is held, in the rest frame.
+// Energy per rest volume: -eps/2 J |F^-T E_0|^2, with E_0 = voltage grad(zeta), zeta the fraction of the voltage at a
+// point: the electric enthalpy of a linear dielectric at constant voltage, in the rest frame.
 //
 // source  Z. Suo, X. Zhao, W. Greene, JMPS 56, 2008, "A nonlinear field theory of deformable dielectrics", ideal
 //         dielectric elastomers
@@ -20,7 +20,7 @@ inline constexpr double vacuum_permittivity_MPa = 8.8541878128e-6;
 /// and the lane is marked in `forbidden`.
 ///
 /// prisms        slopes [1/mm] and volumes at rest; its law is not read
-/// permittivity  of every lane, times the square of its share of the voltage [MPa per (kV/mm)^2]
+/// permittivity  of every lane, times the square of its fraction of the voltage [MPa per (kV/mm)^2]
 /// voltage_kV    between the electrodes; the force is even in it
 inline void add_dielectric_force(const DielectricPrisms& prisms, const Pack& permittivity, double voltage_kV,
                                  const Shape<6>& current, ElasticForce<6>& out) {

@@ -67,7 +67,7 @@ struct ElasticStiffnessOf {
 
 /// What a branch is at the end of a time step is made of, x being the step over its relaxation time.
 template <class Pack>
-struct BranchSharesOf {
+struct BranchFractionsOf {
   Pack remembered;  // exp(-x): of C_v at its begin
   Pack begun;       // (1 - exp(-x)) / x - exp(-x): of the strain there
   Pack ended;       // the rest: of the strain at its end
@@ -78,11 +78,11 @@ struct BranchSharesOf {
 template <class Pack>
 struct ViscousBlockOf {
   int branches = 0;
-  const Pack* modulus = nullptr;                 // G of every branch [MPa]; 0 in lanes that have fewer
-  const BranchSharesOf<Pack>* shares = nullptr;  // of every branch
-  const double* strains = nullptr;               // at the begin, by quadrature point: bar C, then C_v of every branch;
-                                                 // by entry (xx, yy, zz, xy, yz, xz) and lane; null: unit matrices
-  const double* begun = nullptr;                 // begin_step() of these
+  const Pack* modulus = nullptr;                       // G of every branch [MPa]; 0 in lanes that have fewer
+  const BranchFractionsOf<Pack>* fractions = nullptr;  // of every branch
+  const double* strains = nullptr;  // at the begin, by quadrature point: bar C, then C_v of every branch;
+                                    // by entry (xx, yy, zz, xy, yz, xz) and lane; null: unit matrices
+  const double* begun = nullptr;    // begin_step() of these
 };
 
 /// Pressures at the corners of tetrahedra that keep their volume (energy/pressure.hpp).
@@ -113,7 +113,7 @@ template <int K>
 using ElasticForce = ElasticForceOf<Pack, K>;
 template <int K>
 using ElasticStiffness = ElasticStiffnessOf<Pack, K>;
-using BranchShares = BranchSharesOf<Pack>;
+using BranchFractions = BranchFractionsOf<Pack>;
 using ViscousBlock = ViscousBlockOf<Pack>;
 using CornerPressure = CornerPressureOf<Pack>;
 using PressureMiss = PressureMissOf<Pack>;

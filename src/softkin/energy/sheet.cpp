@@ -8,7 +8,7 @@ namespace softkin::energy {
 
 namespace {
 
-constexpr double pressed_share = 1e-6;
+constexpr double pressed_fraction = 1e-6;
 
 SheetResponse unrelaxed(const SheetLaw& law, const Vec3& strain) {
   if (law.rubber) return taut_rubber(*law.rubber, strain);
@@ -48,7 +48,7 @@ struct Uniaxial {
 
 /// The direction that pulls most: the best of several, then Newton's method within its neighbours.
 double taut_direction(const SheetLaw& law, const Vec3& strain) {
-  constexpr int tried = 24, most_steps = 30;
+  constexpr int tried = 24, max_steps = 30;
   const double apart = std::numbers::pi / tried;
   double best = 0, most = Uniaxial(law, strain, 0).root();
   for (int i = 1; i < tried; ++i)
@@ -57,7 +57,7 @@ double taut_direction(const SheetLaw& law, const Vec3& strain) {
       best = i * apart;
     }
   double low = best - apart, high = best + apart;
-  for (int i = 0; i < most_steps; ++i) {
+  for (int i = 0; i < max_steps; ++i) {
     const Uniaxial at(law, strain, best);
     const double rise = at.rise(), slope = at.rise_slope();
     (rise > 0 ? low : high) = best;
@@ -79,7 +79,7 @@ SheetResponse wrinkled(const SheetLaw& law, const Vec3& strain) {
 }
 
 /// Of (11, 22, 12), of a strain half of its last.
-double least_principal(double x, double y, double xy) {
+double min_principal(double x, double y, double xy) {
   return (x + y) / 2 - std::hypot((x - y) / 2, xy);
 }
 double greatest_principal(double x, double y, double xy) {
@@ -90,21 +90,21 @@ double greatest_principal(double x, double y, double xy) {
 
 SheetResponse sheet_response(const SheetLaw& law, const Vec3& strain) {
   const SheetResponse all = unrelaxed(law, strain);
-  if (!law.tension_only || least_principal(all.stress[0], all.stress[1], all.stress[2]) >= 0) return all;
+  if (!law.tension_only || min_principal(all.stress[0], all.stress[1], all.stress[2]) >= 0) return all;
   SheetResponse out;
   if (greatest_principal(strain[0], strain[1], strain[2] / 2) <= 0)
     out.state = SheetState::slack;
   else
     out = wrinkled(law, strain);
-  out.energy += pressed_share * (all.energy - out.energy);
-  out.stress += pressed_share * (all.stress - out.stress);
-  out.tangent += pressed_share * (all.tangent - out.tangent);
+  out.energy += pressed_fraction * (all.energy - out.energy);
+  out.stress += pressed_fraction * (all.stress - out.stress);
+  out.tangent += pressed_fraction * (all.tangent - out.tangent);
   return out;
 }
 
 SheetResponse smooth_sheet_response(const SheetLaw& law, const Vec3& strain, double barrier) {
-  constexpr int most_steps = 100;
-  constexpr double inside = 0.9, near = 1e-13;  // of the way to where a stress is singular; of the decrement
+  constexpr int max_steps = 100;
+  constexpr double inside = 0.9, near = 1e-13;  // of the step to a singular stress; of the decrement
   if (!law.tension_only) return unrelaxed(law, strain);
   if (law.rubber) return smooth_sheet_response({law.stiffness, law.compliance, true}, strain, barrier);
   const double scale = law.stiffness(0, 0), mu = barrier * scale;
@@ -112,7 +112,7 @@ SheetResponse smooth_sheet_response(const SheetLaw& law, const Vec3& strain, dou
   Vec3 stress = sheet_response(law, strain).stress + Vec3(1, 1, 0) * (std::sqrt(barrier) * scale);
   if (!(det(stress) > 0)) stress = Vec3(1, 1, 0) * stress.norm();  // pressed by what slack sheets keep
   Mat3 tangent;
-  for (int i = 0; i < most_steps; ++i) {
+  for (int i = 0; i < max_steps; ++i) {
     const Vec3 inverse = Vec3(stress[1], stress[0], -2 * stress[2]) / det(stress);  // by S, of log det S
     Mat3 second;                                                                    // less that of log det S
     second << inverse[0] * inverse[0], stress[2] * stress[2] / (det(stress) * det(stress)), inverse[0] * inverse[2], 0,

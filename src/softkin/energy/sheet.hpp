@@ -6,7 +6,7 @@ namespace softkin::energy {
 
 enum class SheetState { taut, wrinkled, slack };
 
-/// What a sheet answers with to a strain (E11, E22, 2 E12).
+/// The response of a sheet to a strain (E11, E22, 2 E12).
 struct SheetResponse {
   double energy = 0;            // per volume [MPa]
   Vec3 stress = Vec3::Zero();   // S11, S22, S12 [MPa]
@@ -14,19 +14,21 @@ struct SheetResponse {
   SheetState state = SheetState::taut;
 };
 
-/// Of a sheet that takes tension only a share of 1e-6 is of one that is pressed, too: what is slack keeps a shape.
+/// Returns the response of a sheet. Without compressive stiffness, a fraction of 1e-6 of the unrelaxed response
+/// remains, so that slack regions keep a shape.
 ///
-/// source  relaxed energy by its dual, the most of S . E - S . M S / 2 over the stresses S >= 0, M the compliance:
-///         wrinkled, S = s t t^T, it is the most over directions t of (t . E t)^2 / (2 t t : M t t)
-///         of rubber: what a pull along the largest stretch stores, Pipkin 1986, "The relaxed energy density for
-///         isotropic elastic membranes"
-/// returns  of rubber that has no area left what is not finite
+/// source  relaxed energy by its dual, the maximum of S . E - S . M S / 2 over the stresses S >= 0, M the compliance:
+///         wrinkled, S = s t t^T, it is the maximum over directions t of (t . E t)^2 / (2 t t : M t t)
+///         of rubber: the energy of uniaxial tension along the largest stretch, Pipkin 1986, "The relaxed energy
+///         density for isotropic elastic membranes"
+/// returns  values that are not finite for rubber whose area is 0
 [[nodiscard]] SheetResponse sheet_response(const SheetLaw& law, const Vec3& strain);
 
-/// The same of one that takes tension only, without kinks: the most of S . E - S . M S / 2 + barrier log det S, whose
-/// stresses pull in every direction, if by nearly nothing. For ways that begin far from where they end.
+/// Returns a smooth response of a sheet without compressive stiffness: the maximum of S . E - S . M S / 2 +
+/// barrier log det S, whose stresses are tensile in every direction, if only slightly. For paths that begin far from
+/// their end.
 ///
-/// Of rubber by its stiffness at rest: strains where ways begin are small.
+/// Rubber is treated by its stiffness at rest: strains are small where paths begin.
 ///
 /// barrier  over the stiffness along the first direction, above 0 [-]: strains of its root are smoothed
 /// source   interior point methods: Nocedal, Wright 2006, section 19.1

@@ -4,15 +4,15 @@
 
 namespace softkin::energy {
 
-// ViscousBlock: Maxwell branches of the elements of a block over a time step: springs and dampers in series, beside the
-// elastic law.
+// ViscousBlock: Maxwell branches of the elements of a block over a time step: springs and dampers in series, parallel
+// to the elastic law.
 //
 // source  a branch stores G/2 (bar C : C_v^-1 - 3) and flows by dC_v/dt = (bar C - (bar C : C_v^-1) C_v / 3) / tau,
 //         det C_v = 1; bar C = J^(-2/3) C, of a dielectric elastomer that of the elastic part. Reese, Govindjee 1998.
 //         The step is C_v = the unimodular part of M, the mean of C_v and bar C at its begin and bar C at its end by
-//         the shares above. With 1 / (1 + x), 0, x / (1 + x) in their place it is implicit Euler's, whose closed form
-//         is due to Shutov, Landgraf, Ihlemann 2013; these are exact at small strain where the strain changes evenly,
-//         and at large strain of first order with an error that is far smaller.
+//         the fractions of ViscousBlock. With 1 / (1 + x), 0, x / (1 + x) in their place it is implicit Euler's, whose
+//         closed form is due to Shutov, Landgraf, Ihlemann 2013; these are exact at small strain where the strain
+//         changes evenly, and at large strain of first order with a far smaller error.
 //         The stress that follows is the gradient of 3/2 G det(M)^(1/3) / ended, which is the least, over unimodular
 //         C_v, of G/2 M : C_v^-1 / ended: a step is an elastic problem.
 
@@ -50,7 +50,7 @@ void add_viscous_stress(const ElasticBlock<K, Q>& block, const ViscousBlock& vis
 ///
 /// rate     step over relaxation time of every branch, finite
 /// strains  in the order of ViscousBlock::strains
-/// returns  the energy that the branches lose on the way, >= 0 [mJ]: the integral of G / (2 tau) tr(dev(bar C
+/// returns  the energy that the branches dissipate in the step, >= 0 [mJ]: the integral of G / (2 tau) tr(dev(bar C
 ///          C_v^-1)^2), that stress changing from the step's begin to its end as where the strain changes evenly
 template <int K, int Q>
 Pack flow(const ElasticBlock<K, Q>& block, const ViscousBlock& viscous, const Pack* rate, const Shape<K>& current,

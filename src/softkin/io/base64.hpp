@@ -18,7 +18,7 @@ template <class Number>
   return to_base64({reinterpret_cast<const char*>(numbers), count * sizeof(Number)});
 }
 
-/// The other way round. throws InvalidInput on other text
+/// Decodes base64. throws InvalidInput on other text
 [[nodiscard]] std::string from_base64(std::string_view text);
 
 }  // namespace softkin

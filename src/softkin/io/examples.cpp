@@ -45,7 +45,7 @@ std::string replaced(std::string text, const std::string& what, const std::strin
   return text;
 }
 
-/// Commands of the sources' documents as they are typed beside a copy.
+/// Commands of the sources' documents as they are typed next to a copy.
 std::string beside_copy(const std::string& text) {
   return replaced(replaced(text, "build/softkin ", "softkin "), " examples/", " ");
 }
@@ -110,7 +110,7 @@ Example read_example(const fs::path& folder, const std::string& name) {
       do
         if (word != "\\") example.command.push_back(word);
       while (words >> word);
-      words.clear();  // a command goes on after a line that ends with a backslash
+      words.clear();  // a command continues after a line that ends with a backslash
     } while (word == "\\" && std::getline(lines, line) && (words.str(beside_copy(line)), words >> word));
     break;
   }

@@ -37,7 +37,7 @@ struct Example {
 
 /// All of them, sorted by name.
 ///
-/// throws  InvalidInput naming what cannot be read
+/// throws  InvalidInput naming the unreadable file
 [[nodiscard]] std::vector<Example> all_examples(const std::filesystem::path& folder);
 
 /// One by its name, its short name, or a beginning that no other name has; without its actuators, which take reading
@@ -47,7 +47,7 @@ struct Example {
 [[nodiscard]] Example find_example(const std::filesystem::path& folder, const std::string& name);
 
 struct CopiedExample {
-  Example example;                           // its command is to be typed where the copy was asked for
+  Example example;                           // its command is to be run where the copy was requested
   std::vector<std::filesystem::path> files;  // all that are there now, those of its neighbours last
 };
 

@@ -122,14 +122,14 @@ fs::path resolved(const fs::path& file) {
   throw InvalidInput(output.option + " " + output.file.string() + ": " + why);
 }
 
-/// ours: the file, or one that is written beside it
+/// ours: the file, or one that is written next to it
 void check_own(const Output& output, const fs::path& ours) {
   std::error_code failure;
   if (!fs::exists(ours, failure)) return;
   bool own = false;
   try {
     own = is_own_file(ours) || (output.is_own && output.is_own(ours));
-  } catch (const InvalidInput&) {  // what cannot be read is not known
+  } catch (const InvalidInput&) {  // an unreadable file counts as foreign
   }
   if (!own)
     refuse(output,
@@ -224,7 +224,7 @@ OutputFolders::OutputFolders(const std::vector<Output>& outputs) {
     try {
       make(folder);
       const fs::path probe = folder / probe_name();
-      write_file(probe, "");  // asks what permissions do not tell, before the work and not after it
+      write_file(probe, "");  // checks what permissions do not show, before the work and not after it
       fs::remove(probe);
     } catch (const fs::filesystem_error& failure) {
       remove_empty();

@@ -17,23 +17,23 @@ namespace softkin {
 /// Throws InvalidInput where a file is a pointer of Git LFS; for files that read_file does not read.
 void refuse_lfs_pointer(const std::filesystem::path& path);
 
-/// Writes beside the file and renames, so that a reader never sees half a file. Throws InvalidInput on failure.
+/// Writes next to the file and renames, so that a reader never sees half a file. Throws InvalidInput on failure.
 void write_file(const std::filesystem::path& path, std::string_view content);
 void write_file(const std::filesystem::path& path, const std::function<void(std::ostream&)>& write);
 
-/// A file that a command is asked to write.
+/// An output file of a command.
 struct Output {
   std::string option;          // that names it, for messages
   std::filesystem::path file;  // to be written
-  std::size_t shapes = 0;      // a series' .pvd: its shapes are written beside it
+  std::size_t shapes = 0;      // a series' .pvd: its shapes are written next to it
   /// Is a file of that name softkin's although it does not say so? Empty: none is.
   std::function<bool(const std::filesystem::path&)> is_own{};
 };
 
-/// The file beside an output where a run keeps what it has found until it is done.
+/// The file next to an output where a run keeps its results until it is done.
 [[nodiscard]] std::filesystem::path journal_of(const std::filesystem::path& output);
 
-/// NAME_0007.vtu beside NAME.pvd.
+/// NAME_0007.vtu next to NAME.pvd.
 [[nodiscard]] std::filesystem::path series_file(const std::filesystem::path& pvd, std::size_t step);
 /// The shape that a series was stopped at: NAME_stopped.vtu.
 [[nodiscard]] std::filesystem::path stopped_file(const std::filesystem::path& pvd);
@@ -59,7 +59,7 @@ class OutputFolders {
   std::vector<std::filesystem::path> made_;
 };
 
-/// Removes what a killed run left half written beside its outputs.
+/// Removes half-written files that a killed run left next to its outputs.
 void remove_torn_files(const std::vector<Output>& outputs);
 
 }  // namespace softkin

@@ -5,7 +5,7 @@ namespace softkin {
 
 namespace {
 
-constexpr int most_levels = 100;
+constexpr int max_levels = 100;
 
 bool is_deep(std::string_view text) {
   int depth = 0;
@@ -17,7 +17,7 @@ bool is_deep(std::string_view text) {
     if (quoted) continue;
     if (c == '[' || c == '{') ++depth;
     if (c == ']' || c == '}') --depth;
-    if (depth > most_levels) return true;
+    if (depth > max_levels) return true;
   }
   return false;
 }

@@ -9,8 +9,8 @@ namespace softkin {
 
 using Json = nlohmann::ordered_json;
 
-/// The JSON of a text that a user brings. Null where it is nested deeper than 100 levels, as nothing is that softkin
-/// wrote: whoever copied or printed that would run out of stack. Throws Json::exception where it is no JSON.
+/// Parses the JSON of a text that a user brings. Null where it is nested deeper than 100 levels, which softkin never
+/// writes: copying or printing such JSON would exhaust the stack. Throws Json::exception where it is no JSON.
 [[nodiscard]] Json parse_json(std::string_view text);
 
 /// JSON as users see it, indented; text that is no UTF-8 is replaced.

@@ -15,7 +15,7 @@ bool mentions(const fs::path& text_file, const std::string& name) {
   constexpr std::size_t most = 1 << 20;  // scripts and READMEs are shorter
   try {
     return read_beginning(text_file, most).find(name) != std::string::npos;
-  } catch (const InvalidInput&) {  // what cannot be read shows nothing
+  } catch (const InvalidInput&) {  // an unreadable file mentions nothing
     return false;
   }
 }

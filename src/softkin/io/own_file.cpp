@@ -42,7 +42,7 @@ bool is_own_fragment(std::string_view text) {
   return true;
 }
 
-/// Text whose first line says it.
+/// Text whose first line names softkin.
 bool has_own_beginning(std::string_view text) {
   constexpr std::array marks{workspace_mark,
                              std::string_view("# made by softkin"),

@@ -12,7 +12,7 @@ namespace softkin {
 /// written at once.
 class StreamLog {
  public:
-  /// failed  told once, why a line could not be written: motors that move are not stopped for a full disk
+  /// failed  called once with the reason why a line was not written: a full disk does not stop motors that move
   /// throws  InvalidInput naming the option where the file cannot be opened
   StreamLog(const std::string& path, std::function<void(const std::string&)> failed);
 
@@ -20,7 +20,7 @@ class StreamLog {
 
  private:
   std::unique_ptr<FILE, int (*)(FILE*)> file_;
-  std::function<void(const std::string&)> failed_;  // empty: told
+  std::function<void(const std::string&)> failed_;  // empty: was called
   std::chrono::steady_clock::time_point begin_ = std::chrono::steady_clock::now();
 };
 

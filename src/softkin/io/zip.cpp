@@ -8,7 +8,7 @@ namespace softkin {
 
 namespace {
 
-constexpr std::uint16_t zip_version = 20, first_of_1980 = 0x21;  // the earliest day that a zip can tell
+constexpr std::uint16_t zip_version = 20, first_of_1980 = 0x21;  // the earliest day that a zip can represent
 
 void append_number(std::string& bytes, std::uint64_t value, int size) {
   for (int i = 0; i < size; ++i, value >>= 8) bytes += static_cast<char>(value & 255);
@@ -18,7 +18,7 @@ std::uint64_t crc_of(const std::string& content) {
   return crc32_z(crc32(0, nullptr, 0), reinterpret_cast<const Bytef*>(content.data()), content.size());
 }
 
-/// What the file's header and the directory both tell of it.
+/// The fields that the file's header and the directory have in common.
 std::string entry_of(const std::string& name, const std::string& content) {
   std::string bytes;
   append_number(bytes, zip_version, 2);

@@ -28,7 +28,7 @@ Vec3 Estimate::vertex_deviation(Index vertex) const {
 
 namespace {
 
-/// Of the deviation of markers: what shapes need not be more exact than.
+/// Accuracy of shapes, relative to the smallest standard deviation of the markers.
 constexpr double exact = 1e-1;
 
 StaticsOptions exact_enough(StaticsOptions options, const std::vector<PoseColumn>& columns,
@@ -54,14 +54,14 @@ struct Estimator::Parts {
   std::vector<ReadingGroup> groups;
   std::optional<Fit> last{};
   std::optional<Survey> survey{};  // of searches
-  Memory memory;                   // where what was told fades
+  Memory memory;                   // used where estimates fade
   Actuation last_commands{};
   Estimate estimate{};
 
   Parts(const Model& robot, const std::vector<EstimatedUnknown>& unknowns, const std::vector<PoseColumn>& columns,
-        Eigen::VectorXd given, EstimatorOptions asked)
+        Eigen::VectorXd given, EstimatorOptions requested)
       : model(robot),
-        options(std::move(asked)),
+        options(std::move(requested)),
         deviations(std::move(given)),
         problem(robot, unknowns, columns, exact_enough(options.statics, columns, deviations)),
         groups(reading_groups(robot, problem.columns())),
@@ -71,9 +71,9 @@ struct Estimator::Parts {
   [[nodiscard]] Knowledge known(double elapsed_s);
   [[nodiscard]] Fit fit(const Actuation& commands, const Eigen::VectorXd& values, const Knowledge& known,
                         Eigen::VectorXd& weights, const ProgressCallback& progress);
-  void tell(const Fit& found, const Readings& read, const Actuation& commands);
-  void tell_numbers(const Fit& found);
-  void tell_places(const Fit& found);
+  void describe(const Fit& found, const Readings& read, const Actuation& commands);
+  void report_numbers(const Fit& found);
+  void report_places(const Fit& found);
 };
 
 void Estimator::Parts::check(const Actuation& commands, const Eigen::VectorXd& values, double elapsed_s) const {
@@ -87,7 +87,7 @@ void Estimator::Parts::check(const Actuation& commands, const Eigen::VectorXd& v
                        std::to_string(model.actuators.size()));
 }
 
-/// Readings tell from what earlier ones left since then.
+/// Returns the prior: that before any reading and the information of earlier readings, which fades with time.
 Knowledge Estimator::Parts::known(double elapsed_s) {
   Knowledge known(problem.variables());
   if (!(options.fade_s > 0)) return known;
@@ -124,33 +124,33 @@ Fit Estimator::Parts::fit(const Actuation& commands, const Eigen::VectorXd& valu
       Fit fit = fitter.refine(last->at, now, last->nearby, last_commands == commands ? nullptr : &last_commands);
       return options.fade_s > 0 ? fit : searcher.relocated(std::move(fit), now);
     };
-    fits.foretold = [&](const Eigen::VectorXd& some) {
-      return fitter.foretell(last->at, read(some, false), last->nearby, last_commands);
+    fits.predicted = [&](const Eigen::VectorXd& some) {
+      return fitter.predict(last->at, read(some, false), last->nearby, last_commands);
     };
   }
   if (options.leave_out) return agreeing_fit(groups, values, weights, fits, estimate.left_out);
   return last ? fits.tracked(weights) : fits.anew(weights);
 }
 
-void Estimator::Parts::tell_numbers(const Fit& found) {
+void Estimator::Parts::report_numbers(const Fit& found) {
   const std::vector<Variable>& variables = problem.variables().all();
   estimate.numbers.clear();
   for (std::size_t i = 0; i < variables.size(); ++i) {
     const Variable& v = variables[i];
     const Index at = i;
-    const double value = found.told.values[at];
+    const double value = found.estimated.values[at];
     estimate.numbers.push_back(
-        estimate::told_number(model, v, value, std::sqrt(std::max(0.0, estimate.covariance(at, at)))));
+        estimate::reported_number(model, v, value, std::sqrt(std::max(0.0, estimate.covariance(at, at)))));
     if (v.actuator >= 0) estimate.actuation[v.actuator] = value;
   }
 }
 
-void Estimator::Parts::tell_places(const Fit& found) {
+void Estimator::Parts::report_places(const Fit& found) {
   estimate.places.clear();
   const std::vector<FreeForce>& forces = problem.variables().forces();
   for (std::size_t f = 0; f < forces.size(); ++f) {
     const Patch& patch = *forces[f].patch;
-    const Place& place = found.told.places[f];
+    const Place& place = found.estimated.places[f];
     const auto tangents = patch.tangents(place);
     const Index first = problem.variables().numbers() + 2 * f;
     estimate.places.push_back({forces[f].name, patch.at(place, model.rest), patch.at(place, estimate.state.positions),
@@ -159,7 +159,7 @@ void Estimator::Parts::tell_places(const Fit& found) {
   }
 }
 
-void Estimator::Parts::tell(const Fit& found, const Readings& read, const Actuation& commands) {
+void Estimator::Parts::describe(const Fit& found, const Readings& read, const Actuation& commands) {
   const Eigen::MatrixXd& slopes = found.slopes;
   const CholeskyFactor factor(found.normal.matrix);
   estimate.near_covariance = factor.solve(Eigen::MatrixXd(Eigen::MatrixXd::Identity(slopes.cols(), slopes.cols())));
@@ -168,7 +168,7 @@ void Estimator::Parts::tell(const Fit& found, const Readings& read, const Actuat
   if (estimate.covariance.size() == 0) estimate.covariance = estimate.near_covariance;
   estimate.state = found.at.equilibrium.state;
   estimate.computed = found.at.computed;
-  problem.follow(*found.nearby, found.at, found.told, {}, estimate.computed, &estimate.state);
+  problem.follow(*found.nearby, found.at, found.estimated, {}, estimate.computed, &estimate.state);
   const Eigen::VectorXd leverage = (slopes * estimate.near_covariance).cwiseProduct(slopes).rowwise().sum().cwiseMax(0);
   estimate.deviations = leverage.cwiseSqrt();
   estimate.chi_square = estimate.freedoms = 0;
@@ -179,12 +179,13 @@ void Estimator::Parts::tell(const Fit& found, const Readings& read, const Actuat
     estimate.freedoms += std::max(0.0, 1 - read.weights[r] * leverage[r]);
   }
   estimate.actuation = commands;
-  tell_numbers(found);
-  tell_places(found);
+  report_numbers(found);
+  report_places(found);
   const Index own = model.actuators.size();
-  estimate.state.actuation = problem.variables().actuation(commands, found.told.values, found.told.places).head(own);
+  estimate.state.actuation =
+      problem.variables().actuation(commands, found.estimated.values, found.estimated.places).head(own);
   estimate.state.multipliers = estimate.state.multipliers.head(own).eval();
-  estimate.moves = problem.moves(*found.nearby, found.told);
+  estimate.moves = problem.moves(*found.nearby, found.estimated);
 }
 
 Estimator::Estimator(const Model& model, const std::vector<EstimatedUnknown>& unknowns,
@@ -224,10 +225,10 @@ const Estimate& Estimator::update(const Actuation& commands, const Eigen::Vector
   if (found.at.solved() && found.normal.matrix.size() > 0) {
     const Knowledge nothing(parts.problem.variables());
     const Readings read{commands, values, weights, found.anew ? nothing : known};
-    parts.tell(found, read, commands);
+    parts.describe(found, read, commands);
     if (found.converged) {
       if (found.anew) parts.memory.forget();
-      if (parts.options.fade_s > 0) parts.problem.remember(*found.nearby, found.told, read, parts.memory);
+      if (parts.options.fade_s > 0) parts.problem.remember(*found.nearby, found.estimated, read, parts.memory);
       parts.last = std::move(found);
       parts.last_commands = commands;
     }
@@ -246,8 +247,8 @@ const std::vector<ReadingGroup>& Estimator::groups() const {
   return parts_->groups;
 }
 
-std::vector<Index> Estimator::told_actuators() const {
-  return parts_->problem.variables().told_actuators();
+std::vector<Index> Estimator::reported_actuators() const {
+  return parts_->problem.variables().reported_actuators();
 }
 
 std::vector<ReadingGroup> reading_groups(const Model& model, const std::vector<PoseColumn>& columns) {

@@ -31,7 +31,7 @@ std::vector<Actuation> unit_changes(const Model& model) {
   return changes;
 }
 
-/// On one support, from what all supports exert at the vertices that they hold, [N] or per unit of something.
+/// Returns the sum over one support of the reactions at the vertices, [N] or per unit of a parameter.
 Vec3 on_support(const Model& model, Index support, const Points& reactions) {
   Vec3 sum = Vec3::Zero();
   for (Index v = 0; v < reactions.rows(); ++v)
@@ -70,12 +70,12 @@ ForceGoal force_on(const Model& model, const std::string& name) {
 }
 
 double usual_mm_per_N(const ForceGoal& goal, double tolerance_mm, std::optional<double> tolerance_N) {
-  constexpr double share = 1e-3, least_N = 1e-3;
-  Vec3 asked = goal.force;
+  constexpr double fraction = 1e-3, min_N = 1e-3;
+  Vec3 requested = goal.force;
   for (int axis = 0; axis < 3; ++axis)
-    if (!goal.axes[axis]) asked[axis] = 0;
-  const double size = asked.stableNorm();
-  const double tolerance = tolerance_N.value_or(size > 0 ? share * size : least_N);
+    if (!goal.axes[axis]) requested[axis] = 0;
+  const double size = requested.stableNorm();
+  const double tolerance = tolerance_N.value_or(size > 0 ? fraction * size : min_N);
   const double lever = tolerance_mm / tolerance;
   if (!(tolerance > 0) || !(lever > 0) || !std::isfinite(tolerance) || !std::isfinite(lever))
     throw InvalidInput("tolerances of places and forces must be finite and > 0");
@@ -107,7 +107,7 @@ std::vector<Exertion> inverse::exertions_of(const Statics& statics, const std::v
   std::vector<Exertion> found;
   if (!any_force(goals)) return found;
   const ElementDeformation deformation = statics.measured(at);
-  if (deformation.reactions.rows() == 0) throw InvalidInput("forces are solved for: a map does not tell them");
+  if (deformation.reactions.rows() == 0) throw InvalidInput("forces are solved for: a map does not have them");
   const std::vector<Reaction> held = reactions(model, at.positions, deformation);
   std::optional<std::vector<PairForces>> pairs;
   if (deformation.contacts) pairs = deformation.contacts->pairs;

@@ -43,20 +43,21 @@ Vec3 masked(const ForceGoal& goal, Vec3 vector) {
   return vector;
 }
 
-/// Of a vector that may vanish: markers may come to lie on each other.
+/// Returns the unit vector, or zero for a vector that vanishes: two markers may coincide.
 Vec3 unit(const Vec3& vector) {
   const double length = vector.stableNorm();
   return length > 0 ? Vec3(vector / length) : Vec3::Zero();
 }
 
-/// Along which closing the gap leads towards a force: zero where there is none, or where pushing is not what is asked.
-Vec3 way_to_touch(const ForceGoal& goal, const Exertion& found) {
+/// Returns the direction in which closing the gap leads towards the target force: zero where there is no gap, or where
+/// the target force does not push across it.
+Vec3 motion_to_contact(const ForceGoal& goal, const Exertion& found) {
   const Vec3 along = unit(masked(goal, goal.force));
   return found.gap && along.dot(found.gap->towards) > 0 ? along : Vec3(Vec3::Zero());
 }
 
-/// What is left of the way to where surfaces begin to feel each other [mm].
-double way_left(const Model& model, const Exertion& found) {
+/// Returns the remaining distance to where the contact forces between the surfaces begin [mm].
+double remaining_path(const Model& model, const Exertion& found) {
   return found.gap ? std::max(0.0, found.gap->width_mm - model.contact.distance_mm) : 0;
 }
 
@@ -75,8 +76,8 @@ Eigen::VectorXd terms_of(const Model& model, const Goal& goal, const Points& pos
                                  return g.lever_mm * (unit(line) - unit(g.direction));
                                },
                                [&](const ForceGoal& g) -> Eigen::VectorXd {
-                                 const Vec3 way = way_left(model, found) * way_to_touch(g, found);
-                                 return counted(g, g.mm_per_N * (found.force - g.force) - way);
+                                 const Vec3 path = remaining_path(model, found) * motion_to_contact(g, found);
+                                 return counted(g, g.mm_per_N * (found.force - g.force) - path);
                                }},
                     goal.what);
 }
@@ -102,8 +103,8 @@ Eigen::VectorXd change_of(const Model& model, const Goal& goal, const Points& po
                    return g.lever_mm / length * (move - along.dot(move) * along);
                  },
                  [&](const ForceGoal& g) -> Eigen::VectorXd {
-                   const Vec3 way = found.gap ? Vec3(change.gap[a] * way_to_touch(g, found)) : Vec3::Zero();
-                   return counted(g, g.mm_per_N * change.force.col(a) - way);
+                   const Vec3 path = found.gap ? Vec3(change.gap[a] * motion_to_contact(g, found)) : Vec3::Zero();
+                   return counted(g, g.mm_per_N * change.force.col(a) - path);
                  }},
       goal.what);
 }
@@ -175,8 +176,8 @@ class Check {
   std::string name_;
 };
 
-/// Distance of a marker at rest from its target, along the coordinates that count, were it given in units of so many
-/// millimetres [mm].
+/// Returns the distance of a marker at rest from its target, along the coordinates that count, as if the target were
+/// given in units of unit_mm [mm].
 double distance_from_rest(const Model& model, const PositionGoal& goal, double unit_mm) {
   const Vec3 rest = marker_at(model, goal.marker, model.rest);
   Vec3 away = Vec3::Zero();
@@ -197,15 +198,15 @@ void check_goals(const Model& model, const std::vector<Goal>& goals) {
 }
 
 Eigen::VectorXd goal_errors(const Model& model, const std::vector<Goal>& goals, const Points& positions) {
-  if (any_force(goals)) throw InvalidInput("positions alone do not tell what a robot exerts");
+  if (any_force(goals)) throw InvalidInput("positions alone do not determine what a robot exerts");
   return inverse::errors_of(model, goals, positions, {});
 }
 
 std::vector<std::string> doubts_about(const Model& model, const std::vector<Goal>& goals) {
   constexpr double large = 100, metre = 1000;
   std::vector<std::string> doubts;
-  for (const Goal& asked : goals) {
-    const auto* goal = std::get_if<PositionGoal>(&asked.what);
+  for (const Goal& requested : goals) {
+    const auto* goal = std::get_if<PositionGoal>(&requested.what);
     if (goal == nullptr) continue;
     const double given = distance_from_rest(model, *goal, 1), metres = distance_from_rest(model, *goal, metre);
     const bool far = given > large * model.diagonal_mm;
@@ -218,9 +219,10 @@ std::vector<std::string> doubts_about(const Model& model, const std::vector<Goal
                                  : "; it would be " + number(metres, 3) +
                                        " mm away if the coordinates were in metres: are they? They are taken as mm"));
   }
-  if (any_force(goals) && rubs(model))
+  if (any_force(goals) && has_friction(model))
     doubts.emplace_back(
-        "what rubs remembers its way: the force is that on the way of the search, and forward kinematics along the "
+        "with friction a shape depends on its path: the force is that on the path of the search, and forward "
+        "kinematics along the "
         "same commands may come to another one");
   return doubts;
 }

@@ -30,19 +30,19 @@ struct DirectionGoal {
   double lever_mm = 1;             // > 0; the distance at which a wrong direction counts [mm]
 };
 
-/// The robot is to exert a force on what holds it or on what it touches: on a support minus what that exerts on the
-/// robot; on an obstacle or a body what all that touches it exerts on it. Its error is that of the force, by mm_per_N.
+/// The robot is to exert a force on a support, an obstacle or a body: on a support minus its reaction; on an obstacle
+/// or a body the sum of all contact forces on it. The error is that of the force, multiplied by mm_per_N.
 struct ForceGoal {
-  /// What bears the force: an entry of the description's `fixed`; an obstacle or a body.
+  /// On what the force acts: a support, which is an entry of the description's `fixed`; or an obstacle or a body.
   enum class On { support, part };
   On on = On::support;                         // which of these index numbers
   Index index = 0;                             // of model.held.supports; of model.contact.parts, an obstacle or a body
   Vec3 force = Vec3::Zero();                   // [N]
   std::array<bool, 3> axes{true, true, true};  // components that count
-  double mm_per_N = 1;                         // > 0; what a wrong force counts [mm/N]
+  double mm_per_N = 1;                         // > 0; weight of an error of the force [mm/N]
 };
 
-/// What inverse kinematics is to reach, with its weight (> 0) in the sum of squares.
+/// A goal of inverse kinematics, with its weight (> 0) in the sum of squares.
 struct Goal {
   std::variant<PositionGoal, PlaneGoal, DirectionGoal, ForceGoal> what;  // one goal
   double weight = 1;                                                     // of its squared error, > 0
@@ -55,18 +55,19 @@ void check_goals(const Model& model, const std::vector<Goal>& goals);
 
 /// Distance of each goal from being met [mm], unweighted.
 ///
-/// throws  InvalidInput on a force, which positions alone do not tell
+/// throws  InvalidInput on a force, which positions alone do not determine
 [[nodiscard]] Eigen::VectorXd goal_errors(const Model& model, const std::vector<Goal>& goals, const Points& positions);
 
 /// Is a force among them?
 [[nodiscard]] bool any_force(const std::vector<Goal>& goals);
 
-/// What a robot may be asked to press on: its supports, obstacles and bodies, in this order.
+/// Returns the names of everything on which a force goal may act: supports, obstacles and bodies, in this order.
 [[nodiscard]] std::vector<std::string> names_of_pressed(const Model& model);
 
-/// A goal on what has that name, with no force yet.
+/// Returns a force goal on the support, obstacle or body of that name, with no force yet.
 ///
-/// throws  InvalidInput where nothing has it, naming what is there, and where a support and an obstacle or body do
+/// throws  InvalidInput where nothing has the name, listing those that exist, and where a support and an obstacle or
+///         body both have it
 [[nodiscard]] ForceGoal force_on(const Model& model, const std::string& name);
 
 /// mm_per_N of a goal that is to be met at its own tolerance while places are at theirs: tolerance_mm over tolerance_N;
@@ -75,15 +76,15 @@ void check_goals(const Model& model, const std::vector<Goal>& goals);
 /// throws  InvalidInput on tolerances that are not finite and > 0
 [[nodiscard]] double usual_mm_per_N(const ForceGoal& goal, double tolerance_mm, std::optional<double> tolerance_N);
 
-/// What a robot exerts on that in an equilibrium [N].
+/// Returns the force that a robot exerts on the goal's support, obstacle or body in an equilibrium [N].
 ///
 /// reactions  of every support, in their order
 /// contacts   none: nothing can touch
 [[nodiscard]] Vec3 exerted_force(const ForceGoal& goal, const std::vector<Reaction>& reactions,
                                  const std::optional<std::vector<PairForces>>& contacts);
 
-/// What looks wrong about targets beside this robot, a sentence each: 100 times its size away, or near it if they were
-/// in metres; forces where something rubs, as they depend on the way.
+/// Returns warnings about implausible targets, a sentence each: targets 100 times the robot's size away, or near it if
+/// they were in metres; forces in a robot with friction, as they depend on the path.
 [[nodiscard]] std::vector<std::string> doubts_about(const Model& model, const std::vector<Goal>& goals);
 
 }  // namespace softkin

@@ -9,11 +9,11 @@ namespace softkin {
 
 namespace {
 
-constexpr double begin_share = 0.1;   // of what presses on the body, to begin with
-constexpr double least_share = 1e-6;  // the same, of the largest that may be commanded
-constexpr double gravity = 9.81;      // m/s^2
-constexpr double accuracy = 1e-3;     // of the largest pull
-constexpr double nearly = 0.9;        // of the friction that there can be: where so much is used, the body slips
+constexpr double begin_fraction = 0.1;  // of the normal contact force on the body: the first force
+constexpr double min_fraction = 1e-6;   // the same, of the largest that may be commanded
+constexpr double gravity = 9.81;        // m/s^2
+constexpr double accuracy = 1e-3;       // of the largest pull
+constexpr double nearly = 0.9;          // of the friction that there can be: where so much is used, the body slips
 
 const FreeBody& body_at(const Model& model, Index body) {
   if (body < 0 || body >= std::ssize(model.bodies))
@@ -21,7 +21,7 @@ const FreeBody& body_at(const Model& model, Index body) {
   return model.bodies[body];
 }
 
-ProgressCallback told(const GraspProgress& progress, const std::string& doing) {
+ProgressCallback reported(const GraspProgress& progress, const std::string& doing) {
   if (!progress) return {};
   return [&progress, doing](const Progress& p) { return progress(doing, p); };
 }
@@ -48,7 +48,7 @@ class Closing {
   /// failure: what it means where there is no equilibrium
   bool go(const Actuation& actuation, const std::string& doing, const std::string& failure) {
     Equilibrium& last = grasp_.last;
-    last = statics_.solve(actuation, last.state, options_, told(progress_, doing));
+    last = statics_.solve(actuation, last.state, options_, reported(progress_, doing));
     if (last.report.status == Status::converged) return true;
     const bool unknown = last.report.status == Status::not_converged;
     grasp_.remark = last.report.status == Status::interrupted
@@ -72,14 +72,14 @@ Pressed pressed(const Model& model, Index body, const ElementDeformation& shape)
   if (!shape.contacts) return sum;
   const auto is_body = [&](Index part) { return model.contact.parts[part].name == name; };
   double slipping = 0;
-  bool rubs = false;
+  bool has_friction = false;
   for (const PairForces& pair : shape.contacts->pairs) {
     if (!is_body(pair.a) && !is_body(pair.b)) continue;
     sum.normal_N += pair.normal_N;
-    rubs = rubs || pair.slipping;
+    has_friction = has_friction || pair.slipping;
     slipping += pair.slipping.value_or(0) * pair.normal_N;
   }
-  if (rubs && sum.normal_N > 0) sum.slipping = slipping / sum.normal_N;
+  if (has_friction && sum.normal_N > 0) sum.slipping = slipping / sum.normal_N;
   return sum;
 }
 
@@ -120,7 +120,7 @@ std::vector<PullDirection> axes_to_pull_along() {
 const char* what_then(const Pull& pull) {
   if (pull.status == Status::converged) return "holds more";
   if (pull.status != Status::limit) return name_of(pull.status);
-  return pull.last.report.remark.find("slips") != std::string::npos ? "slips" : "gives way";
+  return pull.last.report.physical.slipping_fraction > 0 ? "slips" : "gives way";
 }
 
 Actuation pulled(const Model& model, Actuation actuation, Index body, const Vec3& direction, double force_N) {
@@ -134,7 +134,7 @@ Actuation pulled(const Model& model, Actuation actuation, Index body, const Vec3
   return actuation;
 }
 
-double most_pull(const Model& model, Index body) {
+double max_pull(const Model& model, Index body) {
   (void)body_at(model, body);
   for (const Actuator& command : model.actuators)
     if (const auto* force = command.as<ForceCommand>(); force && force->body == body) return command.high;
@@ -180,25 +180,25 @@ class Pulling {
   static constexpr double growth = 2, shrinking = 0.4, least = 1e-3;  // of steps
   static constexpr int patience = 25;                                 // iterations that lead no farther
   static constexpr double far = 0.01;                                 // of the diagonal, in one of them
-  static constexpr int settled = 5;                                   // iterations before which far moves are right
+  static constexpr int min_iterations = 5;                            // iterations before which far moves are right
 
-  /// To an equilibrium at that force. Where there is none a body flies off: what leads nowhere is left early.
+  /// Solves for the equilibrium at that force. Where there is none the body flies off: such solves are ended early.
   Outcome go(double force) {
     bool astray = false;
     int since = 0;
-    double share = -1;
+    double fraction = -1;
     const std::string doing = "pulling along " + pull_.direction.name + ", " + number(pull_.force_N, 3) + " N held";
-    const ProgressCallback tell = [&](const Progress& p) {
-      if (p.share > share) {
-        share = p.share;
+    const ProgressCallback describe = [&](const Progress& p) {
+      if (p.fraction > fraction) {
+        fraction = p.fraction;
         since = p.iteration;
       }
       const int idle = p.iteration - since;
-      astray = idle > patience || (idle > settled && p.step_mm > far * model_.diagonal_mm);
+      astray = idle > patience || (idle > min_iterations && p.step_mm > far * model_.diagonal_mm);
       return !astray && (!progress_ || progress_(doing, p));
     };
     Equilibrium found = statics_.solve(pulled(model_, grasp_.actuation, body_, pull_.direction.along, force),
-                                       pull_.last.state, options_, tell);
+                                       pull_.last.state, options_, describe);
     const SolveReport report = found.report;
     const double before = pull_.force_N, reached = std::clamp(report.reached, 0.0, 1.0);
     const bool met = report.status == Status::converged;
@@ -214,7 +214,8 @@ class Pulling {
     return Outcome::stopped;
   }
 
-  /// What rubs on the body, along the surfaces, over what friction can hold at most [-]; 0 without friction.
+  /// Returns the tangential contact forces on the body over the maximum that friction can carry [-]; 0 without
+  /// friction.
   [[nodiscard]] double friction_used() const {
     const ElementDeformation shape = statics_.measured(pull_.last.state);
     const std::string& name = model_.bodies[body_].name;
@@ -255,18 +256,18 @@ class Pulling {
 Pull largest_pull(const Statics& statics, const State& grasp, const PullTask& task, const StaticsOptions& options,
                   const GraspProgress& progress) {
   const Model& model = statics.model();
-  const auto& [body, direction, most_N] = task;
+  const auto& [body, direction, max_N] = task;
   const FreeBody& held = body_at(model, body);
   if (!(direction.along.norm() > 0) || !direction.along.allFinite())
     throw InvalidInput("the direction of a pull has no length");
-  if (most_N && !(*most_N > 0)) throw InvalidInput("the largest pull that is tried must be > 0 N");
-  const double most = std::min(most_N.value_or(HUGE_VAL), most_pull(model, body));
+  if (max_N && !(*max_N > 0)) throw InvalidInput("the largest pull that is tried must be > 0 N");
+  const double most = std::min(max_N.value_or(HUGE_VAL), max_pull(model, body));
   Pull pull;
   pull.direction = {direction.name, direction.along.normalized()};
   pull.last.state = grasp;
   pull.last.actuation = grasp.actuation;
   const double presses = std::max(gravity * held.mass_kg, pressed(model, body, statics.measured(grasp)).normal_N);
-  const double first = presses > 0 ? begin_share * presses : least_share * most_pull(model, body);
+  const double first = presses > 0 ? begin_fraction * presses : min_fraction * max_pull(model, body);
   Pulling(statics, grasp, body, options, progress, pull).to_limit(first, most);
   pull.moved_mm = moved(held, grasp.positions, pull.last.state.positions);
   pull.pressed = pressed(model, body, statics.measured(pull.last.state));

@@ -23,7 +23,7 @@ class Qhull {
  public:
   /// points: dimension values each; they must outlive the object.
   Qhull(std::vector<double>& points, int dimension) {
-    // what Qhull says of trouble is kept from the terminal
+    // messages of Qhull must not reach the terminal
     const std::unique_ptr<FILE, int (*)(FILE*)> messages(::open_memstream(&said_, &said_size_), std::fclose);
     if (!messages) throw InvalidInput("out of memory for the hull");
     qh_zero(&qh_, messages.get());

@@ -11,9 +11,9 @@ namespace softkin {
 
 namespace {
 
-/// A direction in which whole ranges move the terms by less than this share of the tolerance moves nothing.
+/// A direction in which whole ranges change the terms by less than this fraction of the tolerance has no effect.
 constexpr double resolution_of_tolerance = 0.1;
-/// Another minimum must be so much better than the first to be worth a jump.
+/// The error of another minimum, relative to the first, below which a jump to it is worthwhile.
 constexpr double worthwhile = 0.99;
 
 void check_size(const Model& model, const Sensitivity& given) {
@@ -80,7 +80,7 @@ class Inverse {
   InverseResult solve(const Equilibrium& start, bool known) {
     Equilibrium first = start;
     if (!known) first.report = {};
-    if (settle(start.state, first)) {
+    if (correct(start.state, first)) {
       if (options_.method == InverseMethod::newton) {
         search(std::move(first));
       } else {
@@ -93,15 +93,15 @@ class Inverse {
   }
 
  private:
-  /// The start as an equilibrium; it is taken for one where it says all that solve() says; where a stable one is asked
-  /// for, only if its report tells that it is.
-  bool settle(const State& start, Equilibrium& first) {
+  /// Makes the start an equilibrium. A start with everything that solve() returns is accepted as one; where a stable
+  /// equilibrium is requested, only if its report states that it is stable.
+  bool correct(const State& start, Equilibrium& first) {
     const Index m = model_.actuators.size();
     const StaticsOptions& statics = options_.statics;
     const bool same_time =
         !statics_.viscous() || (start.history == statics.history && start.elapsed_s == statics.elapsed_s);
-    const bool known = start.knows(m) && start.multipliers.size() == m && start.share == 1 && same_time &&
-                       (!options_.statics.stable || (is_told(first) && first.report.physical.unstable_modes == 0));
+    const bool known = start.knows(m) && start.multipliers.size() == m && start.load_factor == 1 && same_time &&
+                       (!options_.statics.stable || (is_reported(first) && first.report.physical.unstable_modes == 0));
     first.actuation = start.actuation.size() > 0 ? start.actuation : model_.rest_actuation();
     first.report.status = Status::converged;
     if (known || response_.solve(first.actuation, start, first)) return true;
@@ -132,14 +132,15 @@ class Inverse {
   void search(Equilibrium first) {
     const Actuation preferred = options_.preferred.size() > 0 ? options_.preferred : first.actuation;
     inverse::SearchSettings settings;
-    settings.preferred = response_.shares_of(preferred);
+    settings.preferred = response_.fractions_of(preferred);
     settings.resolution_mm = resolution_of_tolerance * options_.tolerance_mm;
     settings.accuracy_mm = accuracy_mm();
     settings.preferred_tolerance = options_.preferred_tolerance;
     first.state.actuation = first.actuation;
     if (response_.free().empty()) return stay(std::move(first));
     const inverse::Pose start = response_.pose_of(std::move(first), true);
-    if (std::any_of(model_.actuators.begin(), model_.actuators.end(), [](const Actuator& a) { return rubs(a); }))
+    if (std::any_of(model_.actuators.begin(), model_.actuators.end(),
+                    [](const Actuator& a) { return has_friction(a); }))
       response_.come_from(start.equilibrium.state);
     inverse::SearchResult found = inverse::search_inverse(response_, start, settings);
     result_.iterations = found.iterations;
@@ -165,7 +166,7 @@ class Inverse {
   void try_from(int place, const inverse::Pose& start, const inverse::SearchSettings& settings,
                 inverse::SearchResult& best) {
     inverse::Pose there;
-    if (response_.go(evenly(place, start.shares.size()), start, there) == inverse::Response::Outcome::failed) return;
+    if (response_.go(evenly(place, start.fractions.size()), start, there) == inverse::Response::Outcome::failed) return;
     if (response_.interrupted()) {
       best.end = inverse::SearchEnd::interrupted;
       return;
@@ -181,7 +182,7 @@ class Inverse {
     }
   }
 
-  void tell_status(inverse::SearchEnd end, bool reached) {
+  void report_status(inverse::SearchEnd end, bool reached) {
     switch (end) {
       case inverse::SearchEnd::reached:
         break;
@@ -207,9 +208,9 @@ class Inverse {
 
   void conclude(inverse::SearchResult found, const inverse::SearchSettings& settings) {
     const bool reached = found.pose.miss <= 1;
-    tell_status(found.end, reached);
+    report_status(found.end, reached);
     result_.slope = found.slope;
-    tell_active(found, settings);
+    report_active(found, settings);
     const bool released = reached && found.slopes.sensitivity.regular &&
                           response_.release(found.pose, found.slopes, settings.preferred, settings.resolution_mm);
     const bool same = found.slopes.sensitivity.regular && !released && !(found.pose.idle.array() > 0).any();
@@ -219,22 +220,22 @@ class Inverse {
     finish(std::move(found.pose));
   }
 
-  /// Commands at an end of their range beyond which the error, or where there is none the distance from the preferred
-  /// actuation, would go on falling.
-  void tell_active(const inverse::SearchResult& found, const inverse::SearchSettings& settings) {
+  /// Reports the commands at an end of their range beyond which the error, or where there is none the distance from the
+  /// preferred actuation, would fall further.
+  void report_active(const inverse::SearchResult& found, const inverse::SearchSettings& settings) {
     constexpr double at_the_end = 1e-9;
     result_.active.assign(model_.actuators.size(), 0);
     const inverse::Pose& pose = found.pose;
-    if (found.slopes.terms.cols() != pose.shares.size()) return;
+    if (found.slopes.terms.cols() != pose.fractions.size()) return;
     const bool reached = pose.miss <= 1;
     const Eigen::VectorXd slope =
-        reached ? Eigen::VectorXd(pose.shares - settings.preferred)
+        reached ? Eigen::VectorXd(pose.fractions - settings.preferred)
                 : Eigen::VectorXd(found.slopes.terms.transpose() * pose.terms / pose.terms.norm());
     const double least = reached ? options_.preferred_tolerance : 1e-9 * found.slopes.terms.norm();
-    for (Index i = 0; i < pose.shares.size(); ++i) {
+    for (Index i = 0; i < pose.fractions.size(); ++i) {
       int& active = result_.active[response_.free()[i]];
-      if (pose.shares[i] <= at_the_end && slope[i] > least) active = -1;
-      if (pose.shares[i] >= 1 - at_the_end && slope[i] < -least) active = 1;
+      if (pose.fractions[i] <= at_the_end && slope[i] > least) active = -1;
+      if (pose.fractions[i] >= 1 - at_the_end && slope[i] < -least) active = 1;
     }
   }
 
@@ -250,7 +251,7 @@ class Inverse {
   }
 
   void finish(inverse::Pose pose) {
-    if (!is_told(pose.equilibrium) && !response_.interrupted()) look_at(pose.equilibrium);
+    if (!is_reported(pose.equilibrium) && !response_.interrupted()) look_at(pose.equilibrium);
     result_.errors_mm = response_.errors_at(pose.equilibrium.state);
     if (result_.status != InverseStatus::reached) result_.remark += untouched(pose.equilibrium.state);
     result_.equilibrium = std::move(pose.equilibrium);
@@ -268,10 +269,10 @@ class Inverse {
     return text;
   }
 
-  /// Has it a report, or was it taken for an equilibrium as it is?
-  static bool is_told(const Equilibrium& equilibrium) { return !equilibrium.report.solver.empty(); }
+  /// Has it a report, or was it accepted as an equilibrium without a solve?
+  static bool is_reported(const Equilibrium& equilibrium) { return !equilibrium.report.solver.empty(); }
 
-  /// Measures a start of which nothing is told.
+  /// Solves for a start that has no report.
   void look_at(Equilibrium& start) {
     Equilibrium found;
     if (response_.solve(start.state.actuation, start.state, found)) {
@@ -291,8 +292,8 @@ class Inverse {
   InverseResult result_;
 };
 
-/// Of a search that was stopped: by whom.
-void tell_stop(InverseResult& result, const Deadline& deadline) {
+/// Records the cause where a search was stopped.
+void report_stop(InverseResult& result, const Deadline& deadline) {
   result.stopped = result.stopped || result.status == InverseStatus::interrupted;
   if (!result.stopped || !deadline.passed()) return;
   result.status = InverseStatus::not_converged;
@@ -339,7 +340,7 @@ InverseResult solve_inverse(const Statics& statics, const std::vector<Goal>& goa
   check_options(model, start.state, options);
   const bool known = start.report.status == Status::converged;
   InverseResult result = Inverse(statics, goals, options, progress).solve(start, known);
-  tell_stop(result, options.statics.deadline);
+  report_stop(result, options.statics.deadline);
   result.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
   return result;
 }
@@ -360,9 +361,9 @@ InverseResult solve_inverse_from(const Statics& statics, const std::vector<Goal>
     result.stopped = first.report.stopped;
     result.status = result.stopped ? InverseStatus::interrupted : InverseStatus::not_converged;
     result.remark =
-        result.stopped ? "interrupted on the way to its start" : "the start has no equilibrium: " + first.report.remark;
+        result.stopped ? "interrupted before its start" : "the start has no equilibrium: " + first.report.remark;
     if (result.stopped && !any_force(goals)) result.errors_mm = goal_errors(model, goals, first.state.positions);
-    tell_stop(result, options.statics.deadline);
+    report_stop(result, options.statics.deadline);
     result.active.assign(model.actuators.size(), 0);
     result.equilibria = 1;
     result.equilibrium = std::move(first);

@@ -11,9 +11,9 @@ namespace softkin::inverse {
 namespace {
 
 constexpr double none = std::numeric_limits<double>::infinity();
-/// Share of the way below which an equilibrium on it is not worth having.
-constexpr double least_way = 0.02;
-/// Of slopes: steps and verdicts of a search need no more.
+/// Smallest completed fraction of a path at which the last equilibrium is used.
+constexpr double min_path = 0.02;
+/// Relative accuracy of slopes, sufficient for the steps and the termination of a search.
 constexpr double slope_accuracy = 1e-6;
 
 }  // namespace
@@ -27,8 +27,8 @@ RobotResponse::RobotResponse(const Statics& statics, const std::vector<Goal>& go
       free_(std::move(free)),
       progress_(progress),
       any_force_(any_force(goals)),
-      least_error_(none),
-      most_(options.max_equilibria) {
+      min_error_(none),
+      max_(options.max_equilibria) {
   for (std::size_t i = 0; i < free_.size(); ++i)
     if (pulls(free_[i])) cables_.push_back(i);
 }
@@ -43,21 +43,21 @@ double RobotResponse::width(Index actuator) const {
   return a.high - a.low;
 }
 
-Eigen::VectorXd RobotResponse::shares_of(const Actuation& actuation) const {
-  Eigen::VectorXd shares(free_.size());
-  for (Index i = 0; i < shares.size(); ++i) {
+Eigen::VectorXd RobotResponse::fractions_of(const Actuation& actuation) const {
+  Eigen::VectorXd fractions(free_.size());
+  for (Index i = 0; i < fractions.size(); ++i) {
     const Index a = free_[i];
-    shares[i] = (actuation[a] - model_.actuators[a].low) / width(a);
+    fractions[i] = (actuation[a] - model_.actuators[a].low) / width(a);
   }
-  return shares.cwiseMax(0).cwiseMin(1);
+  return fractions.cwiseMax(0).cwiseMin(1);
 }
 
-Actuation RobotResponse::actuation_of(const Eigen::VectorXd& shares, const Actuation& others) const {
+Actuation RobotResponse::actuation_of(const Eigen::VectorXd& fractions, const Actuation& others) const {
   Actuation actuation = others;
-  for (Index i = 0; i < shares.size(); ++i) {
+  for (Index i = 0; i < fractions.size(); ++i) {
     const Index a = free_[i];
     const Actuator& actuator = model_.actuators[a];
-    const double value = shares[i] < 1 ? actuator.low + shares[i] * width(a) : actuator.high;
+    const double value = fractions[i] < 1 ? actuator.low + fractions[i] * width(a) : actuator.high;
     actuation[a] = std::clamp(value, actuator.low, actuator.high);
   }
   return actuation;
@@ -83,7 +83,7 @@ Pose RobotResponse::pose_of(Equilibrium equilibrium, bool taut) const {
   pose.idle.setZero(free_.size());
   pose.tensions.setZero(cables_.size());
   if (taut) tauten(pose);
-  pose.shares = shares_of(pose.equilibrium.state.actuation);
+  pose.fractions = fractions_of(pose.equilibrium.state.actuation);
   return pose;
 }
 
@@ -105,8 +105,7 @@ void RobotResponse::tauten(Pose& pose) const {
 
 bool RobotResponse::solve(const Actuation& actuation, const State& from, Equilibrium& found) {
   const auto go_on = [this](const Progress&) {
-    const bool on =
-        !progress_ || progress_({static_cast<int>(history_.size()), least_error_, options_.tolerance_mm, -1});
+    const bool on = !progress_ || progress_({static_cast<int>(history_.size()), min_error_, options_.tolerance_mm, -1});
     interrupted_ = interrupted_ || !on;
     return on;
   };
@@ -115,7 +114,7 @@ bool RobotResponse::solve(const Actuation& actuation, const State& from, Equilib
   const double error = converged ? errors_at(found.state).maxCoeff() : none;
   interrupted_ = interrupted_ || found.report.stopped;
   history_.push_back({actuation, found.report.status, error, found.report.iterations});
-  least_error_ = std::min(least_error_, error);
+  min_error_ = std::min(min_error_, error);
   return converged;
 }
 
@@ -138,13 +137,13 @@ bool RobotResponse::release(Pose& pose, const Slopes& slopes, const Eigen::Vecto
   return true;
 }
 
-Response::Outcome RobotResponse::go(const Eigen::VectorXd& shares, const Pose& from, Pose& to) {
+Response::Outcome RobotResponse::go(const Eigen::VectorXd& fractions, const Pose& from, Pose& to) {
   const State& state = from.equilibrium.state;
   Equilibrium found;
-  const bool converged = solve(actuation_of(shares, state.actuation), origin_ ? *origin_ : state, found);
+  const bool converged = solve(actuation_of(fractions, state.actuation), origin_ ? *origin_ : state, found);
   if (interrupted_) return Outcome::interrupted;
   const bool halfway =
-      found.report.status == Status::limit && found.report.reached > least_way && found.state.share == 1;
+      found.report.status == Status::limit && found.report.reached > min_path && found.state.load_factor == 1;
   if (!converged && !halfway) return Outcome::failed;
   found.report.status = Status::converged;  // at the actuation of its state
   found.report.remark.clear();
@@ -152,11 +151,11 @@ Response::Outcome RobotResponse::go(const Eigen::VectorXd& shares, const Pose& f
   return converged ? Outcome::arrived : Outcome::halfway;
 }
 
-bool RobotResponse::foresee(const Eigen::VectorXd& shares, const Pose& from, Eigen::VectorXd& terms) {
+bool RobotResponse::extrapolate(const Eigen::VectorXd& fractions, const Pose& from, Eigen::VectorXd& terms) {
   const State& state = from.equilibrium.state;
   Points positions;
-  if (any_force_) return false;  // what is foreseen is a shape
-  if (!statics_.foresee(actuation_of(shares, state.actuation), state, options_.statics, positions)) return false;
+  if (any_force_) return false;  // the extrapolation gives a shape without forces
+  if (!statics_.extrapolate(actuation_of(fractions, state.actuation), state, options_.statics, positions)) return false;
   terms = goal_terms(model_, goals_, positions);
   return terms.allFinite();
 }
@@ -166,7 +165,7 @@ bool RobotResponse::slopes(const Pose& at, Slopes& slopes) {
   const bool given = options_.start_sensitivity != nullptr && history_.empty() && at.idle.isZero(0);
   if (given)
     slopes.sensitivity = *options_.start_sensitivity;
-  else if (!any_on_support(goals_))  // else it is asked for with the reactions
+  else if (!any_on_support(goals_))  // else it is computed with the reactions
     slopes.sensitivity = statics_.sensitivity(state, options_.statics, slope_accuracy);
   const std::vector<ExertionSlopes> exertions =
       exertion_slopes(statics_, goals_, at, options_.statics, slope_accuracy, slopes.sensitivity);

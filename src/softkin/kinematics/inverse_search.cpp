@@ -8,23 +8,24 @@ namespace softkin::inverse {
 
 namespace {
 
-constexpr double first_radius = 0.5, least_radius = 1e-8;
-constexpr double most_of = 0.9;  // a radius: a step that is longer is limited by it
-constexpr int most_level = 5;
+constexpr double first_radius = 0.5, min_radius = 1e-8;
+constexpr double max_of_radius = 0.9;  // of a radius: a longer step is limited by it
+constexpr int max_level = 5;
 constexpr double enough = 1e-4, good = 0.75, poor = 0.25;  // actual reduction over that predicted
-/// Slopes are updated instead of computed where the norm of the terms has become so much smaller.
+/// Slopes are updated instead of computed where the norm of the terms has fallen below this fraction.
 constexpr double quick = 0.1;
-constexpr double least_sideways = 0.1;  // of the preferred tolerance
-/// A step that is to leave less than this share of the errors meets the goals; what follows it shrinks by the other.
+constexpr double min_sideways = 0.1;  // of the preferred tolerance
+/// A step whose predicted errors are below the fraction `meets` of the present ones meets the goals; the step after it
+/// must be shorter by the factor `shrinks`.
 constexpr double meets = 0.01, shrinks = 0.5;
-constexpr double relative_slope = 1e-5;  // of the norm of the slopes, at which nothing helps
+constexpr double relative_slope = 1e-5;  // of the norm of the slopes: below it the pose is stationary
 
 class Search {
  public:
   Search(Response& response, const Pose& start, const SearchSettings& settings)
       : response_(response), settings_(settings) {
     result_.pose = start;
-    const Eigen::Index free = start.shares.size();
+    const Eigen::Index free = start.fractions.size();
     secant_.setZero(free, free);
     limits_.resolution_mm = settings.resolution_mm;
     limits_.radius = first_radius;
@@ -49,19 +50,19 @@ class Search {
 
   /// Ends with the slopes of the pose itself.
   void finish(SearchEnd end) {
-    if (pose().miss > 1 && best_.shares.size() > 0) return_to_best();
+    if (pose().miss > 1 && best_.fractions.size() > 0) return_to_best();
     result_.end = fresh_ || renew() ? end : SearchEnd::stuck;
     finished_ = true;
   }
 
   bool renew() {
     fresh_ = response_.slopes(pose(), result_.slopes);
-    none_.setZero(pose().shares.size(), pose().shares.size());
+    none_.setZero(pose().fractions.size(), pose().fractions.size());
     if (fresh_) result_.slope = projected_slope(pose(), result_.slopes);
     return fresh_;
   }
 
-  /// Finds the next step; true where none is needed. Updated slopes do for a step, not for a verdict.
+  /// Finds the next step; true where none is needed. Updated slopes are sufficient for a step, not for termination.
   bool finished() {
     for (int look = 0; !finished_ && look < 2; ++look) {
       step_ = find_step(pose(), result_.slopes, curvature(), settings_.preferred, limits_);
@@ -84,15 +85,16 @@ class Search {
     return slope <= std::max(relative_slope, known) * result_.slopes.terms.norm();
   }
 
-  /// Of a step that is to meet the goals, what it is foreseen to leave is met as well, where that is little.
+  /// Extends a step that is to meet the goals: where the extrapolated errors after it are small, it is corrected for
+  /// them.
   void look_ahead() {
     constexpr double little = 0.3;  // of the errors, and of the step
     if (!fresh_ || pose().miss <= 1 || !(step_.predicted_norm < meets * pose().terms.norm())) return;
     Pose ahead = pose();
-    ahead.shares += step_.move;
-    if (!response_.foresee(ahead.shares, pose(), ahead.terms)) return;
+    ahead.fractions += step_.move;
+    if (!response_.extrapolate(ahead.fractions, pose(), ahead.terms)) return;
     if (!(ahead.terms.norm() < little * pose().terms.norm())) return;
-    const InverseStep rest = find_step(ahead, result_.slopes, none_, ahead.shares, limits_);
+    const InverseStep rest = find_step(ahead, result_.slopes, none_, ahead.fractions, limits_);
     if (rest.move.norm() < little * step_.move.norm()) step_.move += rest.move;
   }
 
@@ -100,10 +102,10 @@ class Search {
     ++result_.iterations;
     look_ahead();
     Pose trial;
-    const auto outcome = response_.go(pose().shares + step_.move, pose(), trial);
+    const auto outcome = response_.go(pose().fractions + step_.move, pose(), trial);
     if (outcome == Response::Outcome::interrupted) return end_at_once(SearchEnd::interrupted);
     if (outcome == Response::Outcome::failed) return shorten();
-    const Eigen::VectorXd move = trial.shares - pose().shares;
+    const Eigen::VectorXd move = trial.fractions - pose().fractions;
     if (!(move.norm() > 0)) return shorten();
     if (pose().miss <= 1) return take(std::move(trial), move);
     const double predicted = predicted_reduction(pose(), result_.slopes, curvature(), move);
@@ -113,35 +115,35 @@ class Search {
       if (leads_on(trial)) return take(std::move(trial), move);
       if (!fresh_) return look_again();
       if (!unmeasurable()) return shorten();
-      // the slopes can still tell where the error, as far as it is known, is level
-      if (level_++ < most_level && trial.terms.norm() <= pose().terms.norm() + settings_.accuracy_mm)
+      // the slopes still determine a step where the change of the error is below its accuracy
+      if (level_++ < max_level && trial.terms.norm() <= pose().terms.norm() + settings_.accuracy_mm)
         return take(std::move(trial), move);
       return finish(SearchEnd::stationary);
     }
     const double length = move.cwiseAbs().maxCoeff();
     if (outcome == Response::Outcome::halfway || actual < poor * predicted) {
-      limits_.radius = std::max(0.5 * length, 10 * least_radius);
-    } else if (actual > good * predicted && length > most_of * limits_.radius) {
+      limits_.radius = std::max(0.5 * length, 10 * min_radius);
+    } else if (actual > good * predicted && length > max_of_radius * limits_.radius) {
       limits_.radius = std::min(1.0, 2 * limits_.radius);
     }
     take(std::move(trial), move);
   }
 
-  /// Would the whole step gain less than what poses are known to?
+  /// Is the predicted reduction of the whole step below the accuracy of poses?
   [[nodiscard]] bool unmeasurable() const {
     return step_.predicted < settings_.accuracy_mm * result_.pose.terms.norm() &&
-           step_.move.cwiseAbs().maxCoeff() < most_of * limits_.radius;
+           step_.move.cwiseAbs().maxCoeff() < max_of_radius * limits_.radius;
   }
 
-  /// Where actuators move the goals unequally far, the way to them is a narrow bend: a step that was to meet them and
-  /// increases the errors is good if the one that follows it is much shorter (Deuflhard 2011: natural monotonicity).
+  /// Where actuators move the goals unequally far, the path to them is a narrow bend: a step that was to meet them and
+  /// increases the errors is accepted if the step after it is much shorter (Deuflhard 2011: natural monotonicity).
   bool leads_on(const Pose& trial) {
     const double length = step_.move.norm();
-    if (!fresh_ || !(step_.predicted_norm < meets * pose().terms.norm()) || !(length < most_bend_ * shrinks))
+    if (!fresh_ || !(step_.predicted_norm < meets * pose().terms.norm()) || !(length < max_bend_ * shrinks))
       return false;
-    const InverseStep next = find_step(trial, result_.slopes, none_, trial.shares, limits_);
+    const InverseStep next = find_step(trial, result_.slopes, none_, trial.fractions, limits_);
     if (!(next.move.norm() < shrinks * length)) return false;
-    most_bend_ = length;
+    max_bend_ = length;
     return true;
   }
 
@@ -156,17 +158,17 @@ class Search {
 
   void shorten() {
     limits_.radius = 0.25 * std::min(limits_.radius, step_.move.cwiseAbs().maxCoeff());
-    if (limits_.radius < least_radius) finish(pose().miss <= 1 ? SearchEnd::reached : SearchEnd::stuck);
+    if (limits_.radius < min_radius) finish(pose().miss <= 1 ? SearchEnd::reached : SearchEnd::stuck);
   }
 
-  /// Which model has told the reduction better: with or without the curvature of the terms?
+  /// Chooses the model that predicted the reduction better: with or without the curvature of the terms.
   void choose_model(const Eigen::VectorXd& move, double actual) {
     const double plain = predicted_reduction(pose(), result_.slopes, none_, move);
     const double full = predicted_reduction(pose(), result_.slopes, secant_, move);
     use_secant_ = std::abs(full - actual) < std::abs(plain - actual);
   }
 
-  /// Goes on from the trial, with updated slopes where that is quick, else with its own.
+  /// Continues from the trial, with updated slopes where the errors fall fast, else with new ones.
   void take(Pose trial, const Eigen::VectorXd& move) {
     const bool update = trial.miss <= 1 || trial.terms.norm() < quick * pose().terms.norm();
     const Pose from = std::exchange(pose(), std::move(trial));
@@ -183,19 +185,19 @@ class Search {
     if (pose().miss <= 1) compare();
   }
 
-  /// Of poses that reach the goals keeps the one nearest to the preferred actuation.
+  /// Keeps, of the poses that reach the goals, the one nearest to the preferred actuation.
   void compare() {
     const double distance = distance_from(pose(), settings_.preferred);
-    if (best_.shares.size() == 0 || distance < best_distance_) {
+    if (best_.fractions.size() == 0 || distance < best_distance_) {
       best_ = pose();
       best_slopes_ = result_.slopes;
       best_fresh_ = fresh_;
       best_distance_ = distance;
       return;
     }
-    limits_.sideways = 0.25 * std::min(limits_.sideways, (pose().shares - best_.shares).cwiseAbs().maxCoeff());
+    limits_.sideways = 0.25 * std::min(limits_.sideways, (pose().fractions - best_.fractions).cwiseAbs().maxCoeff());
     return_to_best();
-    if (limits_.sideways < least_sideways * settings_.preferred_tolerance) finish(SearchEnd::reached);
+    if (limits_.sideways < min_sideways * settings_.preferred_tolerance) finish(SearchEnd::reached);
   }
 
   void return_to_best() {
@@ -205,7 +207,7 @@ class Search {
     if (fresh_) result_.slope = projected_slope(pose(), result_.slopes);
   }
 
-  /// Secant curvature of the terms, sized down where their errors vanish.
+  /// Updates the secant curvature of the terms, which is scaled down where their errors vanish.
   void learn(const Eigen::MatrixXd& before, const Eigen::VectorXd& terms_before, const Eigen::VectorXd& move) {
     const Eigen::MatrixXd& after = result_.slopes.terms;
     const Eigen::VectorXd bent = (after - before).transpose() * pose().terms;
@@ -228,21 +230,21 @@ class Search {
   Pose best_;  // reaches the goals, nearest to the preferred actuation so far
   Slopes best_slopes_;
   double best_distance_ = 0;
-  int level_ = 0;          // steps so far that gained less than can be measured
-  double most_bend_ = 10;  // longest step that may increase the errors, all shares together
+  int level_ = 0;         // steps so far that gained less than can be measured
+  double max_bend_ = 10;  // longest step that may increase the errors, norm of all fractions
   bool fresh_ = false, best_fresh_ = false, use_secant_ = false, finished_ = false;
 };
 
-constexpr double tau = 0.1;           // by which a step shrinks
-constexpr double least_step = 1e-12;  // of every share
-constexpr double least_difference = 1e-5, most_difference = 1e-2;
+constexpr double tau = 0.1;         // by which a step shrinks
+constexpr double min_step = 1e-12;  // of every fraction
+constexpr double min_difference = 1e-5, max_difference = 1e-2;
 
 class Descent {
  public:
   Descent(RobotResponse& response, double diagonal_mm, double accuracy_mm, Pose& pose)
       : response_(response), diagonal_mm_(diagonal_mm), accuracy_mm_(accuracy_mm), pose_(pose) {}
 
-  /// One iteration of Algorithm 2, a line search by Eq. (15); false where it leads nowhere.
+  /// One iteration of Algorithm 2, a line search by Eq. (15); false where it fails.
   bool iterate(std::string& remark) {
     remark = "the interruption";
     if (!differences()) {
@@ -254,7 +256,7 @@ class Descent {
     while (!improves(step, pose_, best)) {
       if (response_.interrupted()) return false;
       step *= tau;
-      if (step * gradient_.cwiseAbs().maxCoeff() < least_step) {
+      if (step * gradient_.cwiseAbs().maxCoeff() < min_step) {
         remark = "no step along the gradient reduces the error";
         return false;
       }
@@ -270,18 +272,18 @@ class Descent {
 
   /// Is the pose a step down the gradient better than another one?
   bool improves(double step, const Pose& than, Pose& trial) {
-    const Eigen::VectorXd shares = (pose_.shares - step * gradient_).cwiseMax(0).cwiseMin(1);
-    if (shares == than.shares) return false;
-    return response_.go(shares, than, trial) == Response::Outcome::arrived && objective(trial) < objective(than);
+    const Eigen::VectorXd fractions = (pose_.fractions - step * gradient_).cwiseMax(0).cwiseMin(1);
+    if (fractions == than.fractions) return false;
+    return response_.go(fractions, than, trial) == Response::Outcome::arrived && objective(trial) < objective(than);
   }
 
-  /// The gradient of Eq. (14), by shares; false where an equilibrium is missing.
+  /// Computes the gradient of Eq. (14), by fractions; false where an equilibrium is missing.
   bool differences() {
     const double reach = std::cbrt(6 * accuracy_mm_ * pose_.terms.norm() / (diagonal_mm_ * diagonal_mm_));
-    const double difference = std::clamp(reach, least_difference, most_difference);
-    gradient_.resize(pose_.shares.size());
+    const double difference = std::clamp(reach, min_difference, max_difference);
+    gradient_.resize(pose_.fractions.size());
     for (Index i = 0; i < gradient_.size(); ++i) {
-      Eigen::VectorXd high = pose_.shares, low = pose_.shares;
+      Eigen::VectorXd high = pose_.fractions, low = pose_.fractions;
       high[i] = std::min(1.0, high[i] + difference);
       low[i] = std::max(0.0, low[i] - difference);
       Pose above, below;

@@ -6,14 +6,14 @@
 namespace softkin::inverse {
 
 struct SearchSettings {
-  Eigen::VectorXd preferred;          // f, shares
+  Eigen::VectorXd preferred;          // f, fractions
   double resolution_mm = 1e-4;        // see StepLimits
-  double accuracy_mm = 1e-5;          // to which poses are known
-  double preferred_tolerance = 1e-3;  // share of a range that may be missing to the nearest actuation
+  double accuracy_mm = 1e-5;          // of poses
+  double preferred_tolerance = 1e-3;  // fraction of a range by which the nearest actuation may be missed
 };
 
-/// reached: every goal, as near to the preferred actuation as can be. stationary: no move helps, to first order.
-/// no_left: of the poses it may ask for. stuck: no shorter step leads on.
+/// reached: every goal, as near to the preferred actuation as possible. stationary: no move helps, to first order.
+/// none_left: the limit of poses is reached. stuck: no shorter step succeeds.
 enum class SearchEnd { reached, stationary, none_left, stuck, interrupted };
 
 struct SearchResult {
@@ -24,9 +24,10 @@ struct SearchResult {
   int iterations = 0;
 };
 
-/// Least sum of squares in the ranges, nearest to the preferred actuation of all that reach the goals.
+/// Finds the minimum of the sum of squares in the ranges; of all poses that reach the goals, the one nearest to the
+/// preferred actuation.
 ///
-/// source  Gauss-Newton in a trust region (More 1978); where the errors stay, with the secant curvature of Dennis, Gay
+/// source  Gauss-Newton in a trust region (More 1978); where errors remain, with the secant curvature of Dennis, Gay
 ///         and Welsch 1981 (NL2SOL); between poses that reach their goals Broyden's update instead of new slopes
 [[nodiscard]] SearchResult search_inverse(Response& response, const Pose& start, const SearchSettings& settings);
 
@@ -35,11 +36,11 @@ struct SearchResult {
 ///
 /// response    keeps cables slack
 /// returns     the best pose; false where it stopped before a goal's error was within the tolerance
-/// deviation   descends, sets J_opt and refreshes J_0, which the printed one does not; shares of the ranges instead of
-///             the commands' own units; the step of the differences as below
+/// deviation   descends, sets J_opt and refreshes J_0, which the printed one does not; fractions of the ranges instead
+///             of the commands' own units; the step of the differences as below
 /// difference  c = cbrt(6 a sqrt(J) / d^2) of a range, 1e-5 <= c <= 1e-2: where the noise of J, 2 a sqrt(J) with a [mm]
-///             the accuracy of the poses, is as large as what the differences leave out, taking the third derivative
-///             for d^2, d the robot's diagonal [mm]; one-sided at the end of a range
+///             the accuracy of the poses, equals the truncation error of the differences, with d^2 for the third
+///             derivative, d the robot's diagonal [mm]; one-sided at the end of a range
 [[nodiscard]] bool descend(RobotResponse& response, double diagonal_mm, double accuracy_mm, int max_iterations,
                            Pose& pose, int& iterations, std::string& remark);
 

@@ -8,9 +8,9 @@ namespace softkin::inverse {
 
 namespace {
 
-/// What is nearer than this to a range's end, in shares of the ranges, is there.
+/// A command nearer than this to an end of its range, as a fraction of the range, is at that end.
 constexpr double at_the_end = 1e-9;
-/// A gradient that leads over an end of a range, or a tension of zero, nearer than this leads nowhere.
+/// The distance to an end of a range, or to a tension of zero, below which a gradient that leads beyond it is blocked.
 constexpr double held_back = 1e-6;
 
 /// Moves that stay in the ranges and the radius and slacken no cable: rows move >= bounds.
@@ -19,13 +19,13 @@ struct Region {
   Eigen::VectorXd bounds;
 
   Region(const Pose& pose, const Slopes& slopes, double radius) {
-    const Eigen::Index free = pose.shares.size(), cables = pose.tensions.size();
+    const Eigen::Index free = pose.fractions.size(), cables = pose.tensions.size();
     rows.setZero(2 * free + cables, free);
     bounds.resize(2 * free + cables);
     rows.topRows(free).setIdentity();
     rows.middleRows(free, free).diagonal().setConstant(-1);
-    bounds.head(free) = (-pose.shares).cwiseMax(-radius);
-    bounds.segment(free, free) = -(1 - pose.shares.array()).min(radius);
+    bounds.head(free) = (-pose.fractions).cwiseMax(-radius);
+    bounds.segment(free, free) = -(1 - pose.fractions.array()).min(radius);
     for (Eigen::Index i = 0; i < cables; ++i) {
       const double scale = slopes.tensions.row(i).norm();
       rows.row(2 * free + i) = slopes.tensions.row(i) / (scale > 0 ? scale : 1);
@@ -34,8 +34,8 @@ struct Region {
   }
 };
 
-/// Are all eigenvalues above so much? By determinant and trace, the others being as large as they may: where that does
-/// not tell, false.
+/// Are all eigenvalues above a bound, by determinant and trace with the largest possible other eigenvalues? Returns
+/// false where this does not decide.
 bool clearly_above(const Eigen::MatrixXd& symmetric, double least) {
   const CholeskyFactor factor(symmetric);
   if (!factor.positive()) return false;
@@ -47,8 +47,8 @@ bool clearly_above(const Eigen::MatrixXd& symmetric, double least) {
   return bound > least;
 }
 
-/// Directions that move nothing, as columns: by the singular values of the slopes, as those of J^T J, which usually
-/// show that there are none, are known to the root of rounding only.
+/// Returns the directions without effect, as columns: by the singular values of the slopes, as the eigenvalues of J^T
+/// J, which usually show that there are none, are accurate to the root of the rounding error only.
 ///
 /// normal  J^T J
 Eigen::MatrixXd blind_directions(const Eigen::MatrixXd& slopes, const Eigen::MatrixXd& normal, double resolution_mm) {
@@ -60,8 +60,8 @@ Eigen::MatrixXd blind_directions(const Eigen::MatrixXd& slopes, const Eigen::Mat
   return singular.right.rightCols(slopes.cols() - seen);
 }
 
-/// Positive definite: the magnitudes of its curvatures. Directions that move nothing are made stiff: over them rounding
-/// would decide.
+/// Returns a positive definite matrix with the magnitudes of the Hessian's curvatures. Directions without effect are
+/// made stiff, as rounding would determine the step along them.
 Eigen::MatrixXd made_definite(const Eigen::MatrixXd& hessian, double resolution_mm) {
   constexpr double known = 1e-14;
   if (clearly_above(hessian, std::max(resolution_mm * resolution_mm, known * hessian.trace()))) return hessian;
@@ -73,17 +73,18 @@ Eigen::MatrixXd made_definite(const Eigen::MatrixXd& hessian, double resolution_
   return eigen.vectors * made.asDiagonal() * eigen.vectors.transpose();
 }
 
-/// A slack cable that is preferred longer than its path is there already, whatever its path.
+/// Returns the weights of the distances from the preferred actuation. A slack cable that is preferred longer than its
+/// path has reached it already.
 Eigen::VectorXd weights_of(const Pose& pose, const Eigen::VectorXd& preferred) {
   constexpr double hardly = 1e-6;  // keeps the program definite
-  return (pose.idle.array() > 0 && preferred.array() >= pose.shares.array())
-      .select(Eigen::VectorXd::Constant(pose.shares.size(), hardly), Eigen::VectorXd::Ones(pose.shares.size()));
+  return (pose.idle.array() > 0 && preferred.array() >= pose.fractions.array())
+      .select(Eigen::VectorXd::Constant(pose.fractions.size(), hardly), Eigen::VectorXd::Ones(pose.fractions.size()));
 }
 
-/// What rounding leaves at the end of a range is there.
-Eigen::VectorXd ended(Eigen::VectorXd shares) {
-  for (double& share : shares) share = share < at_the_end ? 0 : share > 1 - at_the_end ? 1 : share;
-  return shares;
+/// Sets fractions that differ from an end of the range by rounding to that end.
+Eigen::VectorXd ended(Eigen::VectorXd fractions) {
+  for (double& fraction : fractions) fraction = fraction < at_the_end ? 0 : fraction > 1 - at_the_end ? 1 : fraction;
+  return fractions;
 }
 
 /// Moves along the blind directions to the point nearest to the preferred actuation.
@@ -91,7 +92,7 @@ Eigen::VectorXd sideways_move(const Pose& pose, const Eigen::MatrixXd& blind, co
                               const Eigen::VectorXd& move, const Eigen::VectorXd& preferred) {
   const Eigen::VectorXd weights = weights_of(pose, preferred);
   const Eigen::MatrixXd h = blind.transpose() * weights.asDiagonal() * blind;
-  const Eigen::VectorXd g = blind.transpose() * weights.cwiseProduct(pose.shares + move - preferred);
+  const Eigen::VectorXd g = blind.transpose() * weights.cwiseProduct(pose.fractions + move - preferred);
   const Eigen::VectorXd along = solve_small_program(h, g, region.rows * blind, region.bounds - region.rows * move);
   return blind * along;
 }
@@ -107,7 +108,7 @@ class SmallProgram {
   /// False where rounding lets it find none.
   bool solve() {
     for (Eigen::Index round = 0; round < 10 * (rows_.rows() + 1); ++round) {
-      const Eigen::Index row = most_violated();
+      const Eigen::Index row = max_violated();
       if (row < 0) return true;
       if (!meet(row)) return false;
     }
@@ -116,7 +117,7 @@ class SmallProgram {
   [[nodiscard]] const Eigen::VectorXd& at() const { return at_; }
 
  private:
-  [[nodiscard]] Eigen::Index most_violated() const {
+  [[nodiscard]] Eigen::Index max_violated() const {
     Eigen::Index found = -1;
     double most = 0;
     for (Eigen::Index i = 0; i < rows_.rows(); ++i) {
@@ -194,7 +195,7 @@ double predicted_reduction(const Pose& pose, const Slopes& slopes, const Eigen::
 }
 
 double distance_from(const Pose& pose, const Eigen::VectorXd& preferred) {
-  const Eigen::VectorXd apart = pose.shares - preferred;
+  const Eigen::VectorXd apart = pose.fractions - preferred;
   return 0.5 * apart.dot(weights_of(pose, preferred).cwiseProduct(apart));
 }
 
@@ -216,7 +217,7 @@ InverseStep find_step(const Pose& pose, const Slopes& slopes, const Eigen::Matri
     step.sideways = more.cwiseAbs().maxCoeff();
     step.move += more * std::min(1.0, limits.sideways / std::max(step.sideways, 1e-300));
   }
-  step.move = ended(pose.shares + step.move) - pose.shares;
+  step.move = ended(pose.fractions + step.move) - pose.fractions;
   return step;
 }
 
@@ -226,7 +227,7 @@ double projected_slope(const Pose& pose, const Slopes& slopes) {
   Region region(pose, slopes, 1);
   for (Eigen::Index i = 0; i < region.bounds.size(); ++i)
     region.bounds[i] = region.bounds[i] > -held_back ? 0 : -HUGE_VAL;
-  const Eigen::Index free = pose.shares.size();
+  const Eigen::Index free = pose.fractions.size();
   const Eigen::VectorXd gradient = slopes.terms.transpose() * pose.terms / norm;
   return solve_small_program(Eigen::MatrixXd::Identity(free, free), gradient, region.rows, region.bounds).norm();
 }

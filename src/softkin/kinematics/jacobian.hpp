@@ -20,7 +20,8 @@ namespace softkin {
 [[nodiscard]] Eigen::MatrixXd jacobian(const Statics& statics, const Equilibrium& equilibrium,
                                        const std::vector<Index>& markers);
 
-/// How a marker moves with a number of the robot, with the vertices and in them [mm per unit of the number].
+/// Returns the derivative of a marker by a parameter of the robot, through the motion of the vertices and through its
+/// place among them [mm per unit of the number].
 ///
 /// number  the robot with it a little larger and smaller
 /// moves   of the vertices, #V by 3 [mm per unit of the number]

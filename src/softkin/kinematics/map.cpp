@@ -9,7 +9,7 @@ namespace softkin {
 
 namespace {
 
-constexpr std::size_t most_cables = 12;
+constexpr std::size_t max_cables = 12;
 
 void check(bool fits, const char* what) {
   if (!fits) throw InvalidInput(std::string("the map is broken: ") + what);
@@ -40,7 +40,7 @@ void check_tree(const MapPiece& piece) {
   }
 }
 
-using Scaled = std::array<double, maps::most_variables>;
+using Scaled = std::array<double, maps::max_variables>;
 
 /// Commands of a piece over the box of a cell, from -1 to 1.
 Scaled scaled(const MapPiece& piece, const MapCell& cell, const double* commands) {
@@ -57,8 +57,8 @@ Scaled scaled(const MapPiece& piece, const MapCell& cell, const double* commands
 KinematicMap::KinematicMap(MapData data) : data_(std::move(data)) {
   const std::size_t cables = data_.cables.size();
   const auto in_range = [](Index i, std::size_t size) { return i >= 0 && i < static_cast<Index>(size); };
-  check(cables <= most_cables, "it has too many cables");
-  check(data_.inputs.size() <= maps::most_variables, "it has too many inputs");
+  check(cables <= max_cables, "it has too many cables");
+  check(data_.inputs.size() <= maps::max_variables, "it has too many inputs");
   for (const MapCable& cable : data_.cables) {
     check(cable.input == -1 || in_range(cable.input, data_.inputs.size()), "a cable has another input");
     check(in_range(cable.tension, data_.outputs.size()) && in_range(cable.ratio, data_.outputs.size()),
@@ -178,9 +178,9 @@ std::optional<KinematicMap::Place> KinematicMap::evaluate_taut(const std::vector
 std::optional<std::vector<bool>> KinematicMap::missing_piece(const double* commands, double* values) const {
   Index taut = 0;
   if (find(commands, values, nullptr, taut).piece >= 0) return std::nullopt;
-  std::vector<bool> asked(data_.cables.size());
-  for (std::size_t c = 0; c < asked.size(); ++c) asked[c] = (taut >> c) & 1;
-  return asked;
+  std::vector<bool> requested(data_.cables.size());
+  for (std::size_t c = 0; c < requested.size(); ++c) requested[c] = (taut >> c) & 1;
+  return requested;
 }
 
 namespace {

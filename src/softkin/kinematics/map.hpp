@@ -15,14 +15,14 @@ struct MapInput {
   double low = 0, high = 0;  // ends of its range, in its unit
 };
 
-/// A number that a map gives.
+/// A number that a map returns.
 struct MapOutput {
   std::string name;     // "tip_x", "air_pressure", "tendon1_ratio"
   std::string unit;     // "mm", "kPa", "N" or ""
-  double accuracy = 0;  // that was asked for, in its unit; 0: none
+  double accuracy = 0;  // requested, in its unit; 0: none
 };
 
-/// A cable whose length is commanded: it goes slack where it would push.
+/// A cable whose length is commanded: it becomes slack where it would push.
 struct MapCable {
   Index actuator = 0;              // in the robot's order
   Index input = -1;                // -1: its command is always the same
@@ -37,7 +37,7 @@ struct MapCell {
   maps::Polynomials modes;    // amplitudes of MapShape's; none: count() == 0
 };
 
-/// The box of all commands, halved again and again: a node tells where, or the cell that it is.
+/// A node of the binary tree that halves the box of all commands: it contains where its box is halved, or its cell.
 struct MapNode {
   int variable = -1;              // of the piece's inputs; -1: a cell, or none
   double at = 0;                  // commands below it: first
@@ -45,7 +45,7 @@ struct MapNode {
   Index cell = -1;                // -1: outside the map
 };
 
-/// All shapes in which the same cables pull, as functions of what does not hang slack.
+/// All shapes in which the same cables are taut, as functions of the commands of these and of the other actuators.
 struct MapPiece {
   std::vector<bool> taut;      // per cable
   std::vector<Index> inputs;   // that it depends on
@@ -53,17 +53,17 @@ struct MapPiece {
   std::vector<MapCell> cells;  // boxes with their polynomials, by MapNode::cell
 };
 
-/// The whole shape: mean + modes times amplitudes. 16 bits of each mode tell less than 0.01 % of it wrong.
+/// The whole shape: mean + modes times amplitudes. The rounding error of 16 bits is less than 0.01 % of each mode.
 struct MapShape {
   Eigen::VectorXf mean;                                               // 3 #V: x, y, z of each vertex [mm]
   Eigen::Matrix<std::int16_t, Eigen::Dynamic, Eigen::Dynamic> modes;  // 3 #V by #modes
   Eigen::VectorXd units;                                              // #modes: of modes [mm per unit of amplitude]
-  double accuracy_mm = 0;                                             // that was asked for of every vertex
+  double accuracy_mm = 0;                                             // requested, of every vertex
 };
 
-/// How far a map was from the solver at actuations that it was not made of. Not a bound.
+/// The errors of a map against the solver at actuations that it was not made from. They are not a bound.
 struct MapCheck {
-  Index points = 0;                                // inside the map; so many were solved
+  Index points = 0;                                // inside the map that were solved
   Index outside = 0;                               // of them that the map refuses, or the solver has no equilibrium for
   std::uint64_t seed = 0;                          // of the random actuations
   Eigen::VectorXd largest, mean;                   // per output, in its unit
@@ -79,56 +79,58 @@ struct MapData {
   std::vector<MapInput> inputs;    // in the robot's order
   std::vector<MapOutput> outputs;  // coordinates of markers, then loads and ratios
   std::vector<MapCable> cables;    // whose lengths are commanded
-  std::vector<MapPiece> pieces;    // by what is taut
+  std::vector<MapPiece> pieces;    // one for each set of taut cables
   std::optional<MapShape> shape;   // none: markers, loads and ratios alone
   MapCheck check;                  // how far it is from the solver
   Index equilibria = 0;            // that it was made of
 };
 
-/// Answers of a map: microseconds, no memory.
+/// Evaluates a map: in microseconds, without allocating memory.
 class KinematicMap {
  public:
   /// throws  InvalidInput where parts of the data do not fit together
   explicit KinematicMap(MapData data);
 
-  /// What it was made of.
+  /// Returns the data that it was made from.
   [[nodiscard]] const MapData& data() const { return data_; }
-  /// How many commands it takes.
+  /// Returns the number of its commands.
   [[nodiscard]] Index inputs() const { return data_.inputs.size(); }
-  /// How many numbers it gives.
+  /// Returns the number of its outputs.
   [[nodiscard]] Index outputs() const { return data_.outputs.size(); }
 
-  /// Where commands lead: a cell of a piece.
+  /// The cell of a piece that contains given commands.
   struct Place {
     Index piece = -1, cell = -1;  // -1: there is none
   };
 
   /// commands  one per input
   /// values    one per output; of a slack cable the ratio that its path has
-  /// slopes    inputs by outputs, by rows [unit of the output per unit of the command]; null: not asked for
+  /// slopes    inputs by outputs, by rows [unit of the output per unit of the command]; null: not requested
   /// returns   nothing where the commands are outside the map
   std::optional<Place> evaluate(const double* commands, double* values, double* slopes = nullptr) const;
 
-  /// The same while certain cables are taut, whether they pull or push; nothing where the map has no such piece
-  /// or cell.
+  /// Evaluates the same while certain cables are taut, whether they pull or push; returns nothing where the map has no
+  /// such piece or cell.
   ///
   /// taut  per cable
   std::optional<Place> evaluate_taut(const std::vector<bool>& taut, const double* commands, double* values,
                                      double* slopes) const;
 
-  /// What is taut where the commands ask for a piece that the map does not have; nothing where it has all they ask for.
+  /// Returns which cables are taut where the commands need a piece that the map does not have; nothing where it has all
+  /// the pieces that they need.
   ///
   /// values  one per output, scratch
   [[nodiscard]] std::optional<std::vector<bool>> missing_piece(const double* commands, double* values) const;
 
-  /// Of commands at a place that evaluate() has given.
+  /// Returns the shape for commands at a place that evaluate() has returned.
   ///
   /// throws  InvalidInput on a map without shape
   [[nodiscard]] Points shape(const double* commands, const Place& place) const;
-  /// Its slopes by each input, #V by 3 [mm per unit of the command]; zeros by those that the piece does not depend on.
+  /// Returns its slopes by each input, #V by 3 [mm per unit of the command]; zeros for those on which the piece does
+  /// not depend.
   [[nodiscard]] std::vector<Points> shape_slopes(const double* commands, const Place& place) const;
 
-  /// Of a robot's m commands those that the map takes.
+  /// Returns those of a robot's m commands that the map takes.
   ///
   /// throws  InvalidInput naming the actuator: one that has another command than the map was made with
   [[nodiscard]] Eigen::VectorXd commands(const Actuation& actuation) const;

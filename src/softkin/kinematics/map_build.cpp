@@ -17,23 +17,23 @@ using maps::PieceFit;
 using maps::PieceSolver;
 using maps::Sample;
 
-/// Of what was wanted, where a check was not met.
+/// Factor on the accuracy for the refinement after a failed check.
 constexpr double stricter = 0.3;
-constexpr int most_rounds = 4;
-/// After so many equilibria that were sought for each input, of which at most this fraction exists while no part of the
-/// map is accurate yet, a map is given up.
+constexpr int max_rounds = 4;
+/// A map is given up after this number of solves for each input, if at most this fraction of them has an equilibrium
+/// and no part of the map is accurate yet.
 constexpr Index samples_per_input = 12;
 constexpr double min_good_fraction = 0.67;
-/// Points at which a map is asked which cables hang slack.
+/// Number of points at which a map is searched for combinations of slack cables.
 constexpr Index looks = 4000;
 
 void check_options(const MapOptions& options) {
   if (!(options.accuracy_mm > 0) || !(options.load_accuracy >= 0) || !(options.ratio_accuracy > 0) ||
-      !(options.shape_accuracy_mm >= 0) || options.most_equilibria < 1 || options.checks < 1 || options.threads < 1)
+      !(options.shape_accuracy_mm >= 0) || options.max_equilibria < 1 || options.checks < 1 || options.threads < 1)
     throw InvalidInput("a map's accuracies are positive, its equilibria, checks and threads 1 or more");
 }
 
-/// So many vertices of the robot, each as far as can be from those before.
+/// Returns `count` vertices of the robot, each as far as possible from those before.
 std::vector<Index> spread_vertices(const Model& model, Index count) {
   std::vector<Index> chosen;
   Eigen::VectorXd away = Eigen::VectorXd::Constant(model.robot_vertices(), std::numeric_limits<double>::infinity());
@@ -60,11 +60,11 @@ class Builder {
     result_.data = maps::outline_of(model);
     wanted_.accuracy.resize(data().outputs.size());
     wanted_.probes = spread_vertices(model, 24);
-    wanted_.most = options.most_equilibria;
+    wanted_.most = options.max_equilibria;
   }
 
   bool build() {
-    for (int round = 0; round < most_rounds; ++round) {
+    for (int round = 0; round < max_rounds; ++round) {
       if (!refine() || !fit_shape() || !check(round)) return false;
       if (result_.accurate || gave_up_) break;
       strictness_ *= stricter;
@@ -90,7 +90,7 @@ class Builder {
     return slack.empty() ? (piece.taut.empty() ? "sampling" : "all cables taut") : slack + " slack";
   }
 
-  /// All pieces that commands ask for, each as accurate as is wanted.
+  /// Refines all pieces that the commands need, each to the requested accuracy.
   bool refine() {
     for (auto& piece : pieces_) earlier_[piece->made.taut] = piece->fit->take_samples();
     pieces_.clear();
@@ -147,7 +147,7 @@ class Builder {
                        after(probe_.wrong_corner()));
   }
 
-  /// The same of what has been found so far.
+  /// Checks the samples found so far likewise.
   bool check_samples(const MapPiece& piece, const PieceFit& fit) {
     const std::vector<Sample>& samples = fit.samples();
     const auto good =
@@ -164,7 +164,7 @@ class Builder {
 
   static std::string after(const std::string& why) { return why.empty() ? "" : ": " + why; }
 
-  /// Accuracies, of which those of loads are chosen by what the first equilibrium tells.
+  /// Sets the accuracies; those of loads follow from the first equilibrium where none is given.
   void want(const Piece& piece, const Sample& first) {
     if (!first.is_good())
       throw InvalidInput("the robot has no equilibrium in the middle of its ranges, so that nothing can be mapped");
@@ -218,18 +218,18 @@ class Builder {
     };
     const MapProgress from{equilibria_, 0, piece.fit->error(), doing(piece.made)};
     const bool done = crew_.each(commands.rows(), from, &MapProgress::equilibria, solve_one);
-    equilibria_ = crew_.told().equilibria;
+    equilibria_ = crew_.reported().equilibria;
     return done;
   }
 
-  /// A set of taut cables that some commands ask for and that is no piece yet.
+  /// Returns a set of taut cables that some commands need and that has no piece yet.
   std::optional<std::vector<bool>> missing() {
     if (data().cables.empty()) return std::nullopt;
     const KinematicMap map(data());
     const auto samples = maps::random_commands(data(), looks, 0);
     Eigen::VectorXd values(map.outputs());
     for (Index i = 0; i < samples.rows(); ++i)
-      if (auto asked = map.missing_piece(samples.row(i).data(), values.data())) return asked;
+      if (auto requested = map.missing_piece(samples.row(i).data(), values.data())) return requested;
     return std::nullopt;
   }
 
@@ -292,7 +292,7 @@ class Builder {
   maps::Wanted wanted_;
   double strictness_ = 1, wanted_of_ = 0;
   std::vector<std::unique_ptr<Piece>> pieces_;
-  std::map<std::vector<bool>, std::vector<Sample>> earlier_;  // of the round before, by what is taut
+  std::map<std::vector<bool>, std::vector<Sample>> earlier_;  // of the round before, by the taut cables
   MapResult result_;
   Index equilibria_ = 0;
   bool gave_up_ = false;

@@ -13,8 +13,8 @@ namespace softkin {
 
 namespace {
 
-constexpr int most_steps = 100;
-constexpr double arrived = 1e-3;  // length of a step, in deviations of what is told
+constexpr int max_steps = 100;
+constexpr double arrived = 1e-3;  // length of a step, in standard deviations of the estimate
 
 void check_estimate(const KinematicMap& map, const std::vector<MapUnknown>& unknowns, const Eigen::VectorXd& commands,
                     const Eigen::VectorXd& values, const Eigen::VectorXd& deviations) {
@@ -36,7 +36,7 @@ void check_estimate(const KinematicMap& map, const std::vector<MapUnknown>& unkn
   }
 }
 
-/// Unknowns in deviations of what was known before.
+/// The problem in unknowns scaled by their prior standard deviations.
 class MapProblem {
  public:
   MapProblem(const KinematicMap& map, const std::vector<MapUnknown>& unknowns, const Eigen::VectorXd& values,
@@ -72,7 +72,7 @@ class MapProblem {
     return true;
   }
 
-  /// The least of the quadratic model that the ranges allow, held by so much of what was known before.
+  /// Returns the step to the minimum of the quadratic model inside the ranges, damped by `hold` times the prior.
   [[nodiscard]] Eigen::VectorXd step(const Point& at, double hold) const {
     const Index n = count();
     Eigen::MatrixXd rows(2 * n, n);
@@ -96,14 +96,15 @@ class MapProblem {
     return commands;
   }
 
-  /// Sets covariance and freedoms: readings less what they had to tell, the trace of what they took of what was known.
-  void tell(const Point& at, MapEstimate& told) const {
+  /// Sets the covariance and the degrees of freedom: the number of readings less that of the unknowns they determine,
+  /// the trace of the reduction of the prior covariance.
+  void describe(const Point& at, MapEstimate& reported) const {
     const Eigen::MatrixXd left =
         CholeskyFactor(at.matrix).solve(Eigen::MatrixXd(Eigen::MatrixXd::Identity(count(), count())));
     Eigen::VectorXd units(count());
     for (Index i = 0; i < count(); ++i) units[i] = unknown(i).deviation;
-    told.covariance = units.asDiagonal() * left * units.asDiagonal();
-    told.freedoms =
+    reported.covariance = units.asDiagonal() * left * units.asDiagonal();
+    reported.freedoms =
         static_cast<double>((!values_.array().isNaN()).count()) - (static_cast<double>(count()) - left.trace());
   }
 
@@ -135,14 +136,14 @@ std::optional<MapEstimate> estimate_by_map(const KinematicMap& map, const std::v
   const MapProblem problem(map, unknowns, values, deviations);
   MapProblem::Point at{.commands = commands};
   if (!problem.look(at)) return std::nullopt;
-  MapEstimate told;
+  MapEstimate reported;
   estimate::Damping hold(1);
-  while (told.iterations < most_steps) {
+  while (reported.iterations < max_steps) {
     const Eigen::VectorXd step = problem.step(at, hold.value());
     const double length = std::sqrt(std::max(0.0, step.dot(at.matrix * step)));
-    told.converged = length <= arrived;  // held: at a kink, or an end of the map
-    if (told.converged) break;
-    ++told.iterations;
+    reported.converged = length <= arrived;  // held: at a kink, or an end of the map
+    if (reported.converged) break;
+    ++reported.iterations;
     MapProblem::Point next{.commands = problem.moved(at.commands, step)};
     if (problem.look(next) && next.cost < at.cost) {
       at = std::move(next);
@@ -151,11 +152,11 @@ std::optional<MapEstimate> estimate_by_map(const KinematicMap& map, const std::v
       break;
     }
   }
-  told.commands = at.commands;
-  told.computed = at.outputs;
-  told.chi_square = at.chi_square;
-  problem.tell(at, told);
-  return told;
+  reported.commands = at.commands;
+  reported.computed = at.outputs;
+  reported.chi_square = at.chi_square;
+  problem.describe(at, reported);
+  return reported;
 }
 
 }  // namespace softkin

@@ -6,32 +6,32 @@
 
 namespace softkin {
 
-/// A command that was not measured, such as a force that the scene gives a range, and what was known of it before.
+/// A command that was not measured, such as a force that has a range in the scene, and its prior.
 struct MapUnknown {
   Index input = 0;                 // of the map
   double mean = 0, deviation = 1;  // in its unit; deviation > 0
 };
 
-/// What outputs of a map tell of commands that were not measured.
+/// An estimate, from outputs of a map, of commands that were not measured.
 struct MapEstimate {
   bool converged = false;      // did the search end by itself
-  Eigen::VectorXd commands;    // inputs: those that were given, and what was told
+  Eigen::VectorXd commands;    // inputs: those that were given, and the estimated ones
   Eigen::MatrixXd covariance;  // of the unknowns, in their order
   Eigen::VectorXd computed;    // outputs
-  double chi_square = 0;       // of what was read
-  double freedoms = 0;         // which it is to be compared with: readings less what they had to tell
+  double chi_square = 0;       // of the readings
+  double freedoms = 0;         // degrees of freedom: readings less the unknowns that they determine
   int iterations = 0;          // that it took
 
-  /// By how many standard deviations the chi-square is too large.
+  /// Returns by how many standard deviations the chi-square is too large.
   [[nodiscard]] double misfit() const;
 };
 
-/// What outputs of a map that were read tell of commands that were not: the most probable ones inside their ranges.
-/// Microseconds; a wrong reading is not looked for, but its misfit says that there is one.
+/// Estimates commands that were not measured from measured outputs of a map: the most probable ones inside their
+/// ranges. It takes microseconds; wrong readings are not searched for, but the misfit shows that there is one.
 ///
 /// minimises   sum over readings of ((output - read) / deviation)^2 + sum over unknowns of
-///             ((command - mean) / deviation)^2, by Gauss' and Newton's method, damped in units of what was known
-///             before
+///             ((command - mean) / deviation)^2, by the Gauss-Newton method, damped in units of the prior standard
+///             deviations
 /// commands    inputs of the map; of the unknowns where the search begins
 /// values      of the outputs; NaN: not read
 /// deviations  of the outputs that were read, > 0

@@ -22,12 +22,12 @@ std::vector<Index> loads_of(const Model& model, const MapData& data) {
   return loads;
 }
 
-/// Is what is commanded a tension or a pressure?
+/// Is the commanded quantity a tension or a pressure?
 bool is_load(const Actuator& actuator) {
   return actuator.control == Control::load && !multiplier_key(actuator).empty();
 }
 
-/// Equilibria by a map; what their positions are is for others to say.
+/// Equilibria by a map; derived classes define their positions.
 class OfMap : public GivenEquilibria {
  public:
   OfMap(const Model& model, const KinematicMap& map) : model_(model), map_(map), loads_(loads_of(model, map.data())) {}
@@ -136,9 +136,9 @@ Model markers_alone(const Model& model, const MapData& data) {
     Actuator& cable = seen.actuators[data.cables[c].actuator];
     const Index begin = markers + 2 * c;
     seen.rest(begin + 1, 0) = cable.rest_measure;
-    auto& way = std::get<CableDrive>(cable.drive);
-    way.points = {{{begin}, {1.0}}, {{begin + 1}, {1.0}}};
-    way.gaps.clear();
+    auto& path = std::get<CableDrive>(cable.drive);
+    path.points = {{{begin}, {1.0}}, {{begin + 1}, {1.0}}};
+    path.gaps.clear();
   }
   seen.held.at = seen.rest;
   seen.loads.dead = Points::Zero(seen.rest.rows(), 3);
@@ -176,7 +176,7 @@ class MarkersOfMap : public OfMap {
 class ShapesOfMap : public OfMap {
  public:
   ShapesOfMap(const Model& model, const KinematicMap& map) : OfMap(model, map), correction_(model, map.data()) {
-    if (!map.data().shape) throw InvalidInput("the map was made without the robot's shape, which is asked for");
+    if (!map.data().shape) throw InvalidInput("the map was made without the robot's shape, which is requested");
     if (map.data().shape->mean.size() != model.rest.size()) throw InvalidInput("the map is of another mesh");
   }
 

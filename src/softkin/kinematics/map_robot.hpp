@@ -8,8 +8,8 @@
 
 namespace softkin {
 
-/// A robot as its map knows it, with a shape or without: its vertices are its markers, and two per cable that are as
-/// far apart as its path is long. What needs markers, loads and commands alone works with it as with the robot:
+/// A robot that consists of its map, with a shape or without: its vertices are its markers, and two per cable, at a
+/// distance equal to its length. Functions that need markers, loads and commands alone work with it as with the robot:
 /// solve_inverse, follow_path.
 class MapRobot {
  public:
@@ -20,7 +20,7 @@ class MapRobot {
 
   /// Belongs to statics() alone: its vertices are those of no mesh. Lives as long as the object.
   [[nodiscard]] const Model& model() const { return model_; }
-  /// Its equilibria, which the map gives. Lives as long as the object.
+  /// Returns its equilibria, which the map evaluates. It lives as long as the object.
   [[nodiscard]] const Statics& statics() const { return statics_; }
 
  private:
@@ -28,15 +28,16 @@ class MapRobot {
   Statics statics_;
 };
 
-/// Equilibria of a robot by its solver; by its map alone; or by the solver begun at those of the map (polish). A map
-/// gives whole shapes, in which the vertices around a marker are moved by what its own, more accurate polynomials say.
+/// Returns the equilibria of a robot by its solver; by its map alone; or by the solver with those of the map as initial
+/// guesses (polish). A map evaluates whole shapes, in which the vertices around a marker are moved to agree with its
+/// own, more accurate polynomials.
 ///
 /// model, map  must outlive the object, and belong together (runs::check_robot); map may be null: there is none
 /// throws      InvalidInput on a map without shape
 [[nodiscard]] Statics statics_by(const Model& model, const KinematicMap* map, bool polish);
 
-/// solve_inverse_from() by the map alone, and again by the solver from what that found: a few equilibria. Where the map
-/// has no equilibrium at the start, by the solver alone.
+/// Runs solve_inverse_from() by the map alone, and again by the solver from that result, in a few equilibria; by the
+/// solver alone where the map has no equilibrium at the start.
 ///
 /// statics  of the model, whose solves begin at the map's equilibria: statics_by(), polish
 /// returns  counts and history are those of the solver

@@ -90,7 +90,7 @@ double squared_error(const Goal& goal, const Points& markers) {
     const Vec3 from = markers.row(plane->marker).transpose() - plane->point;
     return std::pow(from.dot(plane->normal.stableNormalized()), 2);
   }
-  if (std::holds_alternative<ForceGoal>(goal.what)) return 0;  // samples do not tell of it
+  if (std::holds_alternative<ForceGoal>(goal.what)) return 0;  // samples do not contain forces
   const auto& direction = std::get<DirectionGoal>(goal.what);
   const Vec3 line = (markers.row(direction.to) - markers.row(direction.from)).transpose();
   return std::pow(direction.lever_mm, 2) *
@@ -118,7 +118,7 @@ NearestSamples::NearestSamples(const Model& model, std::vector<WorkspaceSample> 
 std::vector<Index> NearestSamples::find(const std::vector<Goal>& goals, Index count) {
   check_goals(model_, goals);
   if (std::all_of(goals.begin(), goals.end(), [](const Goal& g) { return std::holds_alternative<ForceGoal>(g.what); }))
-    throw InvalidInput("samples of a workspace tell places, not forces: none is nearest to a force");
+    throw InvalidInput("samples of a workspace have places, not forces: none is nearest to a force");
   const std::vector<double> scales = scales_of(model_, goals);
   std::vector<Index> best;
   if (!scales.empty()) {

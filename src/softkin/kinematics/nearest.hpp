@@ -22,7 +22,7 @@ class NearestPoints {
     Index row = 0;
     double distance = 0;
   };
-  /// The nearest points, nearest first, at most so many.
+  /// Returns the nearest points, nearest first, at most `count`.
   ///
   /// throws  InvalidInput on a target of another dimension or one that is not finite, or count < 1
   [[nodiscard]] std::vector<Found> find(const Eigen::VectorXd& target, Index count = 1) const;
@@ -39,7 +39,7 @@ class NearestSamples {
   /// throws   InvalidInput as check_goals does, where no sample is left, or where a sample has other markers
   NearestSamples(const Model& model, std::vector<WorkspaceSample> samples);
 
-  /// The samples with the least weighted sum of the goals' squared errors, best first, at most so many.
+  /// Returns the samples with the smallest weighted sum of the goals' squared errors, best first, at most `count`.
   ///
   /// returns  indices into samples(); for positions alone by a k-d tree, made once for each set of markers and axes
   [[nodiscard]] std::vector<Index> find(const std::vector<Goal>& goals, Index count = 1);

@@ -17,10 +17,10 @@ PlanBasis::PlanBasis(const Estimate& estimate)
 
 namespace {
 
-/// Bits below which a reading tells nothing.
-constexpr double least_bits = 1e-6;
+/// Information below which a reading is useless [bits].
+constexpr double min_bits = 1e-6;
 
-/// What may be read further: a vertex, or columns that belong together.
+/// A further reading that is possible: a marker at a vertex, or columns that belong together.
 struct Candidate {
   std::string name;
   Index vertex = -1;
@@ -64,7 +64,7 @@ class Candidates {
   [[nodiscard]] const std::vector<Candidate>& all() const { return all_; }
 
  private:
-  /// Of what is told by the shape alone.
+  /// Adds the measure of an actuator, if it depends on the shape alone.
   void add_measure(Index actuator) {
     const Actuator& of = model_.actuators[actuator];
     if (of.control != Control::load) return;
@@ -144,10 +144,10 @@ class Plan {
     taken_.resize(candidates.size());
   }
 
-  /// None: no reading tells anything.
+  /// Returns nothing where no reading gives information.
   std::optional<PlannedReading> next() {
     std::optional<std::size_t> best;
-    double most = least_bits;
+    double most = min_bits;
     for (std::size_t c = 0; c < slopes_.size(); ++c) {
       if (taken_[c]) continue;
       double bits = 0;

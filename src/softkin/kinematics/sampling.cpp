@@ -14,10 +14,10 @@ namespace softkin {
 namespace {
 
 /// Coordinates in the unit cube of the varied actuators, a row per sample.
-using Shares = Actuations;
+using Fractions = Actuations;
 
 constexpr int sobol_bits = 32;
-constexpr int most_sobol_actuators = 8;
+constexpr int max_sobol_actuators = 8;
 using Directions = std::array<std::uint32_t, sobol_bits>;
 
 /// A primitive polynomial of degree s over GF(2), its inner coefficients a, and the initial numbers m.
@@ -28,13 +28,13 @@ struct Recurrence {
 };
 
 /// Joe and Kuo 2008, "new-joe-kuo-6": dimensions 2 to 8.
-constexpr std::array<Recurrence, most_sobol_actuators - 1> recurrences{{{1, 0, {1}},
-                                                                        {2, 1, {1, 3}},
-                                                                        {3, 1, {1, 3, 1}},
-                                                                        {3, 2, {1, 1, 1}},
-                                                                        {4, 1, {1, 1, 3, 3}},
-                                                                        {4, 4, {1, 3, 5, 13}},
-                                                                        {5, 2, {1, 1, 5, 5, 17}}}};
+constexpr std::array<Recurrence, max_sobol_actuators - 1> recurrences{{{1, 0, {1}},
+                                                                       {2, 1, {1, 3}},
+                                                                       {3, 1, {1, 3, 1}},
+                                                                       {3, 2, {1, 1, 1}},
+                                                                       {4, 1, {1, 1, 3, 3}},
+                                                                       {4, 4, {1, 3, 5, 13}},
+                                                                       {5, 2, {1, 1, 5, 5, 17}}}};
 
 Directions directions_of(std::size_t dimension) {
   Directions v{};
@@ -55,29 +55,30 @@ Directions directions_of(std::size_t dimension) {
   return v;
 }
 
-Shares sobol_shares(Index samples, std::size_t dimensions) {
-  if (dimensions > most_sobol_actuators)
-    throw InvalidInput("Sobol's sequence is for " + std::to_string(most_sobol_actuators) +
+Fractions sobol_fractions(Index samples, std::size_t dimensions) {
+  if (dimensions > max_sobol_actuators)
+    throw InvalidInput("Sobol's sequence is for " + std::to_string(max_sobol_actuators) +
                        " actuators at most, and this robot has " + std::to_string(dimensions) +
                        " whose range is more than one value; sample at random");
-  Shares shares(samples, dimensions);
+  Fractions fractions(samples, dimensions);
   for (std::size_t d = 0; d < dimensions; ++d) {
     const Directions v = directions_of(d);
     std::uint32_t x = 0;
     for (Index i = 0; i < samples; ++i) {
-      shares(i, d) = std::ldexp(static_cast<double>(x), -sobol_bits);
+      fractions(i, d) = std::ldexp(static_cast<double>(x), -sobol_bits);
       x ^= v[std::countr_one(static_cast<std::uint32_t>(i))];
     }
   }
-  return shares;
+  return fractions;
 }
 
 /// std::uniform_real_distribution differs between standard libraries.
-Shares random_shares(Index samples, std::size_t dimensions, std::uint64_t seed) {
+Fractions random_fractions(Index samples, std::size_t dimensions, std::uint64_t seed) {
   std::mt19937_64 generator(seed);
-  Shares shares(samples, dimensions);
-  for (Index i = 0; i < shares.size(); ++i) shares.data()[i] = std::ldexp(static_cast<double>(generator() >> 11), -53);
-  return shares;
+  Fractions fractions(samples, dimensions);
+  for (Index i = 0; i < fractions.size(); ++i)
+    fractions.data()[i] = std::ldexp(static_cast<double>(generator() >> 11), -53);
+  return fractions;
 }
 
 /// Number of samples of a full grid, or a value beyond every Index.
@@ -91,20 +92,21 @@ std::size_t varied_or_refuse(const Model& model) {
   throw InvalidInput("the robot has no actuator whose range is more than one value: there is nothing to sample");
 }
 
-Shares grid_shares(const Model& model, Index samples, std::size_t dimensions) {
+Fractions grid_fractions(const Model& model, Index samples, std::size_t dimensions) {
   const Index values = nearest_grid(model, samples);
   if (grid_samples(values, dimensions) != samples)
     throw InvalidInput(std::to_string(samples) + " samples fill no grid over " + std::to_string(dimensions) +
                        " actuators; the nearest grid has " + std::to_string(values) + " values each, " +
                        std::to_string(std::llround(grid_samples(values, dimensions))) + " samples");
-  Shares shares(samples, dimensions);
+  Fractions fractions(samples, dimensions);
   for (Index i = 0; i < samples; ++i)
-    for (Index d = shares.cols(), rest = i; d-- > 0; rest /= values)
-      shares(i, d) = static_cast<double>(rest % values) / (values - 1);
-  return shares;
+    for (Index d = fractions.cols(), rest = i; d-- > 0; rest /= values)
+      fractions(i, d) = static_cast<double>(rest % values) / (values - 1);
+  return fractions;
 }
 
-/// Place along a Hilbert curve of a point with so many bits per coordinate, most significant coordinate first.
+/// Returns the place of a point along a Hilbert curve, with `bits` bits per coordinate, most significant coordinate
+/// first.
 std::uint64_t hilbert_place(std::vector<std::uint32_t>& x, int bits) {
   const std::size_t n = x.size();
   const std::uint32_t top = std::uint32_t{1} << (bits - 1);
@@ -125,9 +127,9 @@ std::uint64_t hilbert_place(std::vector<std::uint32_t>& x, int bits) {
 }
 
 /// Rounded once, whether the machine multiplies and adds in one or not.
-double between(const Actuator& actuator, double share) {
-  if (share == 1) return actuator.high;
-  return std::min(std::fma(share, actuator.high - actuator.low, actuator.low), actuator.high);
+double between(const Actuator& actuator, double fraction) {
+  if (fraction == 1) return actuator.high;
+  return std::min(std::fma(fraction, actuator.high - actuator.low, actuator.low), actuator.high);
 }
 
 std::vector<std::uint64_t> hilbert_places(const Model& model, const Actuations& actuations) {
@@ -139,8 +141,8 @@ std::vector<std::uint64_t> hilbert_places(const Model& model, const Actuations& 
   for (Index i = 0; i < actuations.rows(); ++i) {
     for (std::size_t d = 0; d < varied.size(); ++d) {
       const Actuator& actuator = model.actuators[varied[d]];
-      const double share = (actuations(i, varied[d]) - actuator.low) / (actuator.high - actuator.low);
-      x[d] = static_cast<std::uint32_t>(std::min(std::ldexp(share, bits), std::ldexp(1.0, bits) - 1));
+      const double fraction = (actuations(i, varied[d]) - actuator.low) / (actuator.high - actuator.low);
+      x[d] = static_cast<std::uint32_t>(std::min(std::ldexp(fraction, bits), std::ldexp(1.0, bits) - 1));
     }
     places.push_back(hilbert_place(x, bits));
   }
@@ -176,9 +178,10 @@ Index full_grid(const Model& model, Index samples) {
 Actuations sample_actuations(const Model& model, const SamplingOptions& options) {
   const std::size_t dimensions = varied_or_refuse(model);
   if (options.samples < 1) throw InvalidInput("the number of samples must be 1 or more");
-  const Shares shares = options.kind == Sampling::grid    ? grid_shares(model, options.samples, dimensions)
-                        : options.kind == Sampling::sobol ? sobol_shares(options.samples, dimensions)
-                                                          : random_shares(options.samples, dimensions, options.seed);
+  const Fractions fractions = options.kind == Sampling::grid ? grid_fractions(model, options.samples, dimensions)
+                              : options.kind == Sampling::sobol
+                                  ? sobol_fractions(options.samples, dimensions)
+                                  : random_fractions(options.samples, dimensions, options.seed);
   Actuations actuations(options.samples, model.actuators.size());
   Index d = 0;
   for (Index a = 0; a < actuations.cols(); ++a) {
@@ -187,7 +190,7 @@ Actuations sample_actuations(const Model& model, const SamplingOptions& options)
       actuations.col(a).setConstant(drives(actuator) ? actuator.low : actuator.rest);
       continue;
     }
-    for (Index i = 0; i < actuations.rows(); ++i) actuations(i, a) = between(actuator, shares(i, d));
+    for (Index i = 0; i < actuations.rows(); ++i) actuations(i, a) = between(actuator, fractions(i, d));
     ++d;
   }
   return actuations;

@@ -11,11 +11,11 @@ namespace softkin {
 
 namespace {
 
-constexpr double most_waypoints = 1e6;
-constexpr double damping = 1e-5;       // of the largest slope: below it a direction moves nothing
-constexpr double trusted_move = 0.5;   // of a range, that a prediction is trusted with
+constexpr double max_waypoints = 1e6;
+constexpr double damping = 1e-5;       // of the largest slope: below it a direction has no effect
+constexpr double trusted_move = 0.5;   // of a range, the largest move that a prediction may make
 constexpr double largest_stretch = 2;  // of the last move, over which its curvature is trusted
-constexpr double least_move = 1e-6;    // shares, over which a change of slopes can be told
+constexpr double min_move = 1e-6;      // fractions, over which a change of slopes can be computed
 
 Eigen::VectorXd widths(const Model& model) {
   Eigen::VectorXd widths(model.actuators.size());
@@ -26,16 +26,16 @@ Eigen::VectorXd widths(const Model& model) {
   return widths;
 }
 
-/// The shortest move of the shares, inside the ranges, after which terms + slopes * move is least.
-Eigen::VectorXd move_to(const Eigen::VectorXd& terms, const Eigen::MatrixXd& slopes, const Eigen::VectorXd& shares) {
-  const Index m = shares.size();
+/// Returns the shortest move of the fractions, inside the ranges, that minimises the norm of terms + slopes * move.
+Eigen::VectorXd move_to(const Eigen::VectorXd& terms, const Eigen::MatrixXd& slopes, const Eigen::VectorXd& fractions) {
+  const Index m = fractions.size();
   const double size = slopes.colwise().norm().maxCoeff();
   if (!(size > 0)) return Eigen::VectorXd::Zero(m);
   Eigen::MatrixXd h = slopes.transpose() * slopes, rows(2 * m, m);
   h.diagonal().array() += std::pow(damping * size, 2);
   rows << Eigen::MatrixXd::Identity(m, m), -Eigen::MatrixXd::Identity(m, m);
   Eigen::VectorXd bounds(2 * m);
-  bounds << -shares, shares.array() - 1;
+  bounds << -fractions, fractions.array() - 1;
   bounds = bounds.cwiseMin(0);  // rounding
   return inverse::solve_small_program(h, slopes.transpose() * terms, rows, bounds);
 }
@@ -50,21 +50,21 @@ void check_path(const MarkerPath& path) {
                          " targets, the path " + std::to_string(path.markers.size()) + " markers");
 }
 
-/// Of the marker that has the longest way [mm].
-double longest_way(const Waypoint& from, const Waypoint& to) {
+/// Returns the path length of the marker that moves farthest [mm].
+double longest_path(const Waypoint& from, const Waypoint& to) {
   double longest = 0;
   for (std::size_t m = 0; m < from.targets.size(); ++m)
     longest = std::max(longest, (to.targets[m] - from.targets[m]).norm());
   return longest;
 }
 
-Waypoint between(const Waypoint& from, const Waypoint& to, double share) {
+Waypoint between(const Waypoint& from, const Waypoint& to, double fraction) {
   Waypoint waypoint;
   waypoint.inserted = true;
   waypoint.line = to.line;
   for (std::size_t m = 0; m < from.targets.size(); ++m)
-    waypoint.targets.emplace_back((1 - share) * from.targets[m] + share * to.targets[m]);
-  if (from.time && to.time) waypoint.time = (1 - share) * *from.time + share * *to.time;
+    waypoint.targets.emplace_back((1 - fraction) * from.targets[m] + fraction * to.targets[m]);
+  if (from.time && to.time) waypoint.time = (1 - fraction) * *from.time + fraction * *to.time;
   return waypoint;
 }
 
@@ -77,9 +77,9 @@ MarkerPath densified(const MarkerPath& path, double max_step_mm) {
   for (std::size_t i = 0; i < path.waypoints.size(); ++i) {
     if (i > 0) {
       const Waypoint &from = path.waypoints[i - 1], &to = path.waypoints[i];
-      const double parts = std::max(1.0, std::ceil(longest_way(from, to) / max_step_mm * (1 - 1e-12)));
+      const double parts = std::max(1.0, std::ceil(longest_path(from, to) / max_step_mm * (1 - 1e-12)));
       count += parts;
-      if (!(count < most_waypoints))
+      if (!(count < max_waypoints))
         throw InvalidInput("a step of " + std::to_string(max_step_mm) + " mm makes more than a million waypoints");
       for (double part = 1; part < parts; ++part) dense.waypoints.push_back(between(from, to, part / parts));
     }
@@ -112,23 +112,24 @@ PathFollower::PathFollower(const Statics& statics, const MarkerPath& path, const
     (void)plan_workspace(model_, {.samples = std::get<Index>(*options_.nearest)});  // throws where there is none
 }
 
-Eigen::VectorXd PathFollower::shares_of(const Actuation& actuation) const {
-  Eigen::VectorXd shares = Eigen::VectorXd::Zero(actuation.size());
-  for (Index a = 0; a < shares.size(); ++a) {
+Eigen::VectorXd PathFollower::fractions_of(const Actuation& actuation) const {
+  Eigen::VectorXd fractions = Eigen::VectorXd::Zero(actuation.size());
+  for (Index a = 0; a < fractions.size(); ++a) {
     const Actuator& actuator = model_.actuators[a];
-    if (varies(actuator)) shares[a] = (actuation[a] - actuator.low) / (actuator.high - actuator.low);
+    if (varies(actuator)) fractions[a] = (actuation[a] - actuator.low) / (actuator.high - actuator.low);
   }
-  return shares;
+  return fractions;
 }
 
-Actuation PathFollower::actuation_of(const Eigen::VectorXd& shares) const {
-  Actuation actuation(shares.size());
-  for (Index a = 0; a < shares.size(); ++a) {
+Actuation PathFollower::actuation_of(const Eigen::VectorXd& fractions) const {
+  Actuation actuation(fractions.size());
+  for (Index a = 0; a < fractions.size(); ++a) {
     const Actuator& actuator = model_.actuators[a];
     if (!drives(actuator))
       actuation[a] = state_.actuation.size() > 0 ? state_.actuation[a] : actuator.rest;
     else
-      actuation[a] = std::clamp(actuator.low + shares[a] * (actuator.high - actuator.low), actuator.low, actuator.high);
+      actuation[a] =
+          std::clamp(actuator.low + fractions[a] * (actuator.high - actuator.low), actuator.low, actuator.high);
   }
   return actuation;
 }
@@ -141,8 +142,8 @@ void PathFollower::resume(std::size_t waypoint, State at) {
   slopes_before_.resize(0, 0);
 }
 
-/// As solve_inverse tells, before it has begun.
-ProgressCallback PathFollower::told(const ProgressCallback& progress) const {
+/// Returns a callback that reports progress as solve_inverse does, before it has begun.
+ProgressCallback PathFollower::reported(const ProgressCallback& progress) const {
   if (!progress) return {};
   const double error = goal_errors(model_, goals_of(path_, path_.waypoints.at(next_)), state_.positions).maxCoeff();
   return [&progress, error, tolerance = options_.inverse.tolerance_mm](const Progress&) {
@@ -150,9 +151,9 @@ ProgressCallback PathFollower::told(const ProgressCallback& progress) const {
   };
 }
 
-/// Brings the robot to where the first waypoint is sought from; false where it was interrupted.
+/// Solves for the equilibrium from which the first waypoint is searched; false where it was interrupted.
 bool PathFollower::first(InverseResult& spent, const ProgressCallback& progress) {
-  Equilibrium found = statics_.solve(options_.start, state_, options_.inverse.statics, told(progress));
+  Equilibrium found = statics_.solve(options_.start, state_, options_.inverse.statics, reported(progress));
   ++spent.equilibria;
   spent.seconds += found.report.seconds;
   if (found.report.stopped) {
@@ -180,7 +181,7 @@ InverseResult PathFollower::advance(const ProgressCallback& progress) {
   Equilibrium from{state_, {}, {}};
   bool moved = false;
   if (const std::optional<Actuation> guess = predicted(goals)) {
-    Equilibrium there = statics_.solve(*guess, state_, options_.inverse.statics, told(progress));
+    Equilibrium there = statics_.solve(*guess, state_, options_.inverse.statics, reported(progress));
     ++spent.equilibria;
     spent.seconds += there.report.seconds;
     if (there.report.stopped) {
@@ -209,21 +210,21 @@ InverseResult PathFollower::advance(const ProgressCallback& progress) {
 /// change. Nothing where that change is not known, as solve_inverse itself begins with the slopes, and where that looks
 /// ahead to second order.
 std::optional<Actuation> PathFollower::predicted(const std::vector<Goal>& goals) const {
-  const bool search_looks_ahead = options_.inverse.method == InverseMethod::newton && statics_.foresees();
+  const bool search_looks_ahead = options_.inverse.method == InverseMethod::newton && statics_.extrapolates();
   if (!options_.predict || search_looks_ahead || slopes_.size() == 0 || slopes_before_.size() == 0) return std::nullopt;
-  const Eigen::VectorXd shares = shares_of(state_.actuation);
+  const Eigen::VectorXd fractions = fractions_of(state_.actuation);
   const Eigen::VectorXd terms = inverse::goal_terms(model_, goals, state_.positions);
-  const Eigen::VectorXd straight = move_to(terms, slopes_, shares);
+  const Eigen::VectorXd straight = move_to(terms, slopes_, fractions);
   const double stretch = straight.dot(move_) / move_.squaredNorm();
   if (!(std::abs(stretch) <= largest_stretch)) return std::nullopt;
   const Eigen::VectorXd bend = 0.5 * stretch * stretch * (slopes_ - slopes_before_) * move_;
-  const Eigen::VectorXd move = move_to(terms + bend, slopes_, shares);
+  const Eigen::VectorXd move = move_to(terms + bend, slopes_, fractions);
   if (!move.allFinite() || move.cwiseAbs().maxCoeff() > trusted_move) return std::nullopt;
-  return actuation_of(shares + move);
+  return actuation_of(fractions + move);
 }
 
 void PathFollower::learn(const std::vector<Goal>& goals, const InverseResult& found) {
-  const Eigen::VectorXd before = shares_of(state_.actuation.size() > 0 ? state_.actuation : model_.rest_actuation());
+  const Eigen::VectorXd before = fractions_of(state_.actuation.size() > 0 ? state_.actuation : model_.rest_actuation());
   state_ = found.equilibrium.state;
   sensitivity_ = found.sensitivity;
   slopes_before_ = std::exchange(slopes_, {});
@@ -231,8 +232,8 @@ void PathFollower::learn(const std::vector<Goal>& goals, const InverseResult& fo
   slopes_ = inverse::goal_slopes(model_, goals, state_.positions, sensitivity_) * widths(model_).asDiagonal();
   for (std::size_t a = 0; a < options_.inverse.free.size(); ++a)
     if (!options_.inverse.free[a]) slopes_.col(a).setZero();
-  move_ = shares_of(state_.actuation) - before;
-  if (slopes_before_.size() > 0 && !(move_.norm() > least_move)) slopes_before_.resize(0, 0);
+  move_ = fractions_of(state_.actuation) - before;
+  if (slopes_before_.size() > 0 && !(move_.norm() > min_move)) slopes_before_.resize(0, 0);
 }
 
 std::vector<InverseResult> follow_path(const Statics& statics, const MarkerPath& path, const TrajectoryOptions& options,

@@ -14,11 +14,11 @@ namespace softkin {
 /// throws  InvalidInput where the distance is not > 0, or more than a million waypoints would come of it
 [[nodiscard]] MarkerPath densified(const MarkerPath& path, double max_step_mm);
 
-/// Its markers at their targets.
+/// Returns the goals of a waypoint: the markers of the path at their targets.
 [[nodiscard]] std::vector<Goal> goals_of(const MarkerPath& path, const Waypoint& waypoint);
 
-/// The sampled workspace of which each waypoint takes the nearest sample instead of being searched for: that of samples
-/// that are known, or of a grid over the ranges with so many samples, which is solved for before the first waypoint.
+/// The sampled workspace from which each waypoint takes the nearest sample instead of an inverse solution: given
+/// samples, or a grid of this number of samples over the ranges, which is solved for before the first waypoint.
 using NearestOf = std::variant<std::vector<WorkspaceSample>, Index>;
 
 /// How a path is followed.
@@ -26,8 +26,8 @@ struct TrajectoryOptions {
   InverseOptions inverse{};  // start_sensitivity is set here; other_starts is for the first waypoint alone, as a jump
                              // to another shape would tear the path
   bool predict = true;       // newton: the next actuation from the Jacobian and its change, where
-                             // Statics::foresee does not do
-  Actuation start{};         // m: from where the first waypoint is sought, such as that of the nearest sample of a
+                             // Statics::extrapolate is not available
+  Actuation start{};         // m: from where the first waypoint is searched, such as that of the nearest sample of a
                              // workspace; empty: rest
   std::optional<NearestOf> nearest{};  // in place of inverse kinematics, of which the tolerance alone counts
 
@@ -47,13 +47,14 @@ class PathFollower {
   /// Were all waypoints solved?
   [[nodiscard]] bool done() const { return next_ == path_.waypoints.size(); }
 
-  /// Goes on with a waypoint as if the ones before it had just been done. at: the equilibrium of the one before.
+  /// Continues with a waypoint as if the ones before it had just been done. at: the equilibrium of the one before.
   void resume(std::size_t waypoint, State at);
-  /// Takes note of a waypoint that was solved before, in their order: a viscous material remembers all of them. at: its
-  /// actuation and positions
+  /// Records a waypoint that was solved before, in their order: the state of a viscous material depends on all of them.
+  /// at: its actuation and positions
   void recall(const Waypoint& waypoint, State at) { clock_.recall(waypoint.time, std::move(at)); }
 
-  /// Energy that a viscous material lost on the way to the last waypoint [mJ]; none where it counts no time.
+  /// Returns the energy that a viscous material dissipated on the path to the last waypoint [mJ]; none where the path
+  /// has no times.
   [[nodiscard]] const std::optional<double>& lost_mJ() const { return lost_mJ_; }
 
   /// Solves the next waypoint; equilibria counts those of the prediction too. Where it is interrupted the next waypoint
@@ -67,9 +68,9 @@ class PathFollower {
   [[nodiscard]] InverseResult advance(const ProgressCallback& progress = {});
 
  private:
-  [[nodiscard]] Eigen::VectorXd shares_of(const Actuation& actuation) const;
-  [[nodiscard]] Actuation actuation_of(const Eigen::VectorXd& shares) const;
-  [[nodiscard]] ProgressCallback told(const ProgressCallback& progress) const;
+  [[nodiscard]] Eigen::VectorXd fractions_of(const Actuation& actuation) const;
+  [[nodiscard]] Actuation actuation_of(const Eigen::VectorXd& fractions) const;
+  [[nodiscard]] ProgressCallback reported(const ProgressCallback& progress) const;
   [[nodiscard]] bool first(InverseResult& spent, const ProgressCallback& progress);
   [[nodiscard]] std::optional<Actuation> predicted(const std::vector<Goal>& goals) const;
   void learn(const std::vector<Goal>& goals, const InverseResult& found);
@@ -84,14 +85,14 @@ class PathFollower {
   std::size_t next_ = 0;
   ViscousClock clock_;
   std::optional<double> lost_mJ_{};
-  State state_;                    // where the next waypoint is sought from
+  State state_;                    // from which the next waypoint is searched
   Sensitivity sensitivity_;        // there; not regular: not known
-  Eigen::MatrixXd slopes_;         // there, of the goals' terms by shares of the ranges [mm]; empty: not known
+  Eigen::MatrixXd slopes_;         // there, of the goals' terms by fractions of the ranges [mm]; empty: not known
   Eigen::MatrixXd slopes_before_;  // at the waypoint before that
-  Eigen::VectorXd move_;           // from there [shares]
+  Eigen::VectorXd move_;           // from there [fractions]
 };
 
-/// The whole path; what was done where progress stopped it. Throws as PathFollower does.
+/// Follows the whole path; returns the waypoints done before progress stopped it. Throws as PathFollower does.
 [[nodiscard]] std::vector<InverseResult> follow_path(const Statics& statics, const MarkerPath& path,
                                                      const TrajectoryOptions& options = {},
                                                      const ProgressCallback& progress = {});

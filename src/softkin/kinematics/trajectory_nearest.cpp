@@ -57,7 +57,7 @@ bool PathFollower::sample(InverseResult& spent, const ProgressCallback& progress
   const auto caller = std::this_thread::get_id();  // other threads are none of the callback's business
   const double error = goal_errors(model_, goals_of(path_, path_.waypoints.at(next_)), state_.positions).maxCoeff();
   bool stopped = false;
-  const ProgressCallback told = [&](const Progress&) {
+  const ProgressCallback reported = [&](const Progress&) {
     if (!progress || std::this_thread::get_id() != caller) return true;
     stopped = stopped || !progress({desk.count(), error, options_.inverse.tolerance_mm, -1});
     return !stopped;
@@ -65,7 +65,7 @@ bool PathFollower::sample(InverseResult& spent, const ProgressCallback& progress
   const StaticsOptions& statics = options_.inverse.statics;
   const int threads =
       statics.threads > 0 ? statics.threads : static_cast<int>(std::max(1u, std::thread::hardware_concurrency()));
-  solve_groups(statics_, plan, statics, threads, desk, told);
+  solve_groups(statics_, plan, statics, threads, desk, reported);
   spent.equilibria += desk.count();
   spent.seconds += seconds_from(start);
   if (stopped) return false;
@@ -90,7 +90,7 @@ InverseResult PathFollower::advance_nearest(const ProgressCallback& progress) {
   const WorkspaceSample& nearest = samples_->samples()[samples_->find(goals).front()];
   clock_.set(waypoint.time, options_.inverse.statics);
   const auto solve = [&](const State& from) {
-    found.equilibrium = statics_.solve(nearest.actuation, from, options_.inverse.statics, told(progress));
+    found.equilibrium = statics_.solve(nearest.actuation, from, options_.inverse.statics, reported(progress));
     ++found.equilibria;
     found.seconds += found.equilibrium.report.seconds;
     return found.equilibrium.report.status == Status::converged || found.equilibrium.report.stopped;

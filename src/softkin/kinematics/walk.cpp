@@ -9,9 +9,9 @@ namespace softkin {
 
 namespace {
 
-constexpr double stands = 4;       // feet that change their distance by so many of the solver's tolerances, or less
+constexpr double stands = 4;       // feet stick where their distance changes by at most this, in solver tolerances
 constexpr double straight = 1e-6;  // feet may leave their line by so much of their distance
-constexpr int most_trials = 60;    // for the friction of feet that stand
+constexpr int max_trials = 60;     // for the friction of feet that stand
 
 struct FootForces {
   double shortening = 0, lengthening = 0;  // friction at which a foot slides as the body does [N]
@@ -69,7 +69,7 @@ void check_holds(const Model& model, const Vec3& direction) {
                            " on both sides; hold it so at one foot alone, and the other one along the other axes");
 }
 
-/// A uniform field turns a robot, but pulls at it along no direction.
+/// Refuses fields that are not uniform: a uniform field exerts moments on a robot, but no resultant force.
 void check_fields(const Model& model) {
   if (!model.magnetism) return;
   for (const FieldSource& source : model.magnetism->sources)
@@ -98,7 +98,7 @@ void check_surroundings(const Model& model) {
                                           "a walk knows no floor but that of the feet; leave it out");
 }
 
-/// The robot with a cable between its feet that carries what the floor carries: a tension that may also push.
+/// Returns the robot with a cable between its feet that carries the force through the floor: a tension of either sign.
 Model linked(const Model& model, const FootForces& limits) {
   Model robot = model;
   Actuator link;
@@ -165,7 +165,7 @@ struct Walker::Parts {
 
   [[nodiscard]] static bool good(const Trial& trial) { return trial.found.report.status == Status::converged; }
 
-  /// The shape with the feet's distance at which they stood, or the one in which a foot slides.
+  /// Returns the shape at the distance at which the feet stood, or the one in which a foot slides.
   [[nodiscard]] Trial balanced(const Actuation& actuation, const ProgressCallback& progress, int& count) const {
     Trial first = trial(actuation, friction, state, progress, count);
     if (!placed || !good(first)) return first;
@@ -180,12 +180,12 @@ struct Walker::Parts {
     return standing(actuation, std::move(first), std::move(last), progress, count);
   }
 
-  /// Between two frictions of which one leaves the feet too near and the other too far: false position, the Illinois
-  /// way.
+  /// Solves for the friction between two values, of which one leaves the feet too near and the other too far: by false
+  /// position, in the Illinois variant.
   [[nodiscard]] Trial standing(const Actuation& actuation, Trial a, Trial b, const ProgressCallback& progress,
                                int& count) const {
     double miss_a = a.distance - distance, miss_b = b.distance - distance;
-    for (int i = 0; i < most_trials; ++i) {
+    for (int i = 0; i < max_trials; ++i) {
       const double next = b.friction - miss_b * (b.friction - a.friction) / (miss_b - miss_a);
       Trial c = trial(actuation, next, b.found.state, progress, count);
       const double miss = c.distance - distance;
@@ -204,7 +204,7 @@ struct Walker::Parts {
     return b;
   }
 
-  /// Takes a shape over: the feet go where it has them.
+  /// Accepts a shape: the feet move to their places in it.
   [[nodiscard]] Sliding take(const Trial& found) {
     const double change = found.distance - distance;
     friction = found.friction;
@@ -217,13 +217,13 @@ struct Walker::Parts {
     }
     if (std::abs(change) <= tolerance_mm(found)) return Sliding::none;
     const Sliding sliding = change < 0 ? forces.when_shortening : forces.when_lengthening;
-    const double share = sliding == Sliding::rear ? 1 : sliding == Sliding::front ? 0 : 0.5;
-    rear -= share * change;
+    const double fraction = sliding == Sliding::rear ? 1 : sliding == Sliding::front ? 0 : 0.5;
+    rear -= fraction * change;
     distance = found.distance;
     return sliding;
   }
 
-  [[nodiscard]] WalkStep told(Trial found, Sliding sliding, int count) const {
+  [[nodiscard]] WalkStep reported(Trial found, Sliding sliding, int count) const {
     WalkStep step;
     step.sliding = sliding;
     step.friction_N = found.friction == 0 ? 0 : found.friction;
@@ -292,7 +292,7 @@ WalkStep Walker::advance(const Actuation& actuation, const ProgressCallback& pro
   int count = 0;
   Parts::Trial found = parts_->balanced(actuation, progress, count);
   const Sliding sliding = Parts::good(found) ? parts_->take(found) : Sliding::none;
-  return parts_->told(std::move(found), sliding, count);
+  return parts_->reported(std::move(found), sliding, count);
 }
 
 }  // namespace softkin

@@ -5,14 +5,14 @@
 
 namespace softkin {
 
-/// What slides between two steps of a walk.
+/// Which feet slide between two steps of a walk.
 enum class Sliding { none, rear, front, both };
 
-/// Where a walk has come to.
+/// The state of a walk after a step.
 struct WalkStep {
   Equilibrium equilibrium;           // of the body, where it has walked to: positions #V by 3 [mm]
   Sliding sliding = Sliding::none;   // since the step before
-  double friction_N = 0;             // with which the feet stretch the body, < 0: press it together; target-shape: 0
+  double friction_N = 0;             // with which the feet stretch the body, < 0: compress it; target-shape: 0
   double rear_mm = 0, front_mm = 0;  // feet along the direction of travel, from where the rear one stood at rest
   double travel_mm = 0;              // of the middle between the feet, from where it stood first
   double shift_mm = 0;               // along the direction of travel, from where the scene holds it
@@ -21,14 +21,14 @@ struct WalkStep {
 
 /// A robot that walks on its two feet as its actuation changes, so slowly that it is always in equilibrium.
 ///
-/// The direction of travel is that from the rear foot to the front one at rest. The floor is the scene's `fixed`; of
-/// what it holds along that direction, which must be near one foot alone, the walk lets go. The feet pull at each other
-/// through the floor with one force, as nothing else acts along the direction of travel. While both can bear it they
-/// stand still and their distance stays; where it reaches what one of them can bear, that one slides against this very
-/// force. With equal limits both slide, half each. The result does not depend on how finely the actuation is divided as
-/// long as the feet's distance does not turn back in between.
+/// The direction of travel is that from the rear foot to the front one at rest. The floor is the scene's `fixed`; the
+/// walk releases what it holds along that direction, which must be near one foot alone. The friction forces on both
+/// feet are equal and opposite, as no other force acts along the direction of travel. While both feet stick, their
+/// distance stays the same; where the force reaches the friction limit of a foot, that foot slides against this force.
+/// With equal limits both slide, half each. The result does not depend on how finely the actuation is divided as long
+/// as the distance of the feet is monotonic in between.
 ///
-/// Target shapes know no forces: the body takes its shape freely, and the friction only says which foot slides.
+/// Target shapes have no forces: the body takes its shape freely, and the friction only determines which foot slides.
 ///
 /// source  Coulomb friction with a limit for either direction, backward Euler: A. DeSimone, P. Gidoni, G. Noselli,
 ///         Liquid crystal elastomer strips as soft crawlers, J. Mech. Phys. Solids 84, 2015
@@ -48,7 +48,7 @@ class Walker {
   ///         1e-6 of their distance
   [[nodiscard]] WalkStep advance(const Actuation& actuation, const ProgressCallback& progress = {});
 
-  /// Goes on as if this step, with its equilibrium's state, had just been done.
+  /// Continues as if this step, with its equilibrium's state, had just been done.
   void resume(const WalkStep& step);
 
   [[nodiscard]] const Vec3& direction() const;  // of travel, of length 1

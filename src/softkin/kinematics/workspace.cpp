@@ -9,22 +9,23 @@ namespace softkin {
 
 namespace {
 
-/// An equilibrium that is so many times as far from its prediction as that is from the group's middle, and so far over
-/// the robot's diagonal, may be another one than the robot would move to.
-constexpr double most_correction = 0.5, least_snap = 0.01;
+/// An equilibrium may belong to another branch than the one that the robot would reach where its distance from the
+/// prediction exceeds both this fraction of the predicted motion from the group's middle and this fraction of the
+/// robot's diagonal.
+constexpr double max_correction = 0.5, min_snap = 0.01;
 
-/// Moves the sample nearest to the mean to the front; distances in shares of the ranges.
+/// Moves the sample nearest to the mean to the front; distances in fractions of the ranges.
 void begin_with_the_middle(const Model& model, const Actuations& actuations, std::vector<Index>& group) {
   const std::vector<Index> varied = varied_actuators(model);
-  Eigen::MatrixXd shares(varied.size(), group.size());
+  Eigen::MatrixXd fractions(varied.size(), group.size());
   for (std::size_t d = 0; d < varied.size(); ++d) {
     const Actuator& actuator = model.actuators[varied[d]];
     for (std::size_t i = 0; i < group.size(); ++i)
-      shares(d, i) = (actuations(group[i], varied[d]) - actuator.low) / (actuator.high - actuator.low);
+      fractions(d, i) = (actuations(group[i], varied[d]) - actuator.low) / (actuator.high - actuator.low);
   }
-  const Eigen::VectorXd mean = shares.rowwise().mean();
+  const Eigen::VectorXd mean = fractions.rowwise().mean();
   Index middle = 0;
-  (shares.colwise() - mean).colwise().squaredNorm().minCoeff(&middle);
+  (fractions.colwise() - mean).colwise().squaredNorm().minCoeff(&middle);
   std::rotate(group.begin(), group.begin() + middle, group.begin() + middle + 1);
 }
 
@@ -63,8 +64,8 @@ class Group {
     Equilibrium found = statics_.solve(actuation, predicted, options_, progress_);
     const double correction = largest_move(predicted.positions, found.state.positions);
     const double move = largest_move(middle_.positions, predicted.positions);
-    const bool snapped = model_.formulation == Formulation::physical && correction > most_correction * move &&
-                         correction > least_snap * model_.diagonal_mm;
+    const bool snapped = model_.formulation == Formulation::physical && correction > max_correction * move &&
+                         correction > min_snap * model_.diagonal_mm;
     if (found.report.stopped || !(failed(found) || snapped)) return found;
     const int before = found.report.iterations;
     found = statics_.solve(actuation, middle_, options_, progress_);

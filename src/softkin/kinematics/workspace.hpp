@@ -9,8 +9,8 @@
 namespace softkin {
 
 /// Samples in groups of neighbours. A group begins with its middle, which is solved from rest; all others are predicted
-/// from there, with one factorisation for all. Groups know nothing of each other, so that any number of threads and
-/// processes can share them.
+/// from there, with one factorisation for all. Groups are independent of each other, so that they can be distributed to
+/// any number of threads and processes.
 struct WorkspacePlan {
   Actuations actuations;                   // of all samples, in the order of their numbers
   std::vector<std::vector<Index>> groups;  // sample numbers in the order in which they are solved, each in one group
@@ -19,21 +19,22 @@ struct WorkspacePlan {
   [[nodiscard]] Index samples() const { return actuations.rows(); }
 };
 
-/// Samples of a group, of so many samples in all: 8 to 64, a fiftieth. The first solve, from rest, is to cost little in
-/// the mean, but the others are to be near, and there are to be groups for everyone.
+/// Returns the number of samples in a group: a fiftieth of all samples, from 8 to 64. Larger groups spread the cost of
+/// the first solve, from rest; smaller ones keep their samples near each other and occupy all threads.
 [[nodiscard]] Index group_size(Index samples);
 
 /// throws  InvalidInput as sample_actuations does
 [[nodiscard]] WorkspacePlan plan_workspace(const Model& model, const SamplingOptions& options);
 
-/// A group to be solved, or to be gone on with.
+/// A group to be solved, or to be continued.
 struct GroupTask {
   Index group = 0;                           // of WorkspacePlan::groups
   std::vector<std::optional<Status>> known;  // per sample of the group: how it ended, where that has been done before
 };
 
-/// Solves the samples of a group that are not known, in order, and gives each away. A sample that is not reached from
-/// the group's middle is tried once more from rest. Each is a function of the other arguments alone, whatever is known.
+/// Solves the samples of a group that are not known, in order, and passes each to `give`. A sample that is not reached
+/// from the group's middle is tried once more from rest. Each sample depends on the other arguments alone, not on what
+/// is known.
 ///
 /// options  threads and reuse_factor are set here
 /// returns  false where progress stopped it
@@ -41,17 +42,17 @@ bool solve_group(const Statics& statics, const WorkspacePlan& plan, const Static
                  const GroupTask& task, const std::function<void(const WorkspaceSample&)>& give,
                  const ProgressCallback& progress = {});
 
-/// Hands out groups and keeps what is made of them. Asked by several threads at once.
+/// Distributes groups and stores their samples. Several threads call it at once.
 class GroupDesk {
  public:
   virtual ~GroupDesk() = default;
-  /// A group that nobody has; nothing where none is left.
+  /// Returns a group that no thread has taken; nothing where none is left.
   [[nodiscard]] virtual std::optional<GroupTask> take() = 0;
   virtual void keep(const WorkspaceSample& sample) = 0;
 };
 
-/// Solves groups of the desk on so many threads until none is left or progress, which is called on any of them,
-/// returns false. Rethrows the first exception of a thread.
+/// Solves groups of the desk on several threads until none is left or progress, which any of them calls, returns false.
+/// Rethrows the first exception of a thread.
 void solve_groups(const Statics& statics, const WorkspacePlan& plan, const StaticsOptions& options, int threads,
                   GroupDesk& desk, const ProgressCallback& progress = {});
 

@@ -38,8 +38,8 @@ Points Anderson::next(const Points& x, const Points& image) {
     right[i] = step_changes_[i].cwiseProduct(step).sum();
   }
   Points mixed = image;
-  const Eigen::VectorXd share = MinimumNorm(normal).solve(right);
-  for (Index i = 0; i < count; ++i) mixed -= share[i] * image_changes_[i];
+  const Eigen::VectorXd fraction = MinimumNorm(normal).solve(right);
+  for (Index i = 0; i < count; ++i) mixed -= fraction[i] * image_changes_[i];
   return mixed;
 }
 

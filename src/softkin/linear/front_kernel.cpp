@@ -25,7 +25,7 @@ void run_update_strips(const FrontBlock<Number>& block, Index low, Index high) {
 
 /// Loops over ranges of strips, on the team where there is enough to do.
 template <class Body>
-void share(Team& team, Index strips, double work, const Body& body) {
+void fraction(Team& team, Index strips, double work, const Body& body) {
   if (team.size() == 1 || work < worth_sharing) return body(0, strips);
   team.each(strips, [&](Index s) { body(s, s + 1); });
 }
@@ -60,8 +60,9 @@ Index factor_front(const FrontPlace<Number>& front, Number least, Number* diagon
     if (block.rest() == 0) continue;
     const Index strips = run_strip_count(block);
     const double depth = block.width, rows = block.rest();
-    share(team, strips, rows * depth * depth, [&](Index low, Index high) { run_solve_strips(block, low, high); });
-    share(team, strips, 0.5 * rows * rows * depth, [&](Index low, Index high) { run_update_strips(block, low, high); });
+    fraction(team, strips, rows * depth * depth, [&](Index low, Index high) { run_solve_strips(block, low, high); });
+    fraction(team, strips, 0.5 * rows * rows * depth,
+             [&](Index low, Index high) { run_update_strips(block, low, high); });
   }
   return negative;
 }

@@ -119,9 +119,9 @@ class Symbolic {
     const double below = unknowns(parent.below), width = narrow + wide;
     const double missing = wide + below - unknowns(child.below);
     zeros_together_ = child.zeros + parent.zeros + narrow * missing;
-    const double share = zeros_together_ / (width * (0.5 * width + below));
-    if (fill_ == Fill::for_solves) return zeros_together_ <= 8 || share < 0.1;
-    return width <= 16 || (width <= 48 && share < 0.4) || (width <= 144 && share < 0.12) || share < 0.05;
+    const double fraction = zeros_together_ / (width * (0.5 * width + below));
+    if (fill_ == Fill::for_solves) return zeros_together_ <= 8 || fraction < 0.1;
+    return width <= 16 || (width <= 48 && fraction < 0.4) || (width <= 144 && fraction < 0.12) || fraction < 0.05;
   }
 
   const BlockColumns& pattern_;

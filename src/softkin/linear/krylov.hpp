@@ -75,9 +75,9 @@ bool gmres(const Product& product, const Eigen::VectorXd& b, double tolerance, i
       next /= norm;
     }
     if (used == 0) return false;
-    const Eigen::VectorXd shares =
+    const Eigen::VectorXd fractions =
         upper.topLeftCorner(used, used).template triangularView<Eigen::Upper>().solve(right.head(used));
-    for (int i = 0; i < used; ++i) x += shares[i] * basis[i];
+    for (int i = 0; i < used; ++i) x += fractions[i] * basis[i];
     if (left <= goal) return x.allFinite();
     product(x, residual);
     residual = b - residual;
@@ -110,27 +110,27 @@ Remainder conjugate_residuals(const Product& product, double tolerance, int roun
                               Eigen::MatrixXd& x) {
   constexpr double dependent = 1e-8;  // directions whose images others already have but for rounding, which would grow
   const Eigen::VectorXd sizes = left.colwise().norm();
-  const auto share_left = [&](Eigen::Index column) {
+  const auto fraction_left = [&](Eigen::Index column) {
     return sizes[column] > 0 ? left.col(column).norm() / sizes[column] : 0.0;
   };
   std::vector<Eigen::VectorXd> directions, images;  // images: orthonormal
-  Eigen::MatrixXd asked, answered;
+  Eigen::MatrixXd requested, answered;
   Remainder remainder;
   x.setZero(left.rows(), left.cols());
   for (int round = 0; round < rounds; ++round) {
     std::vector<Eigen::Index> open;
     for (Eigen::Index i = 0; i < left.cols(); ++i)
-      if (!(share_left(i) <= tolerance)) open.push_back(i);
+      if (!(fraction_left(i) <= tolerance)) open.push_back(i);
     if (open.empty()) break;
-    asked = left(Eigen::all, open);
-    answered.resizeLike(asked);
-    product(asked, answered);
+    requested = left(Eigen::all, open);
+    answered.resizeLike(requested);
+    product(requested, answered);
     if (round == 0)
-      for (Eigen::Index i = 0; i < asked.cols(); ++i)
-        Remainder::raise(remainder.apart, (answered.col(i) - asked.col(i)).norm() / asked.col(i).norm());
+      for (Eigen::Index i = 0; i < requested.cols(); ++i)
+        Remainder::raise(remainder.apart, (answered.col(i) - requested.col(i)).norm() / requested.col(i).norm());
     const std::size_t known = images.size();
-    for (Eigen::Index i = 0; i < asked.cols(); ++i) {
-      Eigen::VectorXd direction = asked.col(i), image = answered.col(i);
+    for (Eigen::Index i = 0; i < requested.cols(); ++i) {
+      Eigen::VectorXd direction = requested.col(i), image = answered.col(i);
       const double before = image.norm();
       for (std::size_t j = 0; j < images.size(); ++j) {
         const double part = images[j].dot(image);
@@ -148,7 +148,7 @@ Remainder conjugate_residuals(const Product& product, double tolerance, int roun
       }
     }
     remainder.left = 0;
-    for (const Eigen::Index i : open) Remainder::raise(remainder.left, share_left(i));
+    for (const Eigen::Index i : open) Remainder::raise(remainder.left, fraction_left(i));
     if (images.size() == known) break;
     if (round > 1 && std::pow(remainder.left, static_cast<double>(rounds) / (round + 1)) > tolerance) break;
   }

@@ -8,11 +8,11 @@ namespace softkin::linear {
 
 namespace {
 
-/// Share of x . M x that rounding may change, and contraction.
-constexpr double most_rounded = 0.15, slowest = 0.3;
-/// Pivots below this share of what `least` is a share of are rounding.
+/// Largest fraction of x . M x that rounding may change, and slowest contraction.
+constexpr double max_rounded = 0.15, slowest = 0.3;
+/// In single precision, pivots are replaced below this multiple of `least`.
 constexpr double single_least = 1e6;
-constexpr int most_patience = 64;
+constexpr int max_patience = 64;
 
 }  // namespace
 
@@ -29,7 +29,7 @@ void MixedLdlt::forget() {
 
 void MixedLdlt::distrust() {
   wait_ = patience_;
-  patience_ = std::min(2 * patience_, most_patience);
+  patience_ = std::min(2 * patience_, max_patience);
 }
 
 /// Solves with the factor in single precision; found_ becomes the solutions, with one more. False where they are not to
@@ -37,15 +37,15 @@ void MixedLdlt::distrust() {
 bool MixedLdlt::solve_trusted(const LargeVector<double>& values, bool by_energy, const Eigen::MatrixXd& right_sides,
                               Team& team) {
   const Index count = right_sides.cols();
-  if (lopsided_.size() != right_sides.rows()) lopsided_ = lopsided(right_sides.rows());
+  if (unsymmetric_.size() != right_sides.rows()) unsymmetric_ = unsymmetric(right_sides.rows());
   found_.resize(right_sides.rows(), count + 1);
   found_.leftCols(count) = right_sides;
-  found_.col(count) = lopsided_;
+  found_.col(count) = unsymmetric_;
   single_->solve(found_, team);
-  left_ = lopsided_;
+  left_ = unsymmetric_;
   subtract_product(tree_->pattern, values, found_.col(count), left_, team);
-  rounded_ = std::abs(found_.col(count).dot(left_.col(0)) / found_.col(count).dot(lopsided_));
-  if (by_energy) return rounded_ <= most_rounded;
+  rounded_ = std::abs(found_.col(count).dot(left_.col(0)) / found_.col(count).dot(unsymmetric_));
+  if (by_energy) return rounded_ <= max_rounded;
   single_->solve(left_, team);
   return left_.norm() <= slowest * found_.col(count).norm();
 }

@@ -6,30 +6,30 @@
 
 namespace softkin::linear {
 
-/// LDL^T in single precision where that can be trusted, else in double. Half the memory of one in double precision, and
-/// nearly twice as fast.
+/// LDL^T in single precision where that is accurate enough, else in double. Single precision takes half the memory and
+/// is nearly twice as fast.
 ///
 /// Let A be the matrix and M the product of its factor. Where M is positive definite, A is as well if
-/// x . (M - A) x < x . M x for every x; that is tried, with much to spare, on the solution x of M x = b for a b that no
-/// symmetry shares, which M^-1 has turned towards the eigenvalues nearest 0: there rounding tells most. Where M is not
-/// definite or solutions are to be good, I - M^-1 A must contract there: then no matrix on the straight way from M to A
-/// is singular, so that both have as many negative eigenvalues.
+/// x . (M - A) x < x . M x for every x; that is tested, with a large margin, on the solution x of M x = b for a b
+/// without any symmetry, which M^-1 has turned towards the eigenvalues nearest 0: there rounding has most effect. Where
+/// M is not definite or solutions have to be good, I - M^-1 A must contract there: then no matrix on the straight line
+/// from M to A is singular, so that both have as many negative eigenvalues.
 class MixedLdlt {
  public:
   explicit MixedLdlt(std::shared_ptr<const FrontTree> tree) : tree_(std::move(tree)) {}
 
-  /// Goes on with another pattern; nothing is factorised.
+  /// Changes to another pattern; nothing is factorised.
   void change(std::shared_ptr<const FrontTree> tree);
 
   /// As if nothing had been factorised before: results are then those of a new object.
   void forget();
 
-  /// Single precision was not enough, though it seemed so: the next factors are in double, as many as after a factor
-  /// that is not trusted.
+  /// Reports that single precision was insufficient in spite of the test: the next factors are in double, as many as
+  /// after a factor that fails the test.
   void distrust();
 
-  /// What solutions are to be, as factorise() and solve() say. sign: as enough, and a
-  /// guess where the matrix seems not to be positive definite.
+  /// The required accuracy of solutions, as of factorise() and solve(). sign: as enough, and a guess where the matrix
+  /// seems not to be positive definite.
   enum class Precision { sign, enough, good, twice };
 
   /// Factorises, and solves for every column of right_sides, as solve() does.
@@ -49,9 +49,9 @@ class MixedLdlt {
 
   /// Is the last factor in double precision?
   [[nodiscard]] bool in_double() const { return in_double_; }
-  /// Is it as the precision asked for says? Where it is not, with `sign`, negative pivots and solutions are a guess.
+  /// Does it meet the requested precision? Where it does not, with `sign`, negative pivots and solutions are a guess.
   [[nodiscard]] bool trusted() const { return trusted_; }
-  /// Share of x . M x that rounding has changed for the x that was tried; 0 in double precision.
+  /// Fraction of x . M x that rounding has changed for the tested x; 0 in double precision.
   [[nodiscard]] double rounded() const { return in_double_ ? 0 : rounded_; }
   [[nodiscard]] double bytes() const;
   [[nodiscard]] double flops() const { return tree_->flops; }
@@ -67,7 +67,7 @@ class MixedLdlt {
   double rounded_ = 0;
   int wait_ = 0,
       patience_ = 1;  // factorisations in double before single is tried again, now and after the next failure
-  Eigen::VectorXd lopsided_;
+  Eigen::VectorXd unsymmetric_;
   Eigen::MatrixXd found_, left_;
 };
 

@@ -201,7 +201,7 @@ Ordering postordered(const Graph& graph, const std::vector<Index>& order) {
   std::vector<Index> subtrees, top, places;
   cut(tree, subtrees, top);
 
-  constexpr std::size_t max_pieces = 16;  // light subtrees share the last ones
+  constexpr std::size_t max_pieces = 16;  // the last piece takes the remaining light subtrees
   Ordering result;
   result.pieces.push_back(0);
   for (std::size_t i = 0; i < subtrees.size(); ++i) {

@@ -10,7 +10,7 @@ namespace {
 
 /// body(begin, end) over columns, of which threads take pieces where that is worth their start.
 template <class Body>
-void share_columns(Index columns, Index rows, Team& team, const Body& body) {
+void fraction_columns(Index columns, Index rows, Team& team, const Body& body) {
   constexpr double worthwhile = 1e5;
   if (static_cast<double>(columns) * rows < worthwhile)
     body(Index{0}, columns);
@@ -163,7 +163,7 @@ void SparseLdltOf<Number>::assemble(Index index, const LargeVector<double>& valu
   const Front& own = tree_->fronts[index];
   const BlockColumns& pattern = tree_->pattern;
   const std::ptrdiff_t stride = front_stride<Number>(own.size());
-  share_columns(own.pivots(), own.size(), team, [&](Index begin, Index end) {
+  fraction_columns(own.pivots(), own.size(), team, [&](Index begin, Index end) {
     std::fill(front + begin * stride, front + end * stride, Number(0));  // above the diagonal, too: long runs are fast
   });
   for (Index node = own.begin_node; node < own.end_node; ++node) {
@@ -189,7 +189,7 @@ void SparseLdltOf<Number>::add_children(Index index, bool of_pivots, const Front
     const RowPack *begin = of_pivots ? first : below, *end = of_pivots ? below : last;
     const FrontSum<Number> sum{update, to, left_stride<Number>(child.below), stride, of_pivots ? 0 : own.pivots(),
                                last};
-    share_columns(end - begin, child.below, team, [&](Index from, Index beyond) {
+    fraction_columns(end - begin, child.below, team, [&](Index from, Index beyond) {
       for (Index k = from; k < beyond; ++k) run_add_columns(sum, begin + k);
     });
   }

@@ -16,7 +16,7 @@ struct Pivots {
 };
 
 /// LDL^T of a symmetric sparse matrix without pivoting, multifrontal: analysed once, factorised many times, also by
-/// several objects that share the analysis. Memory for L is taken at the first factorisation. The number of negative
+/// several objects with a common analysis. Memory for L is taken at the first factorisation. The number of negative
 /// pivots is the number of negative eigenvalues, where rounding leaves it. Independent subtrees and large fronts run on
 /// the team; the result does not depend on its size.
 ///

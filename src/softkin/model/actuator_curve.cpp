@@ -86,12 +86,12 @@ const CurveBranch& ActuatorCurve::branch(Branch which) const {
   return *unloading;
 }
 
-double ActuatorCurve::ratio(double asked, Branch which) const {
+double ActuatorCurve::ratio(double requested, Branch which) const {
   const MonotoneCurve& curve = branch(which).ratio;
-  if (asked >= curve.x().front() && asked <= curve.x().back()) return curve.value(asked);
+  if (requested >= curve.x().front() && requested <= curve.x().back()) return curve.value(requested);
   const bool pressure = input == CurveInput::pressure;
-  const bool beyond_end = asked > curve.x().back() && !end.empty();
-  throw InvalidInput(std::string(pressure ? "the gauge pressure " : "the voltage ") + number(asked) +
+  const bool beyond_end = requested > curve.x().back() && !end.empty();
+  throw InvalidInput(std::string(pressure ? "the gauge pressure " : "the voltage ") + number(requested) +
                      unit_of_input(input) + " is outside the " + branch_name(which) + " branch of curve " + file +
                      ", " + range_text(curve.x(), unit_of_input(input)) +
                      (beyond_end ? " (it ends there by " + end + ")" : ""));

@@ -36,7 +36,7 @@ class MonotoneCurve {
   std::vector<double> x_, y_, slopes_;
 };
 
-/// What a calibrated actuator is driven by: gauge pressure [kPa] (pneumatic) or voltage [kV] (dea).
+/// The input of a calibrated actuator: gauge pressure [kPa] (pneumatic) or voltage [kV] (dea).
 enum class CurveInput { pressure, voltage };
 
 /// Of a hysteresis: the input rises, or it falls.
@@ -51,9 +51,9 @@ struct CurveBranch {
 /// Measured or computed relation between an actuator's input and its volume or area.
 struct ActuatorCurve {
   std::string file;                         // for messages
-  CurveInput input = CurveInput::pressure;  // what it is a function of
+  CurveInput input = CurveInput::pressure;  // the quantity of which it is a function
   double atmosphere_kPa = 100;              // absolute; that of the gauge pressures
-  std::string end;                          // what ends it at its highest input ("pull-in"); empty: the measurements
+  std::string end;                          // why it ends at its highest input ("pull-in"); empty: end of measurements
   CurveBranch loading;                      // of a rising input
   std::optional<CurveBranch> unloading;     // of a falling one; none: not measured
 

@@ -14,24 +14,25 @@ namespace softkin {
 struct FieldSource;       // magnetic_field.hpp
 enum class FieldCommand;  // the same
 
-/// What the user commands: length, area or volume over that at rest [-]; or the load, tension [N] or gauge pressure
-/// [kPa], voltage of a dea [kV], or what a magnetic field is commanded by; or what fills a sealed chamber [mL].
+/// The quantity that the user commands. ratio: length, area or volume over that at rest [-]; load: tension [N], gauge
+/// pressure [kPa], voltage of a dea [kV], or the quantity of a magnetic field; filling: the content of a sealed chamber
+/// [mL].
 enum class Control { ratio, load, filling };
 
-/// What is sealed in a chamber as the user describes it.
+/// The content of a sealed chamber as the user describes it.
 struct FillingSpec {
   bool liquid = false;               // else a gas
   double exponent = 1;               // gas: n of p V^n = const, > 0
   double compressibility = 0;        // liquid [1/MPa], >= 0
   double dead_mL = 0;                // tubes and fittings, >= 0
-  std::optional<double> syringe_mL;  // before it pushes, > 0; then what it has pushed is commanded, else the amount
+  std::optional<double> syringe_mL;  // before it pushes, > 0; the pushed volume is commanded; none: the amount
   double atmosphere_kPa = 101.325;   // absolute, > 0
 };
 
-/// How a target-shape actuator's elements share what its command asks for, a_i being the ratio of element i, u_i its
-/// measure at rest, and sum a_i u_i = a U, Eqs. (6)-(8). least_norm: the change of the current ratios whose norm is
-/// least; uniform: the same ratio for all; proportional: a_i in proportion to the current ratios.
-enum class Distribution { least_norm, uniform, proportional };
+/// How the command of a target-shape actuator is distributed over its elements, with a_i the ratio of element i, u_i
+/// its measure at rest, and sum a_i u_i = a U, Eqs. (6)-(8). minimum_norm: the change of the current ratios with the
+/// smallest norm; uniform: the same ratio for all; proportional: a_i in proportion to the current ratios.
+enum class Distribution { minimum_norm, uniform, proportional };
 
 /// A number for some prisms of the mesh.
 struct PrismValues {
@@ -57,21 +58,21 @@ struct PneumaticSpec {
   std::optional<std::string> wall{};         // region of faces around it
   std::optional<Vec3> void_at{};             // physical: a point in the empty space of the body that it is [mm]
   std::vector<std::string> connected{};      // physical: two regions or more, of elements or of faces: chambers that
-                                             // share what fills them
+                                             // have one common filling
   std::optional<FillingSpec> filling{};      // of control filling
 };
 
 /// A layer of a dielectric elastomer.
 struct DeaSpec {
-  std::string region{};                 // of volume: its prisms
-  double prestretch = 1;                // under voltage: area without force, over that in the mesh [-], > 0
-  std::optional<PrismValues> shares{};  // under voltage: the share of it that each prism has [-]; none: all of it
+  std::string region{};                    // of volume: its prisms
+  double prestretch = 1;                   // under voltage: area without force, over that in the mesh [-], > 0
+  std::optional<PrismValues> fractions{};  // under voltage: fraction of it at each prism [-]; none: all of it
 };
 
-/// A command of a magnetic field. Actuators that share a source command the same one. Physical.
+/// A command of a magnetic field. Actuators with the same source command the same field. Physical.
 struct FieldSpec {
   std::shared_ptr<const FieldSource> source{};  // which may be that of several actuators
-  FieldCommand command{};                       // what of it is commanded
+  FieldCommand command{};                       // which quantity of it is commanded
 };
 
 /// How a growth follows a temperature: by a coefficient, or by a table of stretches.
@@ -102,16 +103,16 @@ struct ActuatorSpec {
   std::string name;                  // for commands, messages and columns of tables
   DriveSpec drive;                   // what it is
   std::string robot;                 // of several: whose elements, gaps and empty spaces count; empty: all
-  Control control = Control::ratio;  // what of it is commanded; others: physical formulation
+  Control control = Control::ratio;  // which quantity is commanded; load and filling: physical
   double low = 0, high = 0;          // range [-]: 0 < low <= high; tension [N], voltage [kV]: 0 <= low;
                                      // pressure [kPa]: any; filling [mL]: 0 < low, pushed: any
-  double rest = 1;                   // value where none is asked for: a dea's prestretch; load control: 0;
+  double rest = 1;                   // value without a command: a dea's prestretch; load control: 0;
                                      // filling: found by compile(); else 1
-  double factor = 1, offset = 0;     // tension and pressure: of a command, what acts is this times it plus that
+  double factor = 1, offset = 0;     // tension and pressure: the acting value is factor times the command plus offset
                                      // [N, kPa]; factor > 0
-  double backlash = 0;               // the same: by how much a command falls before what acts does [N, kPa], >= 0
+  double backlash = 0;               // the same: fall of a command before the acting value falls [N, kPa], >= 0
   double weight = 5;                 // w of Eq. (9), > 0
-  Distribution distribution = Distribution::least_norm;  // of what is commanded over its elements; target-shape
+  Distribution distribution = Distribution::minimum_norm;  // of the command over its elements; target-shape
   std::optional<ActuatorCurve> curve;  // of a chamber or a dea under ratio control: ratio by pressure or voltage
   Branch branch = Branch::loading;     // of the curve, where a command names none
   Origin origin;                       // of its entry, for messages

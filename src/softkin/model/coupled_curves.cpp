@@ -10,8 +10,8 @@ namespace softkin {
 namespace {
 
 constexpr double inside_cell = 1e-9;  // of its sides
-constexpr double same_answer = 1e-6;  // of the grid: neighbours share their faces
-constexpr int most_iterations = 50;
+constexpr double same_answer = 1e-6;  // of the grid: neighbouring cells have common faces
+constexpr int max_iterations = 50;
 
 /// The ratios within a cell of the grid, linear along each side.
 class GridCell {
@@ -25,30 +25,30 @@ class GridCell {
     }
   }
 
-  /// Where the whole cell is below or above in a chamber, so is all in it.
-  [[nodiscard]] bool may_hold(const Eigen::VectorXd& asked) const {
+  /// Can the cell contain these ratios? Not where all its corners are below or above one of them.
+  [[nodiscard]] bool may_hold(const Eigen::VectorXd& requested) const {
     Eigen::VectorXd least = *corners_.front(), most = least;
     for (const Eigen::VectorXd* corner : corners_) {
       least = least.cwiseMin(*corner);
       most = most.cwiseMax(*corner);
     }
-    const double slack = inside_cell * asked.cwiseAbs().maxCoeff();
-    return ((asked - least).array() >= -slack).all() && ((most - asked).array() >= -slack).all();
+    const double slack = inside_cell * requested.cwiseAbs().maxCoeff();
+    return ((requested - least).array() >= -slack).all() && ((most - requested).array() >= -slack).all();
   }
 
-  /// t: shares of the sides; slopes: by these, a column each; nullptr: not asked for.
+  /// t: fractions of the sides; slopes: by these, a column each; nullptr: not requested.
   [[nodiscard]] Eigen::VectorXd value(const Eigen::VectorXd& t, Eigen::MatrixXd* slopes) const {
     const Index n = t.size();
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(n);
     if (slopes != nullptr) slopes->setZero(n, n);
     for (std::size_t c = 0; c < corners_.size(); ++c) {
       double weight = 1;
-      for (Index k = 0; k < n; ++k) weight *= share(c, k, t);
+      for (Index k = 0; k < n; ++k) weight *= fraction(c, k, t);
       sum += weight * *corners_[c];
       for (Index k = 0; slopes != nullptr && k < n; ++k) {
         double others = (c >> k & 1) != 0 ? 1 : -1;
         for (Index j = 0; j < n; ++j)
-          if (j != k) others *= share(c, j, t);
+          if (j != k) others *= fraction(c, j, t);
         slopes->col(k) += others * *corners_[c];
       }
     }
@@ -56,12 +56,12 @@ class GridCell {
   }
 
   /// By Newton's method from the middle.
-  [[nodiscard]] std::optional<Eigen::VectorXd> solve(const Eigen::VectorXd& asked) const {
-    const Index n = asked.size();
+  [[nodiscard]] std::optional<Eigen::VectorXd> solve(const Eigen::VectorXd& requested) const {
+    const Index n = requested.size();
     Eigen::VectorXd t = Eigen::VectorXd::Constant(n, 0.5);
     Eigen::MatrixXd slopes;
-    for (int i = 0; i < most_iterations; ++i) {
-      const Eigen::VectorXd missing = asked - value(t, &slopes);
+    for (int i = 0; i < max_iterations; ++i) {
+      const Eigen::VectorXd missing = requested - value(t, &slopes);
       const Eigen::VectorXd step = slopes.fullPivLu().solve(missing);
       if (!step.allFinite()) return std::nullopt;
       t += step;
@@ -84,7 +84,7 @@ class GridCell {
   }
 
  private:
-  static double share(std::size_t corner, Index side, const Eigen::VectorXd& t) {
+  static double fraction(std::size_t corner, Index side, const Eigen::VectorXd& t) {
     return (corner >> side & 1) != 0 ? t[side] : 1 - t[side];
   }
 
@@ -136,13 +136,13 @@ Eigen::VectorXd CoupledCurves::ratios_at(const Eigen::VectorXd& kPa) const {
   return GridCell(*this, low).value(t, nullptr);
 }
 
-std::vector<Eigen::VectorXd> CoupledCurves::pressures_for(const Eigen::VectorXd& asked) const {
+std::vector<Eigen::VectorXd> CoupledCurves::pressures_for(const Eigen::VectorXd& requested) const {
   std::vector<Eigen::VectorXd> found;
   std::vector<std::size_t> low(pressures_kPa.size(), 0);
   do {
     const GridCell cell(*this, low);
-    if (!cell.may_hold(asked)) continue;
-    const std::optional<Eigen::VectorXd> t = cell.solve(asked);
+    if (!cell.may_hold(requested)) continue;
+    const std::optional<Eigen::VectorXd> t = cell.solve(requested);
     if (t && is_new(*this, found, cell.pressures(*t))) found.push_back(cell.pressures(*t));
   } while (next_cell(*this, low));
   return found;

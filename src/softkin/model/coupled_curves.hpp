@@ -20,9 +20,9 @@ struct CoupledCurves {
   [[nodiscard]] std::size_t node(const std::vector<std::size_t>& places) const;
   /// throws  InvalidInput naming the file outside the grid
   [[nodiscard]] Eigen::VectorXd ratios_at(const Eigen::VectorXd& kPa) const;
-  /// All pressures of the grid that lead to these ratios, to rounding: none outside of what was measured, several where
-  /// the measurements say so.
-  [[nodiscard]] std::vector<Eigen::VectorXd> pressures_for(const Eigen::VectorXd& asked) const;
+  /// Returns all pressures inside the grid that lead to these ratios, within rounding: none outside the measured range,
+  /// several where the measured ratios are not unique.
+  [[nodiscard]] std::vector<Eigen::VectorXd> pressures_for(const Eigen::VectorXd& requested) const;
 };
 
 }  // namespace softkin

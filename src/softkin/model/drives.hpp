@@ -16,7 +16,7 @@ struct CavityFace {
   std::array<Index, 3> edges{-1, -1, -1};  // nodes on the edges 01, 12, 20; -1: order 1
 };
 
-/// A piece of cable that runs free between two points of the body, and the body's point across it: the triangle
+/// A free segment of a cable between two points of the body, and the body's point across it: the triangle
 /// (points[segment], points[segment + 1], apex) is the actuation element of Eq. (6).
 struct CableGap {
   Index segment = 0;   // of the cable, from 0
@@ -27,12 +27,12 @@ struct CableGap {
 struct CableDrive {
   std::vector<EmbeddedPoint> points{};  // along it
   std::vector<CableGap> gaps{};         // target-shape
-  bool pushes = false;                  // held to its length whatever that takes, as a rod would be
+  bool pushes = false;                  // keeps its length under tension and compression, as a rod
   double friction = 0, sheath = 0;      // physical: where it turns; of its sheath, times the sheath's turns [-]
 };
 
-/// One of several chambers that share what fills them: faces of ChamberDrive::cavity, to before `end`, from where the
-/// one before it ends.
+/// One of several chambers with a common filling: the faces of ChamberDrive::cavity from the end of the chamber before
+/// it to before `end`.
 struct ConnectedChamber {
   std::string region;  // as the description names it
   Index end = 0;       // in ChamberDrive::cavity
@@ -54,15 +54,15 @@ struct ChamberDrive {
   std::vector<Triangle> surface{};            // triangles over `points`
   std::optional<Filling> filling{};           // physical: of control filling
   std::vector<ConnectedChamber> connected{};  // physical: of several
-  bool flat = false;                          // encloses nothing at rest, as an empty bag does
+  bool flat = false;                          // encloses no volume at rest, as an empty bag
   std::vector<ChamberCap> caps{};             // physical: where supports close it
 };
 
 /// A layer of a dielectric elastomer.
 struct DeaDrive {
-  std::vector<Index> prisms{};   // elements of Model
-  std::vector<double> shares{};  // under voltage: of it that each of them has [-]
-  double prestretch = 1;         // the same: area of the layer without force, over that in the mesh [-]
+  std::vector<Index> prisms{};      // elements of Model
+  std::vector<double> fractions{};  // under voltage: fraction of it at each of them [-]
+  double prestretch = 1;            // the same: area of the layer without force, over that in the mesh [-]
 };
 
 /// One of the commands of a magnetic field.
@@ -90,7 +90,7 @@ struct ForceCommand {
   std::vector<CavityFace> faces{};       // of the region over which it is spread; empty: at a point
 };
 
-/// How firmly a body is held.
+/// The degree to which a body is held.
 struct HoldCommand {
   Index body = -1;  // index into Model::bodies
 };
@@ -111,20 +111,20 @@ struct PressureCommand {
   Index traction = -1;  // index into Loads::tractions
 };
 
-/// What an actuator is. The last six are no drives of the robot but what is done to it
-/// and its surroundings.
+/// The kind of an actuator. The last six are not drives of the robot but loads and motions that are imposed on it and
+/// its surroundings.
 using Drive = std::variant<CableDrive, DeaDrive, ChamberDrive, MagneticDrive, GrowthDrive, MotionCommand, ForceCommand,
                            HoldCommand, TurnCommand, MomentCommand, PressureCommand>;
 
-/// What is told of a kind alike wherever it is told; every kind has its own.
+/// Names and units of a kind of actuator, for messages and tables; every kind has its own.
 struct DriveTraits {
   const char* kind;          // its name
   bool drives = false;       // is it of the robot
-  const char* measure = "";  // of the elements that its ratio is of: "length", "area" or "volume"
-  const char* load = "";     // that it is commanded by, where it is
+  const char* measure = "";  // of which its command is a ratio: "length", "area" or "volume"
+  const char* load = "";     // that is commanded under load control
   const char* unit = "";     // of that
 };
-/// Of a kind.
+/// The traits of a kind.
 template <class Kind>
 inline constexpr DriveTraits traits_of = Kind::has_no_traits;  // no kind is without
 template <>
@@ -150,7 +150,7 @@ inline constexpr DriveTraits traits_of<MomentCommand>{"moment", false, "", "mome
 template <>
 inline constexpr DriveTraits traits_of<PressureCommand>{"pressure", false, "", "pressure", "kPa"};
 
-/// Those of the kind that a drive is of.
+/// Returns the traits of the kind of a drive.
 [[nodiscard]] inline const DriveTraits& traits(const Drive& drive) {
   return std::visit([]<class Kind>(const Kind&) -> const DriveTraits& { return traits_of<Kind>; }, drive);
 }

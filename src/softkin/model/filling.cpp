@@ -21,31 +21,31 @@ double Filling::elsewhere_mm3(double command) const {
 }
 
 /// Of its volume under atmospheric pressure.
-double Filling::share(double pressure) const {
+double Filling::fraction(double pressure) const {
   if (liquid) return std::exp(-compressibility * pressure);
   return std::pow(atmosphere_MPa / (atmosphere_MPa + pressure), 1 / exponent);
 }
 
 double Filling::volume(double command, double pressure) const {
-  return amount_mm3(command) * share(pressure) - elsewhere_mm3(command);
+  return amount_mm3(command) * fraction(pressure) - elsewhere_mm3(command);
 }
 
 double Filling::compliance(double command, double pressure) const {
-  const double whole = amount_mm3(command) * share(pressure);
+  const double whole = amount_mm3(command) * fraction(pressure);
   return liquid ? compressibility * whole : whole / (exponent * (atmosphere_MPa + pressure));
 }
 
 double Filling::by_command(double pressure) const {
-  return mm3_per_mL * (pushed ? 1 : share(pressure));
+  return mm3_per_mL * (pushed ? 1 : fraction(pressure));
 }
 
 double Filling::command(double volume, double pressure) const {
   if (!pushed) return amount_mL(volume, pressure);
-  return (volume + dead_mm3 + syringe_mm3 - amount_mm3(0) * share(pressure)) / mm3_per_mL;
+  return (volume + dead_mm3 + syringe_mm3 - amount_mm3(0) * fraction(pressure)) / mm3_per_mL;
 }
 
 double Filling::amount_mL(double volume, double pressure) const {
-  return (pushed ? amount_mm3(0) : (volume + dead_mm3) / share(pressure)) / mm3_per_mL;
+  return (pushed ? amount_mm3(0) : (volume + dead_mm3) / fraction(pressure)) / mm3_per_mL;
 }
 
 double Filling::pressure(double command, double volume) const {

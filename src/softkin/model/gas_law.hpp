@@ -17,7 +17,7 @@ struct SyringeSetup {
 /// source        Fang et al. 2020, Eq. (19)
 [[nodiscard]] double chamber_ratio(const SyringeSetup& setup, double absolute_kPa, double syringe_mm3);
 
-/// Delta V_sy [mm^3] that brings the chamber to a ratio under a pressure: Eq. (18) the other way round.
+/// Returns Delta V_sy [mm^3] that brings the chamber to a ratio under a pressure: the inverse of Eq. (18).
 [[nodiscard]] double syringe_volume(const SyringeSetup& setup, double absolute_kPa, double ratio);
 
 }  // namespace softkin

@@ -29,8 +29,7 @@ class GrowthCurve {
   std::vector<double> celsius_, stretches_, slopes_;
 };
 
-/// How much longer what has grown would be without stress: lengths along its direction, and across it, over those at
-/// rest.
+/// The stress-free stretches of grown material: lengths along its direction, and across it, over those at rest.
 struct GrowthStretch {
   /// Stretches [-].
   double along = 1, across = 1;

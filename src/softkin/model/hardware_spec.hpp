@@ -8,7 +8,7 @@
 
 namespace softkin {
 
-/// A stepper as the user describes it; what is empty takes the default of drive/machine.hpp.
+/// A stepper motor as the user describes it; empty members take the defaults of drive/machine.hpp.
 struct MotorSpec {
   Origin origin;                               // of its entry, for messages
   std::string actuator;                        // name of the robot's actuator that it moves
@@ -16,7 +16,7 @@ struct MotorSpec {
   std::optional<double> steps_per_revolution;  // motor, microsteps and gear; > 0
   std::optional<double> steps_per_mm;          // of the axis, as the board has it (M92); > 0
   std::optional<int> direction;                // 1, -1: the axis' sense that shortens the cable, pushes the plunger
-  std::optional<double> backlash_mm;           // of cable or plunger, as what follows; >= 0
+  std::optional<double> backlash_mm;           // of cable or plunger, as the two below; >= 0
   std::optional<double> max_speed_mm_per_s;    // > 0
   std::optional<double> max_acceleration_mm_per_s2;  // > 0
 };
@@ -49,7 +49,7 @@ struct ChamberSpec {
   std::optional<std::array<double, 2>> limits_kpa;  // gauge
 };
 
-/// What drives a robot, as the user wrote it.
+/// The hardware that drives a robot, as the user describes it.
 struct HardwareSpec {
   std::string file;                               // for messages
   std::optional<bool> configure;                  // send the board its steps, limits and switches

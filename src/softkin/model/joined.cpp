@@ -145,11 +145,11 @@ class Joiner {
     fibre.name = placed_.name + "." + fibre.name;
     fibre.robot = placed_.name;
     if (fibre.region) fibre.region = full(*fibre.region);
-    if (auto* helix = std::get_if<Helix>(&fibre.way)) {
+    if (auto* helix = std::get_if<Helix>(&fibre.path)) {
       helix->start = placed_.place(helix->start);
       for (Vec3* direction : {&helix->axis, &helix->first}) *direction = placed_.place.rotation * *direction;
     } else {
-      for (Vec3& point : std::get<std::vector<Vec3>>(fibre.way)) point = placed_.place(point);
+      for (Vec3& point : std::get<std::vector<Vec3>>(fibre.path)) point = placed_.place(point);
     }
     return fibre;
   }
@@ -246,7 +246,7 @@ class Joiner {
       all_.rigid.push_back({full(rigid.where), rigid.name.empty() ? "" : placed_.name + "." + rigid.name});
   }
 
-  /// What is held is a space of directions; turned, it must be spanned by axes again.
+  /// Turns a support: its held directions span a space that must be spanned by axes again after the turn.
   void turn(FixedSpec& fixed) const {
     const Mat3& rotation = placed_.place.rotation;
     const auto ones = [](const std::array<bool, 3>& axes) { return Vec3(axes[0], axes[1], axes[2]); };
@@ -292,8 +292,8 @@ class Joiner {
   }
   void fill(DeaSpec& dea) const {
     dea.region = full(dea.region);
-    if (dea.shares)
-      for (Index& prism : dea.shares->prisms) prism += all_.mesh.prisms.size();
+    if (dea.fractions)
+      for (Index& prism : dea.fractions->prisms) prism += all_.mesh.prisms.size();
   }
   void fill(GrowthSpec& growth) const {
     for (GrowthPart& part : growth.parts) {

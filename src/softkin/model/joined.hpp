@@ -19,7 +19,7 @@ struct PlacedRobot {
   Origin origin;
 };
 
-/// What is said of several robots as a whole, in place of what each says.
+/// Settings of several robots as a whole, which replace those of each robot.
 struct CommonSpec {
   std::string name;  // the scene's file name, for messages
   std::optional<Formulation> formulation;
@@ -38,8 +38,8 @@ struct CommonSpec {
 ///         RegionTable refuses
 [[nodiscard]] RobotSpec joined(std::vector<PlacedRobot> robots, const CommonSpec& common);
 
-/// Adds to robots that were joined what is said of them as a whole: regions, materials, supports, rigid regions,
-/// actuators, forces, markers, feet, contact; their names are those of the joined robots.
+/// Adds common entries to robots that were joined: regions, materials, supports, rigid regions, actuators, forces,
+/// markers, feet, contact; their names are those of the joined robots.
 void add_common(RobotSpec& robots, RobotSpec common);
 
 }  // namespace softkin

@@ -8,14 +8,14 @@ namespace softkin {
 /// 1 / mu_0, of two flux densities an energy per volume [MPa / mT^2].
 constexpr double inverse_permeability = 7.957747155e-7;
 
-/// What becomes of a remanent flux density b_r where the material is deformed by F = R U.
+/// How a remanent flux density b_r transforms where the material is deformed by F = R U.
 enum class Magnetisation {
-  turns,     // R b_r: stiff particles are carried along
+  turns,     // R b_r: stiff particles rotate with the material
   stretches  // F b_r
 };
 
-/// What a material's remanent flux density is, in the frame of the robot at rest [mT]: one for all of it, or samples in
-/// space, of which every element takes the one nearest to its centroid.
+/// The remanent flux density of a material, in the frame of the robot at rest [mT]: uniform, or samples in space, of
+/// which every element takes the one nearest to its centroid.
 struct RemanenceSpec {
   Vec3 uniform{0, 0, 0};                               // where there are no samples [mT]
   Points places{}, samples{};                          // #samples by 3 [mm], [mT]; no rows: uniform
@@ -23,8 +23,8 @@ struct RemanenceSpec {
   Magnetisation magnetisation = Magnetisation::turns;  // how it follows the deformation
 };
 
-/// What one command of a source sets: flux density along a direction or an axis [mT], current [A], and of a dipole
-/// coordinates [mm] and components of the moment [A m^2].
+/// The quantity that a command of a source sets: flux density along a direction or an axis [mT], current [A], or of a
+/// dipole coordinates [mm] and components of the moment [A m^2].
 enum class FieldCommand {
   flux_density,
   flux_density_x,
@@ -38,21 +38,21 @@ enum class FieldCommand {
   moment_y,
   moment_z
 };
-/// 0 to 2 of a command along an axis; -1 of the others.
+/// Returns 0 to 2 for a command along an axis; -1 for the others.
 [[nodiscard]] int axis_of(FieldCommand command);
 [[nodiscard]] bool places_dipole(FieldCommand command);
 
-/// The same everywhere.
+/// A uniform field.
 struct UniformField {
   Vec3 direction{0, 0, 1};  // that flux_density is along; of unit length once compiled
 };
 
-/// A circular loop of wire; a current turns about the axis by the right hand.
+/// A circular loop of wire; its current flows about the axis by the right-hand rule.
 struct CoilLoop {
   Vec3 center{0, 0, 0};  // [mm]
   Vec3 axis{0, 0, 1};    // of unit length once compiled
   double radius_mm = 1;  // > 0
-  double turns = 1;      // not 0; below it turns the other way
+  double turns = 1;      // not 0; < 0: wound in the opposite sense
 };
 struct CoilField {              // loops of wire through which one current goes
   std::vector<CoilLoop> loops;  // whose fields add up
@@ -67,7 +67,7 @@ struct GridField {
   [[nodiscard]] Vec3 high() const;   // last point [mm]
 };
 
-/// A point dipole, where it is and what its moment is while nothing else is commanded.
+/// A point dipole, with its position and moment without a command.
 struct DipoleField {
   Vec3 position{0, 0, 0};  // [mm]
   Vec3 moment{0, 0, 0};    // [A m^2]
@@ -79,7 +79,7 @@ struct FieldSource {
   std::variant<UniformField, CoilField, GridField, DipoleField> field;  // what it is in space
 };
 
-/// What is magnetic in a compiled robot, and the fields that act on it.
+/// The magnetisation of a compiled robot, and the fields that act on it.
 struct Magnetism {
   std::vector<Vec3> remanence;               // of every tetrahedron, then prism, of the model [mT]
   std::vector<Magnetisation> magnetisation;  // the same

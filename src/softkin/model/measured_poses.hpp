@@ -7,22 +7,22 @@
 
 namespace softkin {
 
-/// A kind of reading, and its unit: coordinates of markers; pressures and tensions with which actuators answer; lengths
-/// of cables and volumes of chambers whose loads are commanded; what supports exert on the robot; lengths of curves on
-/// the body, angles between its sections and the components of directions of these, as sensors measure them.
+/// A kind of reading, and its unit: coordinates of markers; pressures and tensions of actuators; lengths of cables and
+/// volumes of chambers whose loads are commanded; reactions of supports on the robot; lengths of curves on the body,
+/// angles between its sections and the components of directions of these, as sensors measure them.
 enum class Reading { coordinate, pressure, tension, length, volume, force, angle, direction };
-/// How many kinds there are, and of each, by Reading, its name and its unit; "": none.
+/// The number of kinds, and the name and unit of each, by Reading; "": none.
 constexpr int readings = 8;
 constexpr std::array<const char*, readings> reading_names{"coordinate", "pressure", "tension", "length",
                                                           "volume",     "force",    "angle",   "direction"};
 constexpr std::array<const char*, readings> reading_units{"mm", "kPa", "N", "mm", "mm^3", "N", "deg", ""};
-/// " in mm"; of a reading without unit "".
+/// Returns " in mm"; "" for a reading without unit.
 [[nodiscard]] inline std::string in_unit(Reading kind) {
   const char* unit = reading_units[static_cast<std::size_t>(kind)];
   return *unit == 0 ? "" : std::string(" in ") + unit;
 }
 
-/// What a column of measured poses holds.
+/// The meaning of a column of measured poses.
 struct PoseColumn {
   std::string name;                    // as in the file
   Index marker = -1;                   // of the model; -1: none
@@ -33,20 +33,20 @@ struct PoseColumn {
   Index sensor = -1;                   // the same
 };
 
-/// Points that a camera saw without knowing which markers they are.
+/// Points that a camera detected, without a marker assigned to each.
 struct UnnamedDots {
   std::vector<std::string> names{};  // as in the file: dot1
-  std::vector<int> axes{};           // that were seen of each of them, ascending
-  Eigen::MatrixXd places{};          // [mm], poses by the axes of the first dot, of the second, ...; NaN: not seen
+  std::vector<int> axes{};           // measured for each of them, ascending
+  Eigen::MatrixXd places{};          // [mm], poses by the axes of the first dot, of the second, ...; NaN: not measured
 };
 
-/// The outer outline of a robot as a camera saw it along z of the measuring frame.
+/// The outer outline of a robot in a camera's view along z of the measuring frame.
 struct PictureOutlines {
   std::string file{};                                  // empty: there are none
   std::vector<std::vector<Eigen::Vector2d>> points{};  // per pose: x and y one after another along it [mm]; empty: none
 };
 
-/// Poses of a real robot: what it was told, and what was read.
+/// Measured poses of a real robot: its commands and readings.
 struct MeasuredPoses {
   std::string file;                 // for messages
   std::vector<PoseColumn> columns;  // readings, as they stand in the file

@@ -36,7 +36,7 @@ struct TensileCurve {
   std::vector<std::string> notes{};    // what was taken of the file, a sentence each
 };
 
-/// What the pressures of a syringe test are above: vacuum, or the air around.
+/// The reference of the pressures of a syringe test: vacuum, or the atmosphere.
 enum class PressureScale { absolute, gauge };
 
 /// One row of a syringe test.
@@ -66,21 +66,21 @@ struct VoltageRun {
   std::vector<VoltageRow> rows;  // in the order of time
 };
 
-/// One test of a strip under tension or compression along one axis over time, its sides free. Before its first row it
-/// is at rest, and has been for long.
+/// One test of a strip under tension or compression along one axis over time, with free sides. Before its first row the
+/// strip is at rest and relaxed.
 struct RelaxationRun {
   std::string file, name;                           // name: "run 2"; for messages
-  bool load_imposed = false;                        // creep: the stretch answers; else the stress does
+  bool load_imposed = false;                        // creep: the stretch is measured; else the stress
   std::vector<double> time_s, stretch, stress_MPa;  // times ascend; length over that at rest > 0; nominal
   std::vector<std::size_t> lines;                   // of the file; empty: not from a file
 };
 
-/// The way of one marker: measured, predicted, or computed elsewhere.
+/// The trajectory of one marker: measured, predicted, or computed elsewhere.
 struct Track {
   std::string name;                            // for messages: its file
   std::vector<Vec3> points;                    // [mm]; 0 along axes that are not known
   std::array<bool, 3> axes{true, true, true};  // coordinates that are known
-  std::vector<double> parameter;               // time [s], or what else ascends along it; empty: none
+  std::vector<double> parameter;               // time [s], or another ascending quantity; empty: none
   bool robot_frame = false;                    // coordinates are those of the scene, as a prediction has them
   std::string marker{};                        // chosen of a file that has several; empty: not chosen
 };

@@ -137,7 +137,7 @@ class Hash {
     if (m.families) add(m.families->tetrahedra, m.families->prisms, m.families->families);
   }
   void put(const CavityFace& face) { add(face.corners, face.edges); }
-  void put(const LoadedFace& loaded) { add(loaded.face, loaded.share); }
+  void put(const LoadedFace& loaded) { add(loaded.face, loaded.fraction); }
   void put(const FollowingTraction& t) {
     add(t.traction_MPa, t.pressure_MPa, t.faces);
     if (!t.deeper_MPa_mm.isZero(0)) add(t.deeper_MPa_mm, t.level_mm);
@@ -194,12 +194,12 @@ class Hash {
     add(index, axis);
   }
   void put(const Actuator& a) {
-    add(a.name, a.drive.index(), a.control, a.rest, a.weight, a.distribution == Distribution::least_norm, a.drive,
+    add(a.name, a.drive.index(), a.control, a.rest, a.weight, a.distribution == Distribution::minimum_norm, a.drive,
         a.rest_measure);
     if (a.factor != 1 || a.offset != 0) add(a.factor, a.offset);
     if (a.backlash != 0) add(a.backlash);
-    if (rubs(a)) add(a.as<CableDrive>()->friction, a.as<CableDrive>()->sheath);
-    if (under_voltage(a)) add(a.as<DeaDrive>()->shares, a.as<DeaDrive>()->prestretch);
+    if (has_friction(a)) add(a.as<CableDrive>()->friction, a.as<CableDrive>()->sheath);
+    if (under_voltage(a)) add(a.as<DeaDrive>()->fractions, a.as<DeaDrive>()->prestretch);
     if (a.distribution == Distribution::proportional) add(a.distribution);
     if (const Filling* filling = filling_of(a)) put(*filling);
     if (!connected_chambers(a).empty()) add(connected_chambers(a));
@@ -312,8 +312,8 @@ std::optional<double> spread_by_curve(const Actuator& actuator, double input, Br
   const std::vector<double>& x = curve->ratio.x();
   const auto above = std::max<std::ptrdiff_t>(1, std::lower_bound(x.begin(), x.end(), input) - x.begin());
   const std::size_t i = above;
-  const double share = (input - x[i - 1]) / (x[i] - x[i - 1]);
-  return actuator.rest * ((1 - share) * curve->spread[i - 1] + share * curve->spread[i]);
+  const double fraction = (input - x[i - 1]) / (x[i] - x[i - 1]);
+  return actuator.rest * ((1 - fraction) * curve->spread[i - 1] + fraction * curve->spread[i]);
 }
 
 std::array<Index, 2> Model::vertices_of_part(Index part) const {
@@ -349,14 +349,14 @@ bool loads_robot(const Actuator& actuator) {
   return actuator.is<MomentCommand>() || actuator.is<PressureCommand>() || (force && force->place);
 }
 
-bool rubs(const Actuator& actuator) {
+bool has_friction(const Actuator& actuator) {
   const auto* cable = actuator.as<CableDrive>();
   return cable && (cable->friction > 0 || cable->sheath > 0);
 }
 
-bool rubs(const Model& model) {
-  return model.contact.rubs() || std::any_of(model.actuators.begin(), model.actuators.end(),
-                                             [](const Actuator& actuator) { return rubs(actuator); });
+bool has_friction(const Model& model) {
+  return model.contact.has_friction() || std::any_of(model.actuators.begin(), model.actuators.end(),
+                                                     [](const Actuator& actuator) { return has_friction(actuator); });
 }
 
 bool under_voltage(const Actuator& actuator) {

@@ -13,7 +13,7 @@ struct Families;   // families.hpp
 struct Layer;      // layer.hpp
 struct Sensor;     // sensor.hpp
 
-/// What elements are made of, compiled.
+/// A compiled material.
 struct Material {
   std::string region;                          // as the description names it
   double shape_ratio = 1;                      // target-shape
@@ -39,18 +39,18 @@ struct Material {
 /// source     divergence theorem; the integrand is of degree 4 on a quadratic face, the rule is exact for degree 4
 [[nodiscard]] double enclosed_volume(const Points& positions, const std::vector<CavityFace>& faces);
 
-/// A compiled actuator, or what is done to a robot and is commanded as one. What does not apply is empty.
+/// A compiled actuator, or an imposed load or motion with a command. Members that do not apply are empty.
 struct Actuator {
   std::string name;                  // for commands, messages and columns of tables
-  Drive drive;                       // what it is
-  Control control = Control::ratio;  // what of it is commanded
+  Drive drive;                       // its kind, with the data of that kind
+  Control control = Control::ratio;  // which quantity is commanded
   double low = 0, high = 0, rest = 1,
          weight = 5;  // ends of the commands' range and command at rest, in its unit; w of Eq. (9)
-  Distribution distribution = Distribution::least_norm;  // of what is commanded over its elements; target-shape
-  std::optional<ActuatorCurve> curve;                    // ratio by pressure or voltage
-  Branch branch = Branch::loading;                       // of the curve, where a command names none
-  double factor = 1, offset = 0;  // load control: what acts is factor times the command plus offset [N, kPa]
-  double backlash = 0;            // the same: by how much a command falls before what acts does, see acting()
+  Distribution distribution = Distribution::minimum_norm;  // of the command over its elements; target-shape
+  std::optional<ActuatorCurve> curve;                      // ratio by pressure or voltage
+  Branch branch = Branch::loading;                         // of the curve, where a command names none
+  double factor = 1, offset = 0;  // load control: the acting value is factor times the command plus offset [N, kPa]
+  double backlash = 0;            // the same: by how much a command falls before the acting value does, see acting()
   double rest_measure = 0;        // length [mm], mean area of top and bottom [mm^2] or volume [mm^3] at rest; at
                                   // a dea's ratio 1; where a chamber is flat 1 mL
 
@@ -66,7 +66,7 @@ struct Actuator {
   }
 };
 
-/// Stands on the floor and slides where friction lets it.
+/// A foot that stands on the floor and slides where friction is exceeded.
 struct Foot {
   Index marker = -1;                 // of Model::markers
   double forward = 0, backward = 0;  // friction that slides it in the direction of travel and against it [N]
@@ -78,7 +78,7 @@ struct RigidRegion {
   std::vector<Index> vertices;  // ascending
 };
 
-/// A rigid body without elements, which moves freely but for what holds it.
+/// A rigid body without elements, which moves freely apart from holds and contacts.
 struct FreeBody {
   std::string name;             // for messages, reports and commands
   std::vector<Index> vertices;  // of its surface, in Model::rest
@@ -86,14 +86,14 @@ struct FreeBody {
   double mass_kg = 0;           // of its density and volume
 };
 
-/// Holds vertices where they are told to be: an entry of the description's `fixed`.
+/// A support, which holds vertices at prescribed places: an entry of the description's `fixed`.
 struct Support {
   std::string name;             // of its region, or fixed_N
   std::vector<Index> vertices;  // that it holds along one axis at least
 };
 
-/// Turns what a support holds, as its command says: a vertex that stands at x at rest is held at
-/// about + R(angle) (x - about) + displacement, R counterclockwise seen against the axis.
+/// The commanded rotation of a support: a vertex at x at rest is held at about + R(angle) (x - about) + displacement,
+/// with R counterclockwise seen against the axis.
 struct SupportTurn {
   std::string support;          // its name
   Vec3 axis{0, 0, 1};           // of length 1
@@ -107,25 +107,25 @@ struct SupportTurn {
 /// A moment on a rigid region, which keeps its direction: couples of forces on some of its vertices.
 struct RegionMoment {
   std::vector<Index> vertices;  // three or four, not on a line
-  Vec3 moment_Nmm{0, 0, 0};     // beside what is commanded of it
+  Vec3 moment_Nmm{0, 0, 0};     // in addition to the commanded one
 };
 
-/// A face of the body's surface with its normal outwards, under a load; a share of it.
+/// A face of the body's surface under a load, or under a fraction of it.
 struct LoadedFace {
-  CavityFace face;   // vertices, normal outwards
-  double share = 1;  // of the load, from 0 to 1 [-]
+  CavityFace face;      // vertices, normal outwards
+  double fraction = 1;  // of the load, from 0 to 1 [-]
 };
 
 /// A load that turns with the surface and acts on its present area.
 struct FollowingTraction {
   Vec3 traction_MPa{0, 0, 0};     // as the surface stands at rest
-  double pressure_MPa = 0;        // onto it, along its normal, beside what is commanded of it
+  double pressure_MPa = 0;        // onto it, along its normal, in addition to the commanded one
   std::vector<LoadedFace> faces;  // that it acts on
-  Vec3 deeper_MPa_mm{0, 0, 0};    // by how much the pressure grows with the present place, from a level on; nothing
-  Vec3 level_mm{0, 0, 0};         // above it: a liquid around the robot; a place of the level
+  Vec3 deeper_MPa_mm{0, 0, 0};    // gradient of the pressure of a liquid around the robot below its level; 0: none
+  Vec3 level_mm{0, 0, 0};         // a point of that level, above which there is no pressure
 };
 
-/// A place of a thread, of whose length it stands for some.
+/// A quadrature point of a thread, with the length that it represents.
 struct FibrePlace {
   std::vector<Index> vertices;  // of the element that carries it along
   std::vector<double> weights;  // of them: where it is
@@ -138,60 +138,60 @@ struct FibrePlace {
 struct Fibre {
   std::string name;                  // for messages and reports
   double stiffness_N = 0;            // E A
-  bool tension_only = false;         // does it carry nothing where it would be pressed
+  bool tension_only = false;         // does it carry no compression
   std::vector<FibrePlace> places;    // along it
   std::vector<EmbeddedPoint> knots;  // along it, for pictures
 };
 
-/// What an element is made of: a material, or the actuator that it belongs to; physical: a material always, and a
-/// prism of a dea has its actuator too.
+/// The material of an element, or the actuator to which it belongs; physical: always a material, and for a prism of a
+/// dea its actuator too.
 struct ElementRole {
   Index material = -1;  // index into Elements::materials, or -1
   Index actuator = -1;  // index into Model::actuators, or -1
   Index region = -1;    // index into Elements::region_names, for output
 };
 
-/// What a robot is made of.
+/// The elements of a robot, with their materials and regions.
 struct Elements {
   std::vector<Tetrahedron> tetrahedra;  // without void elements (physical: nor those of chambers); positive volume
   std::vector<EdgeNodes> edge_nodes;    // order 2: of every tetrahedron; order 1: empty
   std::vector<Prism> prisms;            // without void elements; positive volume
-  std::vector<ElementRole> tetrahedron_roles, prism_roles;  // what each is made of, in the order of the elements
+  std::vector<ElementRole> tetrahedron_roles, prism_roles;  // in the order of the elements
   std::vector<double> tetrahedron_volumes, prism_volumes;   // at rest [mm^3]
-  std::vector<std::string> region_names;                    // of volume, that output tells apart
+  std::vector<std::string> region_names;                    // of volume, that output distinguishes
   std::vector<Material> materials;                          // by ElementRole::material
   std::vector<bool> used;                                   // per vertex: is it a vertex of an element
 };
 
-/// What holds a robot.
+/// The supports of a robot.
 struct Held {
   std::vector<std::array<bool, 3>> fixed;        // per vertex and axis; vertices of no element are fixed
   Points at;                                     // #V by 3 [mm]: where fixed axes are held; else rest
   std::vector<Support> supports;                 // in the order of the description's `fixed`
   std::vector<SupportTurn> turns;                // of supports; their vertices are fixed, `at` is without the turn
-  std::vector<std::array<Index, 3>> support_of;  // per vertex and axis: the support that bears it, the first of
-                                                 // several, or -1; a rigid region that is held is borne as a whole
+  std::vector<std::array<Index, 3>> support_of;  // per vertex and axis: the support that holds it, the first of
+                                                 // several, or -1; one support for all of a held rigid region
 };
 
-/// What loads a robot beside its actuators; physical.
+/// The loads on a robot besides those of its actuators; physical.
 struct Loads {
-  Points dead;                               // #V by 3 [N]: weight, forces, tractions that follow nothing; or empty
+  Points dead;                               // #V by 3 [N]: weight, forces, dead tractions; or empty
   std::vector<FollowingTraction> tractions;  // that turn with the surface, and liquids around
   std::vector<RegionMoment> moments;         // on rigid regions
 
-  /// Is there one that changes as the robot bends?
+  /// Does any load depend on the shape?
   [[nodiscard]] bool any_by_shape() const { return !tractions.empty() || !moments.empty(); }
-  /// Is there any?
+  /// Is there any load?
   [[nodiscard]] bool any() const { return !dead.isZero(0) || any_by_shape(); }
 };
 
-/// What stiffens a robot, in the order of the description; physical.
+/// The fibres and layers that stiffen a robot, in the order of the description; physical.
 struct Reinforcement {
   std::vector<Fibre> fibres;                         // threads
   std::vector<std::shared_ptr<const Layer>> layers;  // sheets
 };
 
-/// A compiled robot: everything that depends on topology and rest shape alone. Not modified after compile().
+/// A compiled robot: everything that depends on topology and rest shape alone. It is not modified after compile().
 struct Model {
   std::string name;                                     // the scene's file name, for messages
   Formulation formulation = Formulation::target_shape;  // by which equations it is solved
@@ -208,43 +208,43 @@ struct Model {
   Loads loads;                                         // beside those of actuators
   Reinforcement reinforcement;                         // threads and sheets
   std::vector<std::shared_ptr<const Growth>> growths;  // by GrowthDrive::growth
-  ContactModel contact;                                // what may touch what
+  ContactModel contact;                                // which surfaces can be in contact
   std::shared_ptr<const Magnetism> magnetism;          // physical; none: nothing is magnetic
   double diagonal_mm = 0;                              // of the bounding box of the used vertices
-  std::vector<std::string> notes;     // what compile() changed or the user should know, a sentence each
-  std::vector<std::string> warnings;  // what is probably not meant, a sentence each: units, elements that lock
+  std::vector<std::string> notes;                      // changes by compile() and hints for the user, a sentence each
+  std::vector<std::string> warnings;                   // probable mistakes, a sentence each: units, elements that lock
 
-  /// How many vertices are the mesh's: the first ones.
+  /// Returns the number of vertices of the mesh, which come first.
   [[nodiscard]] Index robot_vertices() const { return static_cast<Index>(rest.rows()) - contact.other_vertices; }
 
-  /// Vertices of a bounded part of its surroundings, which follow each other.
+  /// Returns the range of the vertices of a bounded part of its surroundings.
   [[nodiscard]] std::array<Index, 2> vertices_of_part(Index part) const;
 
-  /// Values where the user asks for none, in the order of actuators.
+  /// Returns the values without a command, in the order of actuators.
   [[nodiscard]] Eigen::VectorXd rest_actuation() const;
 };
 
-/// Present volume of each of several chambers that are connected [mm^3]; none where they are not.
+/// Returns the present volume of each of several connected chambers [mm^3]; empty for a single one.
 [[nodiscard]] std::vector<double> connected_volumes(const Actuator& actuator, const Points& positions);
 
-/// What fills a chamber; null: it is not commanded by that.
+/// Returns the filling of a chamber; null: it is not under filling control.
 [[nodiscard]] const Filling* filling_of(const Actuator& actuator);
-/// A chamber that encloses nothing at rest.
+/// Is it a chamber that encloses no volume at rest?
 [[nodiscard]] bool flat_at_rest(const Actuator& actuator);
-/// Chambers that share what fills them; none: it is not of several.
+/// Returns the chambers with a common filling; empty: it is a single one.
 [[nodiscard]] const std::vector<ConnectedChamber>& connected_chambers(const Actuator& actuator);
 
-/// Is it of the robot: does inverse kinematics choose it, and a workspace vary it.
+/// Is it an actuator of the robot, which inverse kinematics chooses and a workspace varies?
 [[nodiscard]] bool drives(const Actuator& actuator);
-/// A force at a place of the robot, a moment or a pressure on it: commanded, but not by the robot.
+/// Is it an external load on the robot that is commanded: a force at a place, a moment or a pressure?
 [[nodiscard]] bool loads_robot(const Actuator& actuator);
-/// A dea that is commanded by its voltage: the field in its layer is its load.
+/// Is it a dea under voltage control, whose load is the field in its layer?
 [[nodiscard]] bool under_voltage(const Actuator& actuator);
-/// A cable whose tension falls or rises where it turns.
-[[nodiscard]] bool rubs(const Actuator& actuator);
-/// Does anything, so that its shapes depend on the way to them.
-[[nodiscard]] bool rubs(const Model& model);
-/// Does it, and has its range more than one value.
+/// Is it a cable with friction, whose tension changes where it turns?
+[[nodiscard]] bool has_friction(const Actuator& actuator);
+/// Has the robot any friction, so that its shapes depend on the path to them?
+[[nodiscard]] bool has_friction(const Model& model);
+/// Is it an actuator of the robot whose range has more than one value?
 [[nodiscard]] bool varies(const Actuator& actuator);
 
 /// Checks the meaning of a description and compiles it.
@@ -264,7 +264,7 @@ struct Model {
 /// throws  InvalidInput where the actuator has no curve, or outside the branch
 [[nodiscard]] double ratio_by_curve(const Actuator& actuator, double input, Branch branch);
 
-/// The input that a ratio asks for, the other way round; none outside the branch or without a curve.
+/// Returns the input that gives a ratio, the inverse of ratio_by_curve(); none outside the branch or without a curve.
 [[nodiscard]] std::optional<double> input_by_curve(const Actuator& actuator, double ratio, Branch branch);
 
 /// Standard deviation of the ratio between repeated runs near an input [-]; none where it is not known.

@@ -9,21 +9,21 @@ namespace softkin {
 /// "pneumatic", "cable", "dea", "magnetic" or "growth"; of what is done to it and its surroundings "motion", "force",
 /// "hold", "turn", "moment" or "pressure".
 [[nodiscard]] const char* kind_name(const Actuator& actuator);
-/// What the user commands: "volume", "length", "area" (over that at rest), "pressure", "tension" or "voltage"; of a
-/// sealed chamber "amount of gas", "amount of liquid" or "pushed volume"; of a magnetic field "flux density",
-/// "current", "position" or "moment"; of a growth "stretch" or "temperature"; else its kind.
+/// Returns the name of the commanded quantity: "volume", "length", "area" (over that at rest), "pressure", "tension" or
+/// "voltage"; of a sealed chamber "amount of gas", "amount of liquid" or "pushed volume"; of a magnetic field "flux
+/// density", "current", "position" or "moment"; of a growth "stretch" or "temperature"; else its kind.
 [[nodiscard]] const char* control_name(const Actuator& actuator);
 /// "ratio", or control_name().
 [[nodiscard]] const char* command_name(const Actuator& actuator);
-/// Has it a length, an area or a volume.
+/// Has it a length, an area or a volume?
 [[nodiscard]] bool has_measure(const Actuator& actuator);
-/// What that is: "length", "area" or "volume".
+/// Returns the name of its measure: "length", "area" or "volume".
 [[nodiscard]] const char* measure_name(const Actuator& actuator);
-/// Is it commanded by its load or by what fills it, so that what it comes to is its measure?
+/// Is it commanded by its load or its filling, so that its achieved value is its measure?
 [[nodiscard]] bool answers_with_measure(const Actuator& actuator);
-/// Does a physical robot answer with its load, as that is not what is commanded?
+/// Is the achieved value of a physical robot its load, as that is not commanded?
 [[nodiscard]] bool answers_with_load(const Actuator& actuator);
-/// Is it commanded by its load, and no cable: its volume or area says more than the pressure or voltage again.
+/// Is it commanded by its load, and not a cable, so that its volume or area is shown instead of the commanded load?
 [[nodiscard]] bool shows_measure(const Actuator& actuator);
 /// The unit of what the user commands, bare: "", "kPa", "N", "kV", "mL", "mm", "mT", "A", "A m^2", "degC", "N mm"; as a
 /// table has it: "[-]", "[kPa]", ....
@@ -33,8 +33,8 @@ namespace softkin {
 /// "air_mL".
 [[nodiscard]] std::string command_column(const Actuator& actuator);
 
-/// What a physical robot answers with: "pressure_kPa" (pneumatic), "tension_N" (cable), "voltage_kV" (dea under
-/// voltage) or "" (dea).
+/// Returns the key of the load of a physical robot's actuator: "pressure_kPa" (pneumatic), "tension_N" (cable),
+/// "voltage_kV" (dea under voltage) or "" (dea).
 [[nodiscard]] std::string multiplier_key(const Actuator& actuator);
 /// "pressure [kPa]", "tension [N]", "voltage [kV]" or "": the same as a title, and its unit bare.
 [[nodiscard]] std::string multiplier_title(const Actuator& actuator);

@@ -16,7 +16,7 @@ struct CommandRow {
   std::size_t line = 0;           // of the file, from 1
 };
 
-/// What a robot is to do: at least one row, times all or none, increasing.
+/// The commands of a robot: at least one row; either all rows have times, which increase, or none has.
 struct Commands {
   std::string file;                  // for messages
   std::vector<bool> commanded;       // per actuator: has it a column

@@ -27,18 +27,18 @@ struct RegionSpec {
   Origin origin;      // of its entry, for messages
 };
 
-/// By which equations: shapes of least change to given lengths, areas and volumes, Fang et al. 2020, without forces; or
-/// balance of forces of elastic bodies.
+/// The equations that determine a shape. target_shape: the least change of shape under given lengths, areas and
+/// volumes, Fang et al. 2020, without forces; physical: equilibrium of forces in elastic bodies.
 enum class Formulation { target_shape, physical };
 
-/// What an element's energy, Eq. (2), is multiplied by beside w. printed: its volume, so that it grows with the square
-/// of the element's size, too; mesh_independent: its volume over that square. Target shapes.
+/// The factor of an element's energy, Eq. (2), in addition to w. printed: its volume, so that the energy also grows
+/// with the square of the element's size; mesh_independent: its volume over that square. Target shapes.
 enum class ElementWeights { printed, mesh_independent };
 
 /// Elastic constants as the user gives them: E and nu for the first three laws; the law's own c10, ... for the others,
 /// with the bulk modulus, or nu in its place (bulk from the small-strain shear modulus, such as 2 (c10 + c01)).
 struct ElasticSpec {
-  Law law = Law::neo_hookean;                // which of what follows is read depends on it
+  Law law = Law::neo_hookean;                // determines which of the following constants are read
   std::optional<double> youngs_modulus;      // [MPa], > 0
   std::optional<double> poisson_ratio;       // [-], -1 < nu <= 0.5; 0.5: of laws with a bulk part
   std::optional<double> c10, c01, c20, c30;  // [MPa]
@@ -71,7 +71,7 @@ struct MaterialSpec {
   Origin origin;                                 // of its entry, for messages
 };
 
-/// How what is held is turned: counterclockwise seen against the axis, before it is displaced.
+/// The rotation of held vertices: counterclockwise seen against the axis, before the displacement.
 struct RotationSpec {
   Vec3 axis{0, 0, 1};           // not 0
   double degrees = 0;           // where no command says another angle
@@ -95,8 +95,8 @@ struct MarkerSpec {
   std::optional<std::string> carrier{};  // of a point: the region on which its stem stands
 };
 
-/// A foot that stands on the floor: a marker, and the friction that it takes to slide it towards the front foot's side
-/// (forward) and the other way.
+/// A foot that stands on the floor: a marker, and the friction forces against sliding towards the front foot's side
+/// (forward) and in the opposite direction (backward).
 struct FootSpec {
   std::string marker;                // its name
   double forward = 0, backward = 0;  // [N], >= 0
@@ -143,18 +143,18 @@ struct Helix {
   double radius = 0;         // [mm], > 0
   double pitch = 0;          // along the axis, per turn [mm], >= 0; 0: a ring
   double turns = 0;          // > 0
-  bool left_handed = false;  // else it turns as a common screw does
+  bool left_handed = false;  // else right-handed, as a common screw
 };
 
-/// A thread in the body or on it, which elements carry along wherever it runs.
+/// A thread in the body or on it, which moves with the elements along it.
 struct FibreSpec {
-  std::string name;                            // for messages and reports
-  std::variant<std::vector<Vec3>, Helix> way;  // corners [mm], at least two
-  std::optional<double> stiffness_N;           // E A, > 0; none: it does not stretch
-  bool tension_only = false;                   // slack where it would be pressed
-  std::optional<std::string> region;           // whose elements alone carry it; none: all
-  std::string robot{};                         // of several: whose elements; empty: all
-  Origin origin{};                             // of its entry, for messages
+  std::string name;                             // for messages and reports
+  std::variant<std::vector<Vec3>, Helix> path;  // corners [mm], at least two
+  std::optional<double> stiffness_N;            // E A, > 0; none: it does not stretch
+  bool tension_only = false;                    // slack where it would be compressed
+  std::optional<std::string> region;            // whose elements alone carry it; none: all
+  std::string robot{};                          // of several: whose elements; empty: all
+  Origin origin{};                              // of its entry, for messages
 };
 
 /// One of several robots that are described as one.
@@ -166,23 +166,23 @@ struct RobotPart {
   bool accept_mesh_errors = false;                 // as of RobotSpec
 };
 
-/// How a mesh is taken.
+/// How a mesh is read.
 struct MeshOptions {
   Origin origin;                   // of the entry that names it
   bool accept_errors = false;      // take doubled or overlapping elements, with a note
   bool quadratic = false;          // physical: elevate a mesh of order 1 to order 2
   std::optional<CurveSpec> curve;  // physical, order 2: how the edges are curved; none: as the mesh has them
   bool curved = false;             // of several robots: one was, by a `curve` of its own
-  bool linear_by_choice = false;   // it was said that the mesh stays of order 1: what that costs is told as a note
+  bool linear_by_choice = false;   // the scene requests order 1: the resulting error is a note, not a warning
 };
 
-/// What loads a robot beside its actuators; physical.
+/// The loads on a robot besides those of its actuators; physical.
 struct LoadsSpec {
   Vec3 gravity{0, 0, 0};                            // [m/s^2]
   Origin gravity_origin{};                          // no file: none is given
   std::vector<ForceSpec> forces{};                  // on points
   std::vector<TractionSpec> tractions{};            // on faces
-  std::optional<LiquidAroundSpec> liquid_around{};  // none: nothing but the atmosphere
+  std::optional<LiquidAroundSpec> liquid_around{};  // none: the atmosphere alone
 
   /// Does any act before it is commanded?
   [[nodiscard]] bool any() const {
@@ -198,7 +198,7 @@ struct RobotSpec {
   Formulation formulation = Formulation::target_shape;     // by which equations it is solved
   ElementWeights weights = ElementWeights::printed;        // target-shape
   Mesh mesh;                                               // in mm
-  MeshOptions mesh_options;                                // how it is taken
+  MeshOptions mesh_options;                                // how it is read
   std::vector<std::string> notes;                          // of what was done before compile()
   LoadsSpec loads;                                         // beside those of actuators
   std::vector<FibreSpec> fibres;                           // physical
@@ -206,13 +206,13 @@ struct RobotSpec {
   std::vector<RegionSpec> regions;                         // beside those of the mesh
   std::vector<MaterialSpec> materials;                     // later ones count where they overlap
   std::vector<RegionRef> voids;                            // volumes without material
-  std::vector<FixedSpec> fixed;                            // what is held, in the order of Held::supports
-  std::vector<RigidSpec> rigid;                            // what moves as one body
+  std::vector<FixedSpec> fixed;                            // held vertices, in the order of Held::supports
+  std::vector<RigidSpec> rigid;                            // regions that move as one body
   std::vector<ActuatorSpec> actuators;                     // in the order of commands
-  std::vector<MarkerSpec> markers;                         // points that are watched
-  std::vector<std::shared_ptr<const SensorSpec>> sensors;  // what measures lengths, angles and directions
+  std::vector<MarkerSpec> markers;                         // points whose positions are reported
+  std::vector<std::shared_ptr<const SensorSpec>> sensors;  // of lengths, angles and directions
   std::vector<FootSpec> feet;                              // none, or the rear one and the front one
-  std::optional<ContactSpec> contact;                      // physical; none: everything passes through everything
+  std::optional<ContactSpec> contact;                      // physical; none: surfaces pass through each other
   std::vector<RobotPart> robots;  // none, or those that joined() made this of, in the mesh's order
 };
 

@@ -17,11 +17,11 @@ struct VertexList {
 struct ElementList {              // of the mesh
   std::vector<Index> tetrahedra;  // from 0
 };
-/// What lies inside a closed surface.
+/// Everything inside a closed surface.
 struct InsideSurface {
   std::shared_ptr<const SurfaceTree> surface;  // [mm]
 };
-/// What a selector chose of a robot before joined() placed it among others.
+/// The selection of a selector from a robot before joined() placed it among others.
 struct Chosen {
   std::string kind;  // for messages: "box of robot 'left'"
   Region region;     // what was chosen, in the numbers of the robot's own mesh

@@ -13,7 +13,7 @@ namespace softkin::runs {
 /// What a report adds of a chamber: of a sealed one its volume and its amount; of connected ones the volume of each. A
 /// number that is not known is null.
 [[nodiscard]] Json chamber_json(const Actuator& chamber, const ActuatorRecord& record);
-/// Takes what no other number of a report says: the volumes of connected chambers.
+/// Reads the numbers that no other entry of a report contains: the volumes of connected chambers.
 ///
 /// throws  Json::exception where a key is missing
 void read_chamber(const Actuator& chamber, const Json& json, ActuatorRecord& record);

@@ -48,8 +48,8 @@ std::vector<std::array<std::string, 2>> sliding_pairs(const Model& model,
 }
 
 std::vector<PairForces> contacts_of(const Model& model, const Json& list) {
-  const auto part = [&](const Json& told) {
-    const auto name = told.get<std::string>();
+  const auto part = [&](const Json& reported) {
+    const auto name = reported.get<std::string>();
     const std::vector<ContactPart>& parts = model.contact.parts;
     const auto found = std::find_if(parts.begin(), parts.end(), [&](const auto& each) { return each.name == name; });
     if (found == parts.end()) throw std::out_of_range("no such part");

@@ -13,14 +13,14 @@ namespace softkin::runs {
 /// A list; null where it was not measured.
 [[nodiscard]] Json contacts_json(const Model& model, const std::optional<std::vector<PairForces>>& contacts);
 
-/// Pairs of which something slips, as [on, by]: there derivatives are those for sliding on.
+/// Pairs with slip, as [on, by]: there derivatives are those for continued sliding.
 [[nodiscard]] std::vector<std::array<std::string, 2>> sliding_pairs(
     const Model& model, const std::optional<std::vector<PairForces>>& contacts);
 
 /// throws  std::out_of_range and Json::exception on what contacts_json() does not write
 [[nodiscard]] std::vector<PairForces> contacts_of(const Model& model, const Json& list);
 
-/// Where friction holds: vertex, part, triangle, weights of its corners, and the way that it slipped [mm], of each.
+/// The anchors of sticking friction: vertex, part, triangle, weights of its corners, and the slip vector [mm], of each.
 [[nodiscard]] Json anchors_json(const std::vector<Anchor>& anchors);
 /// throws  std::out_of_range where the model has no such place
 [[nodiscard]] std::vector<Anchor> anchors_of(const Model& model, const Json& list);

@@ -73,11 +73,11 @@ Table plunger_table(const drive::Plan& plan) {
   for (std::size_t i = 0; i < plan.machine.syringes.size(); ++i) {
     const std::vector<drive::PlungerRow> rows = drive::plunger_rows(plan, i);
     for (std::size_t k = 0; k < rows.size(); ++k) {
-      const std::string asked = decimal(rows[k].ratio, 5), out = decimal(rows[k].volume_mm3 / mm3_per_ml, 4),
+      const std::string requested = decimal(rows[k].ratio, 5), out = decimal(rows[k].volume_mm3 / mm3_per_ml, 4),
                         plunger = decimal(rows[k].plunger_mm, 4);
-      const auto cells = plan.machine.syringes[i].by_pushed_mL ? std::vector{asked, plunger, out}
-                                                               : std::vector{asked, decimal(rows[k].gauge_kpa, 3), out,
-                                                                             plunger, decimal(rows[k].reached, 5)};
+      const auto cells = plan.machine.syringes[i].by_pushed_mL ? std::vector{requested, plunger, out}
+                                                               : std::vector{requested, decimal(rows[k].gauge_kpa, 3),
+                                                                             out, plunger, decimal(rows[k].reached, 5)};
       table.rows[k].insert(table.rows[k].end(), cells.begin(), cells.end());
     }
   }
@@ -106,7 +106,7 @@ std::string times_text(const drive::Plan& plan) {
   if (!plan.has_motors()) return text;
   text += ", after an approach of " + number(drive::seconds_of(plan.motion.approach), 4) + " s from home";
   if (!plan.motion.back.empty())
-    text += "; the way back home takes " + number(drive::seconds_of(plan.motion.back), 4) + " s";
+    text += "; the return home takes " + number(drive::seconds_of(plan.motion.back), 4) + " s";
   return text + "; " + counted(plan.program.lines.size(), "line") + " of G-code";
 }
 

@@ -7,9 +7,9 @@
 
 namespace softkin::runs {
 
-// What softkin drive says.
+// The texts of softkin drive.
 
-/// A line each of the tendons, syringes and chambers that are driven: what is asked of them, and their limits.
+/// A line each of the tendons, syringes and chambers that are driven: their requested motions, and their limits.
 [[nodiscard]] Table tendon_table(const drive::Plan& plan);
 [[nodiscard]] Table syringe_table(const drive::Plan& plan);
 [[nodiscard]] Table chamber_table(const drive::Plan& plan);

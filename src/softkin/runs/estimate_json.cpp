@@ -14,9 +14,9 @@ Json matrix_json(const Eigen::MatrixXd& matrix) {
   return rows;
 }
 
-Json told_numbers_json(const Estimate& told) {
+Json reported_numbers_json(const Estimate& reported) {
   Json numbers = Json::array();
-  for (const ToldNumber& n : told.numbers)
+  for (const EstimatedNumber& n : reported.numbers)
     numbers.push_back({{"name", n.name},
                        {"unit", n.unit},
                        {"value", n.value},
@@ -27,9 +27,9 @@ Json told_numbers_json(const Estimate& told) {
   return numbers;
 }
 
-Json told_places_json(const Estimate& told) {
+Json reported_places_json(const Estimate& reported) {
   Json places = Json::array();
-  for (const ToldPlace& p : told.places)
+  for (const EstimatedPlace& p : reported.places)
     places.push_back({{"force", p.force},
                       {"at_rest_mm", json_of(p.at_rest)},
                       {"present_mm", json_of(p.present)},
@@ -37,21 +37,21 @@ Json told_places_json(const Estimate& told) {
   return places;
 }
 
-Json left_out_json(const Estimate& told, const std::vector<ReadingGroup>& groups) {
+Json left_out_json(const Estimate& reported, const std::vector<ReadingGroup>& groups) {
   Json names = Json::array();
-  for (const std::size_t g : told.left_out) names.push_back(groups[g].name);
+  for (const std::size_t g : reported.left_out) names.push_back(groups[g].name);
   return names;
 }
 
-Json read_json(const Estimate& told, const std::vector<PoseColumn>& columns, const Eigen::VectorXd& values) {
+Json read_json(const Estimate& reported, const std::vector<PoseColumn>& columns, const Eigen::VectorXd& values) {
   Json readings = Json::array();
   for (std::size_t c = 0; c < columns.size(); ++c) {
     const Index at = c;
-    if (std::isnan(values[at]) || told.computed.size() == 0) continue;
+    if (std::isnan(values[at]) || reported.computed.size() == 0) continue;
     readings.push_back({{"column", columns[c].name},
                         {"read", values[at]},
-                        {"computed", told.computed[at]},
-                        {"computed_deviation", told.deviations[at]}});
+                        {"computed", reported.computed[at]},
+                        {"computed_deviation", reported.deviations[at]}});
   }
   return readings;
 }

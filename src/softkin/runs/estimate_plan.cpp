@@ -24,8 +24,8 @@ EstimatePlanner::EstimatePlanner(const Model& model, const MeasuredPoses& poses,
                                  const std::array<double, readings>& deviations, int count)
     : model_(model), options_{marker_vertices(model), deviations, poses.columns, count} {}
 
-void EstimatePlanner::add(const Estimate& told) {
-  if (told.status == Status::converged) rows_.emplace_back(told);
+void EstimatePlanner::add(const Estimate& reported) {
+  if (reported.status == Status::converged) rows_.emplace_back(reported);
 }
 
 std::vector<PlannedReading> EstimatePlanner::plan() const {
@@ -34,10 +34,10 @@ std::vector<PlannedReading> EstimatePlanner::plan() const {
 
 std::string plan_text(const EstimateReport& report) {
   if (!report.planned) return "";
-  if (report.plan.empty()) return "plan: no further reading would tell anything\n";
-  const Estimate& told = report.told.front();
+  if (report.plan.empty()) return "plan: no further reading would add information\n";
+  const Estimate& reported = report.reported.front();
   std::string text =
-      "what would tell most, one after the other, and the deviations then (root mean square of the rows):\n";
+      "the most informative readings, one after the other, and the deviations then (root mean square of the rows):\n";
   for (const PlannedReading& reading : report.plan) {
     text += "  " + reading.name;
     if (reading.vertex >= 0 || reading.name.starts_with("marker")) {
@@ -47,11 +47,11 @@ std::string plan_text(const EstimateReport& report) {
       text += " mm";
     }
     text += ": " + number(reading.bits, 3) + " bits;";
-    for (std::size_t n = 0; n < told.numbers.size(); ++n)
-      text += " " + told.numbers[n].name + " +- " + number(reading.numbers[n], 2) +
-              (told.numbers[n].unit.empty() ? "" : " ") + told.numbers[n].unit + ";";
-    for (std::size_t p = 0; p < told.places.size(); ++p)
-      text += " place of " + told.places[p].force + " +- " + number(reading.places[p], 2) + " mm;";
+    for (std::size_t n = 0; n < reported.numbers.size(); ++n)
+      text += " " + reported.numbers[n].name + " +- " + number(reading.numbers[n], 2) +
+              (reported.numbers[n].unit.empty() ? "" : " ") + reported.numbers[n].unit + ";";
+    for (std::size_t p = 0; p < reported.places.size(); ++p)
+      text += " place of " + reported.places[p].force + " +- " + number(reading.places[p], 2) + " mm;";
     text.back() = '\n';
   }
   return text;

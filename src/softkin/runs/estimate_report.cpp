@@ -28,9 +28,9 @@ std::string unit_key(std::string unit) {
   return unit.empty() ? "" : "_" + unit;
 }
 
-std::string left_out_text(const EstimateReport& report, const Estimate& told) {
+std::string left_out_text(const EstimateReport& report, const Estimate& reported) {
   std::string text;
-  for (const std::size_t g : told.left_out) text += (text.empty() ? "" : "; ") + report.groups[g].name;
+  for (const std::size_t g : reported.left_out) text += (text.empty() ? "" : "; ") + report.groups[g].name;
   return text;
 }
 
@@ -40,31 +40,31 @@ Json plan_json(const EstimateReport& report) {
     Json json{{"name", reading.name}, {"bits", reading.bits}};
     if (reading.vertex >= 0) json["vertex"] = reading.vertex;
     if (reading.vertex >= 0 || reading.name.starts_with("marker")) json["at_rest_mm"] = json_of(reading.at_rest);
-    const Estimate& told = report.told.front();
-    for (std::size_t n = 0; n < told.numbers.size(); ++n)
-      json["deviations"][told.numbers[n].name + unit_key(told.numbers[n].unit)] = reading.numbers[n];
-    for (std::size_t p = 0; p < told.places.size(); ++p)
-      json["place_deviations_mm"][told.places[p].force] = reading.places[p];
+    const Estimate& reported = report.reported.front();
+    for (std::size_t n = 0; n < reported.numbers.size(); ++n)
+      json["deviations"][reported.numbers[n].name + unit_key(reported.numbers[n].unit)] = reading.numbers[n];
+    for (std::size_t p = 0; p < reported.places.size(); ++p)
+      json["place_deviations_mm"][reported.places[p].force] = reading.places[p];
     plan.push_back(std::move(json));
   }
   return plan;
 }
 
 Json row_json(const EstimateReport& report, std::size_t row) {
-  const Estimate& told = report.told[row];
-  Json json{{"line", report.poses.lines[row]}, {"status", name_of(told.status)}, {"remark", told.remark}};
+  const Estimate& reported = report.reported[row];
+  Json json{{"line", report.poses.lines[row]}, {"status", name_of(reported.status)}, {"remark", reported.remark}};
   if (!report.poses.times.empty()) json["t_s"] = report.poses.times[row];
-  json["numbers"] = told_numbers_json(told);
-  json["places"] = told_places_json(told);
-  json["covariance"] = matrix_json(told.covariance);
-  json["chi_square"] = told.chi_square;
-  json["freedoms"] = told.freedoms;
-  json["misfit"] = told.misfit();
-  json["left_out"] = left_out_json(told, report.groups);
-  json["readings"] = read_json(told, report.poses.columns, report.poses.values.row(row).transpose());
+  json["numbers"] = reported_numbers_json(reported);
+  json["places"] = reported_places_json(reported);
+  json["covariance"] = matrix_json(reported.covariance);
+  json["chi_square"] = reported.chi_square;
+  json["freedoms"] = reported.freedoms;
+  json["misfit"] = reported.misfit();
+  json["left_out"] = left_out_json(reported, report.groups);
+  json["readings"] = read_json(reported, report.poses.columns, report.poses.values.row(row).transpose());
   json["words"] = report.words[row];
-  json["equilibria"] = told.equilibria;
-  json["seconds"] = told.seconds;
+  json["equilibria"] = reported.equilibria;
+  json["seconds"] = reported.seconds;
   return json;
 }
 
@@ -72,12 +72,12 @@ Json row_json(const EstimateReport& report, std::size_t row) {
 
 bool EstimateReport::good() const {
   constexpr double doubtful = 3;
-  return !interrupted && std::all_of(told.begin(), told.end(), [](const Estimate& e) {
+  return !interrupted && std::all_of(reported.begin(), reported.end(), [](const Estimate& e) {
     return e.status == Status::converged && e.misfit() < doubtful;
   });
 }
 
-Eigen::VectorXd AskedEstimates::deviations_of_columns() const {
+Eigen::VectorXd RequestedEstimates::deviations_of_columns() const {
   Eigen::VectorXd all(poses.columns.size());
   for (std::size_t c = 0; c < poses.columns.size(); ++c) {
     const auto kind = static_cast<std::size_t>(poses.columns[c].kind);
@@ -89,54 +89,56 @@ Eigen::VectorXd AskedEstimates::deviations_of_columns() const {
   return all;
 }
 
-void AskedEstimates::refuse_commanded(const std::vector<Index>& told) const {
+void RequestedEstimates::refuse_commanded(const std::vector<Index>& reported) const {
   for (const Index a : poses.commanded)
-    if (std::find(told.begin(), told.end(), a) != told.end())
+    if (std::find(reported.begin(), reported.end(), a) != reported.end())
       throw InvalidInput({poses.file}, "a column commands '" + model.actuators[a].name +
-                                           "', which is to be told: leave out one of them");
+                                           "', which is to be estimated: leave out one of them");
 }
 
-EstimateReport estimate_poses(const AskedEstimates& asked, const EstimatorOptions& how, const EstimateCallback& row,
-                              const ProgressCallback& progress) {
-  const MeasuredPoses& poses = asked.poses;
+EstimateReport estimate_poses(const RequestedEstimates& requested, const EstimatorOptions& how,
+                              const EstimateCallback& row, const ProgressCallback& progress) {
+  const MeasuredPoses& poses = requested.poses;
   if (how.fade_s > 0 && poses.times.empty())
     throw InvalidInput({poses.file}, "estimates that fade need the times of readings, column t_s [s]");
-  Estimator estimator(asked.model, asked.unknowns, poses.columns, asked.deviations_of_columns(), how);
-  asked.refuse_commanded(estimator.told_actuators());
-  EstimateReport report{asked.model, poses, asked.unknowns, asked.deviations, how.fade_s};
+  Estimator estimator(requested.model, requested.unknowns, poses.columns, requested.deviations_of_columns(), how);
+  requested.refuse_commanded(estimator.reported_actuators());
+  EstimateReport report{requested.model, poses, requested.unknowns, requested.deviations, how.fade_s};
   report.groups = estimator.groups();
   for (std::size_t r = 0; r < poses.commands.size(); ++r) {
     const double elapsed = r > 0 && !poses.times.empty() ? poses.times[r] - poses.times[r - 1] : 0;
-    const Estimate& told = estimator.update(poses.commands[r], poses.values.row(r).transpose(), elapsed, progress);
-    if (told.status == Status::interrupted) {
+    const Estimate& reported = estimator.update(poses.commands[r], poses.values.row(r).transpose(), elapsed, progress);
+    if (reported.status == Status::interrupted) {
       report.interrupted = true;
       break;
     }
-    Estimate kept = told;
+    Estimate kept = reported;
     kept.moves.clear();
     kept.state = {};
-    report.told.push_back(std::move(kept));
-    report.words.push_back(estimate_words(told, report.groups));
-    if (row) row(r, told);
+    report.reported.push_back(std::move(kept));
+    report.words.push_back(estimate_words(reported, report.groups));
+    if (row) row(r, reported);
   }
   return report;
 }
 
 std::string estimate_row_text(const EstimateReport& report, std::size_t row) {
-  const Estimate& told = report.told[row];
+  const Estimate& reported = report.reported[row];
   std::string text = "line " + std::to_string(report.poses.lines[row]);
   if (!report.poses.times.empty()) text += ", " + number(report.poses.times[row]) + " s";
   text += ":";
-  if (told.status != Status::converged) text += std::string(" ") + name_of(told.status) + ": " + told.remark;
-  for (const ToldNumber& n : told.numbers) text += " " + n.name + " " + plus_minus(n.value, n.deviation, n.unit) + ";";
-  for (const ToldPlace& p : told.places) {
+  if (reported.status != Status::converged)
+    text += std::string(" ") + name_of(reported.status) + ": " + reported.remark;
+  for (const EstimatedNumber& n : reported.numbers)
+    text += " " + n.name + " " + plus_minus(n.value, n.deviation, n.unit) + ";";
+  for (const EstimatedPlace& p : reported.places) {
     const Vec3 off = deviations_of(p.covariance);
     text += " " + p.force + " at rest at";
     for (Index axis = 0; axis < 3; ++axis)
       text += std::string(axis > 0 ? ", " : " ") + axis_names[axis] + " " + plus_minus(p.at_rest[axis], off[axis], "");
     text += " mm;";
   }
-  text += " chi-square " + number(told.chi_square, 3) + " for " + number(told.freedoms, 3) + "\n";
+  text += " chi-square " + number(reported.chi_square, 3) + " for " + number(reported.freedoms, 3) + "\n";
   for (const std::string& words : report.words[row]) text += "  " + words + "\n";
   return text;
 }
@@ -144,23 +146,23 @@ std::string estimate_row_text(const EstimateReport& report, std::size_t row) {
 std::string estimate_text(const EstimateReport& report) {
   std::size_t fit = 0, left_out = 0;
   double chi_square = 0, freedoms = 0, seconds = 0;
-  for (const Estimate& told : report.told) {
-    fit += told.status == Status::converged && told.misfit() < 3;
-    left_out += !told.left_out.empty();
-    chi_square += told.chi_square;
-    freedoms += told.freedoms;
-    seconds += told.seconds;
+  for (const Estimate& reported : report.reported) {
+    fit += reported.status == Status::converged && reported.misfit() < 3;
+    left_out += !reported.left_out.empty();
+    chi_square += reported.chi_square;
+    freedoms += reported.freedoms;
+    seconds += reported.seconds;
   }
-  std::string text = std::to_string(fit) + " of " + counted(report.told.size(), "row") + " fit the model";
+  std::string text = std::to_string(fit) + " of " + counted(report.reported.size(), "row") + " fit the model";
   if (left_out > 0) text += "; readings were left out of " + counted(left_out, "row");
   text += "; chi-square " + number(chi_square, 3) + " for " + number(freedoms, 3) + " freedoms of all; " +
-          number(1e3 * seconds / std::max<double>(1, static_cast<double>(report.told.size())), 3) + " ms a row\n";
+          number(1e3 * seconds / std::max<double>(1, static_cast<double>(report.reported.size())), 3) + " ms a row\n";
   return text;
 }
 
 std::string estimate_json(const EstimateReport& report) {
   Json rows = Json::array(), unknowns = Json::array(), deviations = Json::object();
-  for (std::size_t r = 0; r < report.told.size(); ++r) rows.push_back(row_json(report, r));
+  for (std::size_t r = 0; r < report.reported.size(); ++r) rows.push_back(row_json(report, r));
   for (const EstimatedUnknown& u : report.unknowns) unknowns.push_back({{"name", u.name}, {"place", u.somewhere}});
   for (std::size_t k = 0; k < readings; ++k)
     if (report.deviations[k] > 0)
@@ -177,25 +179,25 @@ Table estimate_table(const EstimateReport& report) {
   add("reading");
   add("line");
   add("t_s");
-  if (!report.told.empty()) {
-    for (const ToldNumber& n : report.told[0].numbers)
+  if (!report.reported.empty()) {
+    for (const EstimatedNumber& n : report.reported[0].numbers)
       for (const char* what : {"", "_deviation"}) add(n.name + what + unit_key(n.unit));
-    for (const ToldPlace& p : report.told[0].places)
+    for (const EstimatedPlace& p : report.reported[0].places)
       for (const char* what : {"_at_rest_", "_present_", "_deviation_"})
         for (const char* axis : axis_names) add(p.force + what + axis + "_mm");
   }
   for (const char* key : {"chi_square", "freedoms", "left_out", "status"}) add(key);
-  for (std::size_t r = 0; r < report.told.size(); ++r) {
-    const Estimate& told = report.told[r];
+  for (std::size_t r = 0; r < report.reported.size(); ++r) {
+    const Estimate& reported = report.reported[r];
     Row row{static_cast<std::int64_t>(r + 1), static_cast<std::int64_t>(report.poses.lines[r]),
             report.poses.times.empty() ? Cell() : Cell(report.poses.times[r])};
-    for (const ToldNumber& n : told.numbers) row.insert(row.end(), {Cell(n.value), Cell(n.deviation)});
-    for (const ToldPlace& p : told.places)
+    for (const EstimatedNumber& n : reported.numbers) row.insert(row.end(), {Cell(n.value), Cell(n.deviation)});
+    for (const EstimatedPlace& p : reported.places)
       for (const Vec3& v : {p.at_rest, p.present, deviations_of(p.covariance)})
         for (const double x : v) row.emplace_back(x);
     row.resize(table.columns.size() - 4);
-    row.insert(row.end(), {Cell(told.chi_square), Cell(told.freedoms), Cell(left_out_text(report, told)),
-                           Cell(std::string(name_of(told.status)))});
+    row.insert(row.end(), {Cell(reported.chi_square), Cell(reported.freedoms), Cell(left_out_text(report, reported)),
+                           Cell(std::string(name_of(reported.status)))});
     table.rows.push_back(std::move(row));
   }
   return table;

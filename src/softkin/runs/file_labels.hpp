@@ -5,8 +5,8 @@
 
 namespace softkin::runs {
 
-/// Short names of files, by which a legend tells them apart: their stems where these differ, else their names, else as
-/// many folders before those as it takes; what has one path several times is numbered.
+/// Short names of files for a legend: their stems where these differ, else their names, else with as many folders
+/// before them as are needed to distinguish them; files of the same path are numbered.
 ///
 /// tails    what is added to each, such as "@tip"; none, or as many as files
 /// returns  as many as files

@@ -6,14 +6,14 @@ namespace softkin::runs {
 
 namespace {
 
-std::string percent(double share) {
-  return decimal(100 * share, 1) + " %";
+std::string percent(double fraction) {
+  return decimal(100 * fraction, 1) + " %";
 }
 
-/// share  of the normal force, that slips
-std::string slipping_text(double share) {
-  if (share <= 0) return "; it sticks";
-  return share >= 1 ? "; it slips" : "; " + number(100 * share, 3) + " % of it slips";
+/// fraction  of the normal force, that slips
+std::string slipping_text(double fraction) {
+  if (fraction <= 0) return "; it sticks";
+  return fraction >= 1 ? "; it slips" : "; " + number(100 * fraction, 3) + " % of it slips";
 }
 
 constexpr const char* units_text = " (mm, MPa, kPa, kV, N, kg/m^3, m/s^2)";
@@ -28,8 +28,8 @@ std::string wrench_text(const Forces& of) {
   return place_text(of.force) + " N and " + place_text(of.moment) + " N mm about " + place_text(of.center) + " mm";
 }
 
-/// What is told of each.
-struct Telling {
+/// Returns the text of each finding.
+struct FindingText {
   const Model& model;
 
   std::string operator()(const finding::Strain& of) const {
@@ -37,7 +37,7 @@ struct Telling {
            ", 95 % of the volume within " + percent(of.percentile_95);
   }
   std::string operator()(const StrainHistogram::Beyond& of) const {
-    return percent(of.share) + " of region '" + of.region + "' is strained beyond its linear range of " +
+    return percent(of.fraction) + " of region '" + of.region + "' is strained beyond its linear range of " +
            percent(of.linear_range);
   }
   std::string operator()(const finding::Slack& of) const {
@@ -50,21 +50,20 @@ struct Telling {
            " pF; the field in its layer is at most " + number(layer.field_kV_mm, 4) + " kV/mm, where it is " +
            number(layer.thickness_mm, 4) + " mm thick, at " + place_text(layer.at) + " mm";
   }
-  std::string operator()(const finding::Rubbing& of) const {
-    return "cable '" + of.cable + "' rubs: of " + number(of.motor_N, 4) + " N at the motor " +
+  std::string operator()(const finding::CableFriction& of) const {
+    return "cable '" + of.cable + "' has friction: of " + number(of.motor_N, 4) + " N at the motor " +
            number(of.forces.end_N, 4) + " N are left at its far end; it sticks in " + percent(of.forces.sticks) +
            " of its friction";
   }
   std::string operator()(const finding::Fibre& of) const {
     const FibreForces& f = of.forces;
-    return "fibre '" + of.name + "' carries " + number(f.mean_N, 4) + " N in the mean, " + number(f.least_N, 4) +
-           " to " + number(f.largest_N, 4) + " N, the most at " + place_text(f.where) + " mm; it is " +
-           number(f.stretch, 6) + " times as long as at rest" +
-           (f.slack > 0 ? ", and slack in " + percent(f.slack) + " of it" : "");
+    return "fibre '" + of.name + "' carries " + number(f.mean_N, 4) + " N in the mean, " + number(f.min_N, 4) + " to " +
+           number(f.largest_N, 4) + " N, the most at " + place_text(f.where) + " mm; it is " + number(f.stretch, 6) +
+           " times as long as at rest" + (f.slack > 0 ? ", and slack in " + percent(f.slack) + " of it" : "");
   }
   std::string operator()(const finding::Layer& of) const {
     const LayerForces& f = of.forces;
-    return "layer '" + of.name + "' carries " + number(f.least_N_mm, 4) + " to " + number(f.largest_N_mm, 4) +
+    return "layer '" + of.name + "' carries " + number(f.min_N_mm, 4) + " to " + number(f.largest_N_mm, 4) +
            " N/mm, the most at " + place_text(f.where) + " mm; it is stretched by up to " + percent(f.strain) +
            (f.wrinkled > 0 ? ", wrinkled in " + percent(f.wrinkled) + " of its area" : "") +
            (f.slack > 0 ? ", slack in " + percent(f.slack) : "");
@@ -125,7 +124,7 @@ struct Telling {
   }
   std::string operator()(const finding::Motionless& of) const {
     return "warning: nothing moved: the largest displacement is " + number(of.largest_mm, 2) +
-           " mm; are what is asked for and the moduli in the right units?" + units_text;
+           " mm; are the commands and the moduli in the right units?" + units_text;
   }
   std::string operator()(const finding::FarStrained& of) const {
     return "warning: the body is strained by up to " + percent(of.greatest) +
@@ -136,16 +135,16 @@ struct Telling {
            number(of.diagonal_mm, 4) + " mm across; are the loads and the moduli in the right units?" + units_text;
   }
   std::string operator()(const finding::Unstable& of) const {
-    return "warning: this equilibrium is unstable in " + counted(static_cast<std::size_t>(of.ways), "way") +
+    return "warning: this equilibrium is unstable in " + counted(static_cast<std::size_t>(of.modes), "mode") +
            ": the robot would buckle or snap away from it";
   }
   std::string operator()(const finding::Snapped& of) const {
-    return "warning: at " + percent(of.from) + " of the way the shape jumps by " + number(of.largest_mm, 3) +
+    return "warning: at " + percent(of.from) + " of the path the shape jumps by " + number(of.largest_mm, 3) +
            " mm: the robot snaps through, and what it does there depends on how fast it is moved";
   }
-  std::string operator()(const finding::UnstableWay& of) const {
+  std::string operator()(const finding::UnstablePath& of) const {
     return "warning: from " + percent(of.from) +
-           " of the way on equilibria were unstable: the robot would leave the way there, for a shape that may be "
+           " of the path on equilibria were unstable: the robot would leave the path there, for a shape that may be "
            "another one";
   }
   std::string operator()(const finding::Diverged&) const { return "warning: the iteration diverged"; }
@@ -158,7 +157,7 @@ std::string overlap_cause(const Model& model) {
   return (stopped ? "; parts that are closer at rest than " + number(2 * model.contact.distance_mm, 3) +
                         " mm, twice the contact distance, do not stop each other"
                   : std::string("; parts that meet do not stop each other here")) +
-         ", so what lies beyond the first touch is not what the robot does: ask for less";
+         ", so shapes beyond the first touch are not those of the robot: request less";
 }
 
 std::string depth_text(double deepest_mm, const Vec3& where) {
@@ -167,7 +166,7 @@ std::string depth_text(double deepest_mm, const Vec3& where) {
 }
 
 std::string finding_text(const Model& model, const Finding& finding) {
-  return std::visit(Telling{model}, finding);
+  return std::visit(FindingText{model}, finding);
 }
 
 std::vector<FindingLine> finding_lines(const Model& model, const StepRecord& record, const std::string& stable) {
@@ -176,7 +175,7 @@ std::vector<FindingLine> finding_lines(const Model& model, const StepRecord& rec
     std::string text = finding_text(model, finding);
     if (std::holds_alternative<finding::Unstable>(finding))
       text += "; " + stable + " looks for the shape that it goes to";
-    if (std::holds_alternative<finding::UnstableWay>(finding)) text += "; " + stable + " looks for it";
+    if (std::holds_alternative<finding::UnstablePath>(finding)) text += "; " + stable + " looks for it";
     const bool is_warning = text.starts_with("warning: ");
     lines.push_back({finding.index(), is_warning, std::move(text)});
   }

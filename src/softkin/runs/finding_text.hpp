@@ -6,7 +6,7 @@
 
 namespace softkin::runs {
 
-/// What is told of a finding, a line.
+/// Returns the text of a finding, a line.
 [[nodiscard]] std::string finding_text(const Model& model, const Finding& finding);
 
 /// A finding as it is shown to a user.

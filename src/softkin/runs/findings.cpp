@@ -8,9 +8,9 @@ namespace softkin::runs {
 namespace {
 
 // What is found implausible of a shape. None of them is wrong for certain: they are warnings.
-constexpr double unmoved = 1e-6;    // of the diagonal: 0.1 um of a finger, below what any sensor of a robot tells
+constexpr double unmoved = 1e-6;    // of the diagonal: 0.1 um of a finger, below the resolution of a robot's sensors
 constexpr double far_strained = 5;  // [-]: most silicones break below it, and few robots come near
-constexpr double far_moved = 3;     // of the diagonal: what is held somewhere swings by twice its size at most
+constexpr double far_moved = 3;     // of the diagonal: a body that is held swings by twice its size at most
 
 /// Does the record ask for anything but the rest shape?
 bool asks_for_motion(const Model& model, const StepRecord& record) {
@@ -30,7 +30,7 @@ void add_implausible(const Model& model, const StepRecord& record, std::vector<F
   const double moved = record.largest_displacement_mm;
   if (record.status == Status::converged && moved < unmoved * model.diagonal_mm && asks_for_motion(model, record))
     found.emplace_back(finding::Motionless{moved});
-  if (!record.strain.shares.empty() && record.strain.greatest > far_strained)
+  if (!record.strain.fractions.empty() && record.strain.greatest > far_strained)
     found.emplace_back(finding::FarStrained{record.strain.greatest});
   if (moved > far_moved * model.diagonal_mm) found.emplace_back(finding::FarMoved{moved, model.diagonal_mm});
 }
@@ -96,17 +96,18 @@ void add_forces(const Model& model, const StepRecord& record, std::vector<Findin
   if (record.physical.unstable_modes > 0)
     found.emplace_back(finding::Unstable{record.physical.unstable_modes});
   else if (record.physical.unstable_from > 0)
-    found.emplace_back(finding::UnstableWay{record.physical.unstable_from});
+    found.emplace_back(finding::UnstablePath{record.physical.unstable_from});
   add_branch(record, found);
 }
 
 /// How far the body is strained.
 void add_strain(const StepRecord& record, std::vector<Finding>& found) {
   const StrainHistogram& strain = record.strain;
-  if (!strain.shares.empty()) found.emplace_back(finding::Strain{strain.least, strain.greatest, strain.percentile_95});
-  constexpr double least_shown = 0.0005;  // what is shown as 0.0 % is nothing to tell
+  if (!strain.fractions.empty())
+    found.emplace_back(finding::Strain{strain.least, strain.greatest, strain.percentile_95});
+  constexpr double min_shown = 0.0005;  // values that would be shown as 0.0 % are left out
   for (const auto& beyond : strain.beyond)
-    if (beyond.share >= least_shown) found.emplace_back(beyond);
+    if (beyond.fraction >= min_shown) found.emplace_back(beyond);
 }
 
 void add_actuators(const Model& model, const StepRecord& record, std::vector<Finding>& found) {
@@ -118,7 +119,7 @@ void add_actuators(const Model& model, const StepRecord& record, std::vector<Fin
       found.emplace_back(finding::Charged{model.actuators[a].name, *layer});
   for (std::size_t a = 0; a < model.actuators.size(); ++a)
     if (const ActuatorRecord& actuator = record.actuators[a]; actuator.tendon && actuator.multiplier != 0)
-      found.emplace_back(finding::Rubbing{model.actuators[a].name, actuator.multiplier, *actuator.tendon});
+      found.emplace_back(finding::CableFriction{model.actuators[a].name, actuator.multiplier, *actuator.tendon});
 }
 
 void add_reinforcements(const Model& model, const StepRecord& record, std::vector<Finding>& found) {

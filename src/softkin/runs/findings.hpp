@@ -5,7 +5,7 @@
 
 namespace softkin::runs {
 
-// What a user should know of an equilibrium beside its numbers.
+// The findings that a user should know about an equilibrium besides its numbers.
 
 namespace finding {
 
@@ -28,8 +28,8 @@ struct Charged {
   std::string dea;      // its name
   ElectricLayer layer;  // its charge and field
 };
-/// A cable that rubs.
-struct Rubbing {
+/// A cable with friction.
+struct CableFriction {
   std::string cable;    // its name
   double motor_N = 0;   // tension there
   TendonForces forces;  // beyond it
@@ -44,51 +44,51 @@ struct Layer {
   std::string name;    // its own
   LayerForces forces;  // in it
 };
-/// What holds the robot.
+/// A support of the robot.
 struct Support {
   std::string name;  // its own
   Reaction exerts;   // on the robot
 };
-/// What presses on something.
+/// A contact.
 struct Contact {
   std::string part, other;  // the first presses on the other; empty: on itself
   PairForces forces;        // by which
 };
-/// Nothing touches what it might.
+/// There is no contact, though some is possible.
 struct Untouched {};
 /// Unstable equilibria that were left.
 struct Buckled {
   int times = 0;          // how often
   double largest_mm = 0;  // move
 };
-/// Steps that jumped.
+/// Steps with a snap-through.
 struct Snapped {
   double largest_mm = 0;  // move
-  double from = 0;        // share of the way at which its step began [-]
+  double from = 0;        // fraction of the path at which its step began [-]
 };
 /// An equilibrium that would be left.
 struct Unstable {
-  int ways = 0;  // in how many
+  int modes = 0;  // number of unstable modes
 };
-/// Unstable equilibria on the way to one that is stable.
-struct UnstableWay {
-  double from = 0;  // share of the way [-]
+/// Unstable equilibria on the path to one that is stable.
+struct UnstablePath {
+  double from = 0;  // fraction of the path [-]
 };
-/// Something is asked for and nothing moves.
+/// A motion is requested and nothing moves.
 struct Motionless {
   double largest_mm = 0;  // displacement
 };
-/// More than elastomers bear.
+/// Strains larger than elastomers carry.
 struct FarStrained {
   double greatest = 0;  // strain [-]
 };
-/// Farther than what is held somewhere swings.
+/// Displacements larger than those of a body that is held somewhere.
 struct FarMoved {
   double largest_mm = 0, diagonal_mm = 0;  // displacement; of the robot
 };
 /// The iteration.
 struct Diverged {};
-/// How near the iteration came.
+/// The accuracy of the iteration.
 struct Accuracy {
   double step_mm = 0, estimated_error_mm = 0;  // its last step; distance that may be left
   bool physical = false;                       // then there are these
@@ -97,12 +97,12 @@ struct Accuracy {
 
 }  // namespace finding
 
-/// One of them, or what a record has of that name.
+/// One of them, or a member of a record.
 using Finding =
     std::variant<finding::Strain, StrainHistogram::Beyond, finding::Inverted, finding::Slack, finding::Charged,
-                 finding::Rubbing, finding::Fibre, finding::Layer, StressExtremes, finding::Support, MagneticLoad,
+                 finding::CableFriction, finding::Fibre, finding::Layer, StressExtremes, finding::Support, MagneticLoad,
                  finding::Contact, finding::Untouched, finding::Buckled, finding::Snapped, finding::Unstable,
-                 finding::UnstableWay, LoadBranch, SelfOverlap, finding::Motionless, finding::FarStrained,
+                 finding::UnstablePath, LoadBranch, SelfOverlap, finding::Motionless, finding::FarStrained,
                  finding::FarMoved, finding::Diverged, finding::Accuracy>;
 
 /// All that is worth knowing of a record's equilibrium. Of forces what is but rounding is 0; of a branch there are a

@@ -98,15 +98,15 @@ std::string missed_text(const std::vector<WaypointRecord>& done, bool nearest) {
     worst = std::max(worst, done[i].error_mm);
   }
   std::string text;
-  const auto tell = [&text](const std::vector<std::size_t>& numbers, const std::string& what) {
+  const auto describe = [&text](const std::vector<std::size_t>& numbers, const std::string& what) {
     if (numbers.empty()) return;
     text += (text.empty() ? "" : "; ") + std::string(numbers.size() == 1 ? "waypoint " : "waypoints ") +
             list_text(numbers) + (numbers.size() == 1 ? " was " : " were ") + what;
   };
-  tell(missed, nearest ? "not reached: the commands are those of the nearest sample"
-                       : "not reached: the marker stands at the nearest point that the ranges allow");
-  tell(lost, nearest ? "not reached: the nearest sample has no equilibrium from the waypoint before, nor from rest"
-                     : "not reached, and the search for a nearer point did not converge");
+  describe(missed, nearest ? "not reached: the commands are those of the nearest sample"
+                           : "not reached: the marker stands at the nearest point that the ranges allow");
+  describe(lost, nearest ? "not reached: the nearest sample has no equilibrium from the waypoint before, nor from rest"
+                         : "not reached, and the search for a nearer point did not converge");
   if (!text.empty()) text += "; at most " + number(worst, 3) + " mm off";
   return text;
 }

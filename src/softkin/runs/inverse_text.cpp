@@ -37,7 +37,7 @@ std::string counted_text(const Vec3& vector, const std::array<bool, 3>& axes, in
   return text;
 }
 
-std::string asked_text(const Goal& goal) {
+std::string requested_text(const Goal& goal) {
   if (const auto* position = std::get_if<PositionGoal>(&goal.what))
     return counted_text(position->target, position->axes, length_decimals) + " mm";
   if (const auto* force = std::get_if<ForceGoal>(&goal.what))
@@ -88,7 +88,7 @@ InverseTables inverse_tables(const Model& model, const std::vector<NamedGoal>& g
   exerted.columns.back().unit = "N";
   for (std::size_t i = 0; i < goals.size(); ++i) {
     (std::holds_alternative<ForceGoal>(goals[i].goal.what) ? exerted : reached)
-        .rows.push_back({goals[i].name, asked_text(goals[i].goal),
+        .rows.push_back({goals[i].name, requested_text(goals[i].goal),
                          found_text(model, goals[i].goal, found.equilibrium.state.positions, step),
                          own_error(goals[i].goal, found.errors_mm[i])});
   }

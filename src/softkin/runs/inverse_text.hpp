@@ -7,7 +7,7 @@
 
 namespace softkin::runs {
 
-/// Of an answer: a line for each actuator, one for each goal of markers, and one for each force that is asked for; no
+/// Tables of an answer: a line for each actuator, one for each goal of markers, and one for each requested force; no
 /// rows where there is none.
 struct InverseTables {
   Table actuators, goals, forces;

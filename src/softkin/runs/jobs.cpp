@@ -32,11 +32,15 @@ Codec<Record> codec_of(std::function<Json(const Record&)> write, Read read) {
 /// A start knows what acted; else it is where its first command led.
 std::vector<Actuation> acting_along(const Model& model, const std::vector<ActuationStep>& steps,
                                     const std::optional<State>& start) {
-  std::vector<Actuation> told;
-  for (const ActuationStep& step : steps) told.push_back(step.actuation);
-  if (told.empty()) return told;
+  std::vector<Actuation> reported;
+  for (const ActuationStep& step : steps) reported.push_back(step.actuation);
+  if (reported.empty()) return reported;
   const bool known = start && start->knows(model.rest_actuation().size());
-  return acting_in_order(model, !start ? model.rest_actuation() : known ? start->actuation : told.front(), told);
+  return acting_in_order(model,
+                         !start  ? model.rest_actuation()
+                         : known ? start->actuation
+                                 : reported.front(),
+                         reported);
 }
 
 }  // namespace
@@ -61,16 +65,16 @@ Codec<StepRecord> PathJob::codec() const {
 std::string PathJob::mismatch(std::size_t number, const StepRecord& record) const {
   const std::string step = "step " + std::to_string(number);
   if (number >= steps_.size()) return "it has " + step + ", but " + file_ + " ends before; the path has changed";
-  const ActuationStep& asked = steps_[number];
-  const std::string where = file_ + ":" + std::to_string(asked.line);
+  const ActuationStep& requested = steps_[number];
+  const std::string where = file_ + ":" + std::to_string(requested.line);
   for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
     const Actuator& actuator = model_.actuators[a];
-    const double before = record.actuation[a], now = asked.actuation[a];
+    const double before = record.actuation[a], now = requested.actuation[a];
     if (before != now)
       return step + " was solved for " + actuator.name + " = " + command_text(actuator, before, 12) + ", but " + where +
              " asks for " + command_text(actuator, now, 12) + "; the path has changed";
   }
-  if (record.time_s != asked.time) return step + " has another time than " + where + "; the path has changed";
+  if (record.time_s != requested.time) return step + " has another time than " + where + "; the path has changed";
   return "";
 }
 
@@ -116,9 +120,9 @@ Codec<WaypointRecord> FollowJob::codec() const {
 std::string FollowJob::mismatch(std::size_t number, const WaypointRecord& record) const {
   if (number >= path_.waypoints.size())
     return "it has waypoint " + std::to_string(number) + ", but the path ends before; the path has changed";
-  const Waypoint& asked = path_.waypoints[number];
-  if (record.asked.targets == asked.targets && record.asked.time == asked.time &&
-      record.asked.inserted == asked.inserted)
+  const Waypoint& requested = path_.waypoints[number];
+  if (record.requested.targets == requested.targets && record.requested.time == requested.time &&
+      record.requested.inserted == requested.inserted)
     return "";
   return "waypoint " + std::to_string(number) + " is another one than in " + file_ + "; the path has changed";
 }
@@ -137,7 +141,7 @@ FollowJob::Made FollowJob::make(std::size_t number, const ProgressCallback& prog
 }
 
 void FollowJob::recall(const WaypointRecord& record, const Points& positions) {
-  if (record.status == Status::converged) follower_.recall(record.asked, {positions, record.actuation});
+  if (record.status == Status::converged) follower_.recall(record.requested, {positions, record.actuation});
 }
 
 void FollowJob::go_on(std::size_t number, const WaypointRecord& before, Points positions) {
@@ -171,7 +175,7 @@ std::vector<GaitStep> repeated(const Model& model, const std::string& file, cons
   for (std::size_t cycle = 1; cycle <= cycles; ++cycle)
     for (std::size_t row = 1; row < gait.size(); ++row) {
       steps.push_back({gait[row], cycle});
-      if (timed) *steps.back().asked.time += static_cast<double>(cycle - 1) * period;
+      if (timed) *steps.back().requested.time += static_cast<double>(cycle - 1) * period;
     }
   return steps;
 }
@@ -188,18 +192,18 @@ std::string WalkJob::mismatch(std::size_t number, const WalkRecord& record) cons
   const std::string step = "step " + std::to_string(number);
   if (number >= steps_.size())
     return "it has " + step + ", but " + counted(steps_.back().cycle, "cycle") + " of " + file_ + " end before";
-  const ActuationStep& asked = steps_[number].asked;
-  if (record.actuation == asked.actuation && record.time_s == asked.time) return "";
+  const ActuationStep& requested = steps_[number].requested;
+  if (record.actuation == requested.actuation && record.time_s == requested.time) return "";
   return step + " is another one than in " + file_ + "; the gait has changed";
 }
 
 WalkJob::Made WalkJob::make(std::size_t number, const ProgressCallback& progress) {
-  const WalkStep found = walker_.advance(steps_[number].asked.actuation, progress);
+  const WalkStep found = walker_.advance(steps_[number].requested.actuation, progress);
   const State& state = found.equilibrium.state;
   ElementDeformation deformation = deformation_of(model_, state.positions);
   WalkRecord record = walk_record(model_, steps_[number].cycle, found, deformation);
   record.self_overlap = overlap_.in(state.positions);
-  record.time_s = steps_[number].asked.time;
+  record.time_s = steps_[number].requested.time;
   return Made{std::move(record), state, std::move(deformation)};
 }
 

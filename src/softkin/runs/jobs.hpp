@@ -20,7 +20,7 @@ class Job {
  public:
   /// A record with its shape.
   struct Made {
-    Record record;                   // stopped: not what was asked for, but the last good shape on the way there
+    Record record;                   // stopped: not the requested one, but the last good shape on its path
     State state;                     // the shape, its commands and loads
     ElementDeformation deformation;  // what the shape measures
   };
@@ -31,13 +31,13 @@ class Job {
   /// How they are written and read.
   [[nodiscard]] virtual Codec<Record> codec() const = 0;
 
-  /// Why a record is not what is asked for as that number; empty: it is.
+  /// Returns why a record is not the requested one of that number; empty: it is.
   [[nodiscard]] virtual std::string mismatch(std::size_t number, const Record& record) const = 0;
 
-  /// The record of that number, after the one before was made or go_on() was called.
+  /// Makes the record of that number, after the one before was made or go_on() was called.
   [[nodiscard]] virtual Made make(std::size_t number, const ProgressCallback& progress) = 0;
 
-  /// Is it one to go on from? Else the run ends before it.
+  /// Can the run continue from this record? Else it ends before it.
   [[nodiscard]] virtual bool keeps(const Record&) const { return true; }
 
   /// Takes note of a record that was made before, in their order, before go_on(); where it needs all of them.
@@ -49,11 +49,11 @@ class Job {
   virtual void go_on(std::size_t number, const Record& before, Points positions) = 0;
 };
 
-/// What came of a step of a run: a record; it was stopped; or what is none to go on from (Job::keeps).
+/// The end of a step of a run: a record; it was stopped; or a record that the run cannot continue from (Job::keeps).
 enum class Advance { made, interrupted, lost };
 
 /// A job and its log. Now and then the job forgets all but the last record, so that a run that is resumed makes again
-/// the few records since then and goes on as if it had never been stopped: bit by bit, with the same number of threads.
+/// the few records since then and runs on as if it had never been stopped: bit by bit, with the same number of threads.
 template <class Record>
 class Run {
  public:
@@ -125,8 +125,8 @@ class Run {
     return keeps ? Advance::made : Advance::lost;
   }
 
-  /// The report and the series' collection, of what is done; where it was stopped, the shape on the way to the next
-  /// record beside them.
+  /// Writes the report and the series' collection of the completed records; where the run was stopped, also the shape
+  /// on the path to the next record.
   void finish() {
     if (stopped_) log_.add_stopped(stopped_->record, stopped_->state, stopped_->deformation);
     if (done() > 0 && !files_.shapes.empty()) {
@@ -140,7 +140,7 @@ class Run {
   }
 
  private:
-  /// Makes the records since the last fresh start again, so that the job knows what it knew. False: interrupted.
+  /// Makes the records since the last fresh start again, so that the job regains its state. False: interrupted.
   [[nodiscard]] bool repeat(const ProgressCallback& progress) {
     const std::size_t end = done(), begin = end - end % fresh_every;
     if (job_.recalls())
@@ -225,10 +225,10 @@ class FollowJob : public Job<WaypointRecord> {
   WaypointRecord last_;
 };
 
-/// A row of a gait, on its way.
+/// A row of a gait within the walk.
 struct GaitStep {
-  ActuationStep asked;    // its time goes on from cycle to cycle
-  std::size_t cycle = 0;  // from 1; 0: where the robot is put down
+  ActuationStep requested;  // its time goes on from cycle to cycle
+  std::size_t cycle = 0;    // from 1; 0: where the robot is put down
 };
 
 /// The gait so many times. Throws InvalidInput, naming file and line, where its last row is not its first one again

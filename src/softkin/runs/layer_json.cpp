@@ -5,11 +5,11 @@
 namespace softkin::runs {
 
 Json layer_json(const std::optional<ElectricLayer>& layer) {
-  const auto told = [&](double ElectricLayer::*number) { return layer ? known((*layer).*number) : Json(); };
-  return {{"charge_nC", told(&ElectricLayer::charge_nC)},
-          {"capacitance_pF", told(&ElectricLayer::capacitance_pF)},
-          {"field_kV_mm", told(&ElectricLayer::field_kV_mm)},
-          {"thickness_mm", told(&ElectricLayer::thickness_mm)},
+  const auto reported = [&](double ElectricLayer::*number) { return layer ? known((*layer).*number) : Json(); };
+  return {{"charge_nC", reported(&ElectricLayer::charge_nC)},
+          {"capacitance_pF", reported(&ElectricLayer::capacitance_pF)},
+          {"field_kV_mm", reported(&ElectricLayer::field_kV_mm)},
+          {"thickness_mm", reported(&ElectricLayer::thickness_mm)},
           {"field_at_mm", layer ? json_of(layer->at) : Json()}};
 }
 

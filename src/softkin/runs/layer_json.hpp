@@ -6,9 +6,9 @@
 
 namespace softkin::runs {
 
-/// What a report says of a layer under voltage, beside its voltage; none: null for every number.
+/// The entries of a report on a layer under voltage, besides its voltage; none: null for every number.
 [[nodiscard]] Json layer_json(const std::optional<ElectricLayer>& layer);
-/// The layer that an actuator of a report tells of.
+/// Reads the layer of an actuator from a report.
 ///
 /// throws  Json::exception where a key is missing
 [[nodiscard]] std::optional<ElectricLayer> layer_of(const Json& actuator);

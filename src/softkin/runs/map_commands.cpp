@@ -20,11 +20,11 @@ Index pressure_of(const MapData& data, const Actuator& chamber, const std::strin
 
 void take_pressures(const Model& model, const KinematicMap& map, const std::string& map_file, Commands& commands) {
   const std::vector<std::size_t> chambers = chambers_without_pressures(model, commands, map_file);
-  std::vector<std::size_t> told;  // the others have a measured curve, which comes before the model
+  std::vector<std::size_t> reported;  // the others have a measured curve, which comes before the model
   std::vector<Index> outputs;
   for (const std::size_t a : chambers) {
     if (model.actuators[a].curve) continue;
-    told.push_back(a);
+    reported.push_back(a);
     outputs.push_back(pressure_of(map.data(), model.actuators[a], map_file));
     commands.pressure_known[a] = true;
   }
@@ -32,7 +32,7 @@ void take_pressures(const Model& model, const KinematicMap& map, const std::stri
   for (CommandRow& row : commands.rows) {
     if (!map.evaluate(map.commands(row.actuation).data(), values.data()))
       throw InvalidInput({commands.file, row.line}, "this row is outside the map " + map_file);
-    for (std::size_t i = 0; i < told.size(); ++i) row.pressures_kpa[told[i]] = values[outputs[i]];
+    for (std::size_t i = 0; i < reported.size(); ++i) row.pressures_kpa[reported[i]] = values[outputs[i]];
   }
 }
 

@@ -36,7 +36,7 @@ std::vector<ReadOutput> read_outputs(const KinematicMap& map, const Model& model
         std::find_if(outputs.begin(), outputs.end(), [&](const MapOutput& output) { return output.name == name; });
     if (found == outputs.end())
       throw InvalidInput({poses.file},
-                         "column '" + column.name + "' is nothing that the map gives: the solver tells from it");
+                         "column '" + column.name + "' is nothing that the map gives: the solver estimates from it");
     const bool ratio = column.marker < 0 && name.ends_with("_ratio");
     read.push_back(
         {static_cast<Index>(found - outputs.begin()), ratio ? model.actuators[column.actuator].rest_measure : 1});
@@ -48,7 +48,7 @@ std::vector<MapUnknown> map_unknowns(const KinematicMap& map, const Model& model
                                      const estimate::Variables& variables) {
   if (!variables.forces().empty())
     throw InvalidInput("the force '" + variables.forces()[0].name +
-                       "' acts anywhere on its region, and a map knows forces at known places: the solver tells it");
+                       "' acts anywhere on its region, and a map has forces at known places: the solver estimates it");
   std::vector<MapUnknown> unknowns;
   const std::vector<MapInput>& inputs = map.data().inputs;
   for (const estimate::Variable& variable : variables.all()) {
@@ -56,7 +56,8 @@ std::vector<MapUnknown> map_unknowns(const KinematicMap& map, const Model& model
       return variable.actuator >= 0 && input.actuator == variable.actuator;
     });
     if (found == inputs.end())
-      throw InvalidInput("'" + estimate::name_of(model, variable) + "' is no input of the map: the solver tells it");
+      throw InvalidInput("'" + estimate::name_of(model, variable) +
+                         "' is no input of the map: the solver estimates it");
     unknowns.push_back({static_cast<Index>(found - inputs.begin()), variable.mean, variable.deviation});
   }
   return unknowns;
@@ -65,23 +66,23 @@ std::vector<MapUnknown> map_unknowns(const KinematicMap& map, const Model& model
 /// Rows of readings by a map.
 class MapRows {
  public:
-  MapRows(const KinematicMap& map, const AskedEstimates& asked)
+  MapRows(const KinematicMap& map, const RequestedEstimates& requested)
       : map_(map),
-        asked_(asked),
-        variables_(asked.model, asked.unknowns),
-        unknowns_(map_unknowns(map, asked.model, variables_)),
-        read_(read_outputs(map, asked.model, asked.poses)),
-        deviations_(asked.deviations_of_columns()) {}
+        requested_(requested),
+        variables_(requested.model, requested.unknowns),
+        unknowns_(map_unknowns(map, requested.model, variables_)),
+        read_(read_outputs(map, requested.model, requested.poses)),
+        deviations_(requested.deviations_of_columns()) {}
 
-  [[nodiscard]] std::vector<Index> told_actuators() const {
-    std::vector<Index> told;
-    for (const estimate::Variable& variable : variables_.all()) told.push_back(variable.actuator);
-    return told;
+  [[nodiscard]] std::vector<Index> reported_actuators() const {
+    std::vector<Index> reported;
+    for (const estimate::Variable& variable : variables_.all()) reported.push_back(variable.actuator);
+    return reported;
   }
 
-  [[nodiscard]] Estimate tell(std::size_t row) const {
+  [[nodiscard]] Estimate describe(std::size_t row) const {
     const auto begin = std::chrono::steady_clock::now();
-    const Actuation& given = asked_.poses.commands[row];
+    const Actuation& given = requested_.poses.commands[row];
     Eigen::VectorXd commands(map_.inputs()), values(map_.outputs()), spreads(map_.outputs());
     for (Index i = 0; i < map_.inputs(); ++i) commands[i] = given[map_.data().inputs[i].actuator];
     for (const MapUnknown& unknown : unknowns_) commands[unknown.input] = unknown.mean;
@@ -89,32 +90,34 @@ class MapRows {
     spreads.setZero();
     for (Index c = 0; c < std::ssize(read_); ++c) {
       const ReadOutput& read = read_[c];
-      values[read.output] = asked_.poses.values(row, c) / read.size;
+      values[read.output] = requested_.poses.values(row, c) / read.size;
       spreads[read.output] = deviations_[c] / read.size;
     }
-    Estimate told;
-    told.actuation = given;
-    told.computed = told.deviations = Eigen::VectorXd::Constant(read_.size(), std::numeric_limits<double>::quiet_NaN());
+    Estimate reported;
+    reported.actuation = given;
+    reported.computed = reported.deviations =
+        Eigen::VectorXd::Constant(read_.size(), std::numeric_limits<double>::quiet_NaN());
     const std::optional<MapEstimate> found = estimate_by_map(map_, unknowns_, commands, values, spreads);
     if (found)
-      fill(*found, told);
+      fill(*found, reported);
     else
-      told.remark = "these commands, or what was known before, are outside the map";
-    told.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
-    return told;
+      reported.remark = "these commands, or what was known before, are outside the map";
+    reported.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - begin).count();
+    return reported;
   }
 
  private:
-  void fill(const MapEstimate& found, Estimate& told) const {
-    told.status = found.converged ? Status::converged : Status::not_converged;
-    if (!found.converged) told.remark = "the search ends at an end of the map";
-    told.covariance = told.near_covariance = found.covariance;
+  void fill(const MapEstimate& found, Estimate& reported) const {
+    reported.status = found.converged ? Status::converged : Status::not_converged;
+    if (!found.converged) reported.remark = "the search ends at an end of the map";
+    reported.covariance = reported.near_covariance = found.covariance;
     for (std::size_t i = 0; i < unknowns_.size(); ++i) {
       const double value = found.commands[unknowns_[i].input];
       const estimate::Variable& variable = variables_.all()[i];
       const Index at = i;
-      told.numbers.push_back(estimate::told_number(asked_.model, variable, value, std::sqrt(found.covariance(at, at))));
-      told.actuation[variable.actuator] = value;
+      reported.numbers.push_back(
+          estimate::reported_number(requested_.model, variable, value, std::sqrt(found.covariance(at, at))));
+      reported.actuation[variable.actuator] = value;
     }
     Eigen::VectorXd outputs(map_.outputs());
     maps::RowMatrix slopes(map_.inputs(), map_.outputs());
@@ -122,17 +125,17 @@ class MapRows {
     Eigen::VectorXd by(unknowns_.size());
     for (Index c = 0; c < std::ssize(read_); ++c) {
       const ReadOutput& read = read_[c];
-      told.computed[c] = read.size * found.computed[read.output];
+      reported.computed[c] = read.size * found.computed[read.output];
       for (Index i = 0; i < by.size(); ++i) by[i] = slopes(unknowns_[i].input, read.output);
-      told.deviations[c] = read.size * std::sqrt(by.dot(found.covariance * by));
+      reported.deviations[c] = read.size * std::sqrt(by.dot(found.covariance * by));
     }
-    told.chi_square = found.chi_square;
-    told.freedoms = found.freedoms;
-    told.iterations = found.iterations;
+    reported.chi_square = found.chi_square;
+    reported.freedoms = found.freedoms;
+    reported.iterations = found.iterations;
   }
 
   const KinematicMap& map_;
-  const AskedEstimates& asked_;
+  const RequestedEstimates& requested_;
   estimate::Variables variables_;
   std::vector<MapUnknown> unknowns_;
   std::vector<ReadOutput> read_;
@@ -141,16 +144,16 @@ class MapRows {
 
 }  // namespace
 
-EstimateReport estimate_poses_by_map(const KinematicMap& map, const AskedEstimates& asked,
+EstimateReport estimate_poses_by_map(const KinematicMap& map, const RequestedEstimates& requested,
                                      const EstimateCallback& row) {
-  const MapRows rows(map, asked);
-  asked.refuse_commanded(rows.told_actuators());
-  EstimateReport report{asked.model, asked.poses, asked.unknowns, asked.deviations};
-  report.groups = reading_groups(asked.model, asked.poses.columns);
-  for (std::size_t r = 0; r < asked.poses.commands.size(); ++r) {
-    report.told.push_back(rows.tell(r));
-    report.words.push_back(estimate_words(report.told.back(), report.groups));
-    if (row) row(r, report.told.back());
+  const MapRows rows(map, requested);
+  requested.refuse_commanded(rows.reported_actuators());
+  EstimateReport report{requested.model, requested.poses, requested.unknowns, requested.deviations};
+  report.groups = reading_groups(requested.model, requested.poses.columns);
+  for (std::size_t r = 0; r < requested.poses.commands.size(); ++r) {
+    report.reported.push_back(rows.describe(r));
+    report.words.push_back(estimate_words(report.reported.back(), report.groups));
+    if (row) row(r, report.reported.back());
   }
   return report;
 }

@@ -61,9 +61,9 @@ double rounded(double value, CNumbers numbers) {
 
 /// Does the map answer by one sum around the commands? Rounding may choose another at an edge.
 bool is_inside(const KinematicMap& map, const Eigen::VectorXd& commands, const KinematicMap::Place& place) {
-  constexpr double share = 1e-4;  // of the ranges
+  constexpr double fraction = 1e-4;  // of the ranges
   Eigen::VectorXd values(map.outputs());
-  for (const double side : {-share, share}) {
+  for (const double side : {-fraction, fraction}) {
     Eigen::VectorXd beside = commands;
     for (Index i = 0; i < map.inputs(); ++i) {
       const MapInput& input = map.data().inputs[i];

@@ -4,8 +4,8 @@
 
 namespace softkin::runs {
 
-/// A map for programs without softkin; docs/maps.md tells how to use them. Each checks itself against answers of the
-/// map that it brings along.
+/// A map for programs without softkin; docs/maps.md explains its use. Each export checks itself against answers of the
+/// map that it contains.
 
 enum class CNumbers { doubles, floats };
 

@@ -98,8 +98,8 @@ std::vector<double> scales_of(const FlatMap& flat, CNumbers numbers) {
   std::vector<double> scales;
   for (const auto& [low, high] : flat.boxes) {
     const double middle = low + (high - low) / 2, scale = high > low ? 2 / (high - low) : 0;
-    const double told = numbers == CNumbers::floats ? static_cast<float>(middle) : middle;
-    scales.insert(scales.end(), {told, scale, scale * ((told - low) - (high - told)) / 2});
+    const double reported = numbers == CNumbers::floats ? static_cast<float>(middle) : middle;
+    scales.insert(scales.end(), {reported, scale, scale * ((reported - low) - (high - reported)) / 2});
   }
   return scales;
 }
@@ -145,10 +145,10 @@ void add_tables(const MapData& data, const FlatMap& flat, CNumbers numbers, CTab
 
 /// How far an answer may be off: what rounding may do, and a little.
 std::vector<double> tolerances_of(const MapAnswers& answers, CNumbers numbers) {
-  const double share = numbers == CNumbers::floats ? 4e-6 : 1e-12,
+  const double fraction = numbers == CNumbers::floats ? 4e-6 : 1e-12,
                of_slopes = numbers == CNumbers::floats ? 1e-4 : 1e-10;
   std::vector<double> tolerances;
-  for (const double scale : answers.output_scale) tolerances.push_back(share * scale);
+  for (const double scale : answers.output_scale) tolerances.push_back(fraction * scale);
   for (const double scale : answers.slope_scale) tolerances.push_back(of_slopes * scale);
   return tolerances;
 }

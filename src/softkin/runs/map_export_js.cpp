@@ -99,8 +99,9 @@ std::string map_js_module(const MapData& data) {
 
 std::string map_js_types(const MapData& data) {
   std::string text = "// Types of a map exported by softkin " SOFTKIN_VERSION ".\n";
-  for (const JsConstant& told : js_constants)
-    text += std::string("\n/** ") + told.comment + " */\nexport const " + told.name + ": " + told.type + ";\n";
+  for (const JsConstant& reported : js_constants)
+    text +=
+        std::string("\n/** ") + reported.comment + " */\nexport const " + reported.name + ": " + reported.type + ";\n";
   text += js_types;
   if (data.shape)
     text +=

@@ -161,7 +161,7 @@ void add_numpy_cell(const std::string& name, const MapPiece& piece, const MapCel
 
 std::string map_npz(const MapData& data) {
   NumpyArrays arrays;
-  arrays.add("softkin", std::vector<std::string>{version()});  // the first: by it softkin knows the file again
+  arrays.add("softkin", std::vector<std::string>{version()});  // the first: by it softkin recognises the file
   add_named(data, arrays);
   add_cables(data, arrays);
   add_numpy_trees(flat_map(data), arrays);

@@ -4,7 +4,7 @@
 #include <softkin/runs/map_export.hpp>
 #include <utility>
 
-/// What the exports of a map share.
+/// Declarations for all exports of a map.
 
 namespace softkin::runs {
 
@@ -13,7 +13,7 @@ namespace softkin::runs {
 struct FlatSums {
   Index size = 0;                    // sums
   std::vector<Index> highest;        // degrees, #inputs per cell
-  std::vector<Index> cell_runs;      // the first of each cell, and of what comes behind the last
+  std::vector<Index> cell_runs;      // the first of each cell, and the number of all
   std::vector<Index> cell_terms;     // likewise
   std::vector<Index> runs;           // #inputs per run: degrees of all variables but the last, and the number of terms
   std::vector<double> coefficients;  // size per term
@@ -39,7 +39,7 @@ struct FlatMap {
 /// Markers of the map: outputs 3 i, 3 i + 1 and 3 i + 2 are where the i-th is.
 [[nodiscard]] std::vector<std::string> marker_names(const MapData& data);
 
-/// What an exported map has to answer.
+/// The answers that an exported map has to reproduce.
 struct MapAnswers {
   maps::RowMatrix commands;  // a row per answer
   maps::RowMatrix outputs;
@@ -47,9 +47,9 @@ struct MapAnswers {
   Eigen::VectorXd output_scale, slope_scale;  // the largest of each output, >= 1e-6
 };
 
-/// At random commands, of which there is an answer all around.
+/// Returns answers at random commands, each with answers all around it.
 ///
-/// numbers  the commands can be told in these
+/// numbers  type of number that represents the commands exactly
 /// throws   InvalidInput where none is found
 [[nodiscard]] MapAnswers map_answers(const KinematicMap& map, CNumbers numbers);
 

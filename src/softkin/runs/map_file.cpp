@@ -19,21 +19,21 @@ constexpr std::size_t alignment = 8;  // of arrays, from the begin of the file
 
 static_assert(std::endian::native == std::endian::little, "arrays of a map are little-endian");
 
-/// Arrays behind the header, each told by where it is.
+/// The arrays behind the header, each described by its position.
 class Arrays {
  public:
   /// Row by row.
   template <class Matrix>
   nlohmann::ordered_json add(const char* type, const Matrix& matrix) {
     using Scalar = typename Matrix::Scalar;
-    nlohmann::ordered_json told{{"type", type}, {"at", bytes_.size()}, {"shape", {matrix.rows(), matrix.cols()}}};
+    nlohmann::ordered_json reported{{"type", type}, {"at", bytes_.size()}, {"shape", {matrix.rows(), matrix.cols()}}};
     for (Eigen::Index i = 0; i < matrix.rows(); ++i)
       for (Eigen::Index j = 0; j < matrix.cols(); ++j) {
         const Scalar value = matrix(i, j);
         bytes_.append(reinterpret_cast<const char*>(&value), sizeof value);
       }
     bytes_.resize((bytes_.size() + alignment - 1) / alignment * alignment);
-    return told;
+    return reported;
   }
   [[nodiscard]] const std::string& bytes() const { return bytes_; }
 
@@ -46,11 +46,12 @@ class ArrayReader {
   explicit ArrayReader(std::string_view bytes) : bytes_(bytes) {}
 
   template <class Matrix>
-  [[nodiscard]] Matrix read(const char* type, const nlohmann::json& told) const {
+  [[nodiscard]] Matrix read(const char* type, const nlohmann::json& reported) const {
     using Scalar = typename Matrix::Scalar;
-    if (told.at("type").get<std::string>() != type) throw InvalidInput("an array has another type");
-    const auto at = told.at("at").get<std::size_t>();
-    const auto rows = told.at("shape").at(0).get<std::size_t>(), columns = told.at("shape").at(1).get<std::size_t>();
+    if (reported.at("type").get<std::string>() != type) throw InvalidInput("an array has another type");
+    const auto at = reported.at("at").get<std::size_t>();
+    const auto rows = reported.at("shape").at(0).get<std::size_t>(),
+               columns = reported.at("shape").at(1).get<std::size_t>();
     const bool fits = at <= bytes_.size() && (columns == 0 || rows <= (bytes_.size() - at) / sizeof(Scalar) / columns);
     if (!fits) throw InvalidInput("it is cut off");
     const int fixed = Matrix::RowsAtCompileTime;
@@ -84,39 +85,39 @@ nlohmann::ordered_json polynomials_json(const maps::Polynomials& polynomials, Ar
           {"coefficients", arrays.add("f64", polynomials.coefficients())}};
 }
 
-maps::Polynomials polynomials_of(const nlohmann::json& told, const ArrayReader& arrays) {
-  maps::Terms terms = arrays.read<maps::Terms>("u8", told.at("degrees"));
-  maps::RowMatrix coefficients = arrays.read<maps::RowMatrix>("f64", told.at("coefficients"));
+maps::Polynomials polynomials_of(const nlohmann::json& reported, const ArrayReader& arrays) {
+  maps::Terms terms = arrays.read<maps::Terms>("u8", reported.at("degrees"));
+  maps::RowMatrix coefficients = arrays.read<maps::RowMatrix>("f64", reported.at("coefficients"));
   return {std::move(terms), std::move(coefficients)};
 }
 
 nlohmann::ordered_json piece_json(const MapPiece& piece, Arrays& arrays) {
-  nlohmann::ordered_json told{{"taut", piece.taut}, {"inputs", piece.inputs}};
+  nlohmann::ordered_json reported{{"taut", piece.taut}, {"inputs", piece.inputs}};
   for (const MapNode& node : piece.tree)
-    told["tree"].push_back(
+    reported["tree"].push_back(
         node.variable < 0
             ? nlohmann::ordered_json{{"cell", node.cell}}
             : nlohmann::ordered_json{
                   {"variable", node.variable}, {"at", node.at}, {"below", node.first}, {"above", node.second}});
-  told["cells"] = nlohmann::ordered_json::array();
+  reported["cells"] = nlohmann::ordered_json::array();
   for (const MapCell& cell : piece.cells) {
-    nlohmann::ordered_json& made = told["cells"].emplace_back(nlohmann::ordered_json{
+    nlohmann::ordered_json& made = reported["cells"].emplace_back(nlohmann::ordered_json{
         {"low", numbers(cell.low)}, {"high", numbers(cell.high)}, {"outputs", polynomials_json(cell.outputs, arrays)}});
     if (cell.modes.count() > 0) made["modes"] = polynomials_json(cell.modes, arrays);
   }
-  return told;
+  return reported;
 }
 
-MapPiece piece_of(const nlohmann::json& told, const ArrayReader& arrays) {
-  MapPiece piece{told.at("taut").get<std::vector<bool>>(), told.at("inputs").get<std::vector<Index>>(), {}, {}};
-  for (const nlohmann::json& node : told.at("tree")) {
+MapPiece piece_of(const nlohmann::json& reported, const ArrayReader& arrays) {
+  MapPiece piece{reported.at("taut").get<std::vector<bool>>(), reported.at("inputs").get<std::vector<Index>>(), {}, {}};
+  for (const nlohmann::json& node : reported.at("tree")) {
     if (node.contains("cell"))
       piece.tree.push_back({-1, 0, -1, -1, node.at("cell").get<Index>()});
     else
       piece.tree.push_back({node.at("variable").get<int>(), node.at("at").get<double>(), node.at("below").get<Index>(),
                             node.at("above").get<Index>(), -1});
   }
-  for (const nlohmann::json& cell : told.at("cells")) {
+  for (const nlohmann::json& cell : reported.at("cells")) {
     MapCell& made = piece.cells.emplace_back();
     made.low = vector_of(cell.at("low"));
     made.high = vector_of(cell.at("high"));
@@ -127,55 +128,55 @@ MapPiece piece_of(const nlohmann::json& told, const ArrayReader& arrays) {
 }
 
 nlohmann::ordered_json header(const MapData& data, Arrays& arrays) {
-  nlohmann::ordered_json told{{"softkin_map", format},         {"softkin", SOFTKIN_VERSION},
-                              {"robot", data.robot},           {"name", data.name},
-                              {"equilibria", data.equilibria}, {"actuation", numbers(data.actuation)}};
+  nlohmann::ordered_json reported{{"softkin_map", format},         {"softkin", SOFTKIN_VERSION},
+                                  {"robot", data.robot},           {"name", data.name},
+                                  {"equilibria", data.equilibria}, {"actuation", numbers(data.actuation)}};
   for (const MapInput& input : data.inputs)
-    told["inputs"].push_back({{"name", input.name},
-                              {"unit", input.unit},
-                              {"actuator", input.actuator},
-                              {"low", input.low},
-                              {"high", input.high}});
+    reported["inputs"].push_back({{"name", input.name},
+                                  {"unit", input.unit},
+                                  {"actuator", input.actuator},
+                                  {"low", input.low},
+                                  {"high", input.high}});
   for (std::size_t q = 0; q < data.outputs.size(); ++q) {
     const MapOutput& output = data.outputs[q];
     const Index at = q;
-    told["outputs"].push_back({{"name", output.name},
-                               {"unit", output.unit},
-                               {"accuracy", output.accuracy},
-                               {"largest_error", data.check.largest[at]},
-                               {"mean_error", data.check.mean[at]}});
+    reported["outputs"].push_back({{"name", output.name},
+                                   {"unit", output.unit},
+                                   {"accuracy", output.accuracy},
+                                   {"largest_error", data.check.largest[at]},
+                                   {"mean_error", data.check.mean[at]}});
   }
-  told["checked"] = {{"points", data.check.points}, {"outside", data.check.outside}, {"seed", data.check.seed}};
-  told["cables"] = nlohmann::ordered_json::array();
+  reported["checked"] = {{"points", data.check.points}, {"outside", data.check.outside}, {"seed", data.check.seed}};
+  reported["cables"] = nlohmann::ordered_json::array();
   for (const MapCable& cable : data.cables)
-    told["cables"].push_back({{"actuator", cable.actuator},
-                              {"input", cable.input},
-                              {"command", cable.command},
-                              {"tension", cable.tension},
-                              {"ratio", cable.ratio}});
-  for (const MapPiece& piece : data.pieces) told["pieces"].push_back(piece_json(piece, arrays));
+    reported["cables"].push_back({{"actuator", cable.actuator},
+                                  {"input", cable.input},
+                                  {"command", cable.command},
+                                  {"tension", cable.tension},
+                                  {"ratio", cable.ratio}});
+  for (const MapPiece& piece : data.pieces) reported["pieces"].push_back(piece_json(piece, arrays));
   if (data.shape)
-    told["shape"] = {{"accuracy_mm", data.shape->accuracy_mm},
-                     {"largest_error_mm", data.check.shape_largest_mm},
-                     {"mean_error_mm", data.check.shape_mean_mm},
-                     {"largest_strain_error", data.check.strain_largest},
-                     {"units", numbers(data.shape->units)},
-                     {"mean", arrays.add("f32", data.shape->mean.transpose().eval())},
-                     {"modes", arrays.add("i16", data.shape->modes.transpose().eval())}};
-  return told;
+    reported["shape"] = {{"accuracy_mm", data.shape->accuracy_mm},
+                         {"largest_error_mm", data.check.shape_largest_mm},
+                         {"mean_error_mm", data.check.shape_mean_mm},
+                         {"largest_strain_error", data.check.strain_largest},
+                         {"units", numbers(data.shape->units)},
+                         {"mean", arrays.add("f32", data.shape->mean.transpose().eval())},
+                         {"modes", arrays.add("i16", data.shape->modes.transpose().eval())}};
+  return reported;
 }
 
-MapData data_of(const nlohmann::json& told, const ArrayReader& arrays) {
+MapData data_of(const nlohmann::json& reported, const ArrayReader& arrays) {
   MapData data;
-  data.robot = told.at("robot").get<std::string>();
-  data.name = told.at("name").get<std::string>();
-  data.equilibria = told.at("equilibria").get<Index>();
-  data.actuation = vector_of(told.at("actuation"));
-  for (const nlohmann::json& input : told.at("inputs"))
+  data.robot = reported.at("robot").get<std::string>();
+  data.name = reported.at("name").get<std::string>();
+  data.equilibria = reported.at("equilibria").get<Index>();
+  data.actuation = vector_of(reported.at("actuation"));
+  for (const nlohmann::json& input : reported.at("inputs"))
     data.inputs.push_back({input.at("name").get<std::string>(), input.at("unit").get<std::string>(),
                            input.at("actuator").get<Index>(), input.at("low").get<double>(),
                            input.at("high").get<double>()});
-  const nlohmann::json& outputs = told.at("outputs");
+  const nlohmann::json& outputs = reported.at("outputs");
   data.check.largest.resize(outputs.size());
   data.check.mean.resize(outputs.size());
   for (const nlohmann::json& output : outputs) {
@@ -185,17 +186,17 @@ MapData data_of(const nlohmann::json& told, const ArrayReader& arrays) {
     data.check.largest[at] = output.at("largest_error").get<double>();
     data.check.mean[at] = output.at("mean_error").get<double>();
   }
-  const nlohmann::json& checked = told.at("checked");
+  const nlohmann::json& checked = reported.at("checked");
   data.check.points = checked.at("points").get<Index>();
   data.check.outside = checked.at("outside").get<Index>();
   data.check.seed = checked.at("seed").get<std::uint64_t>();
-  for (const nlohmann::json& cable : told.at("cables"))
+  for (const nlohmann::json& cable : reported.at("cables"))
     data.cables.push_back({cable.at("actuator").get<Index>(), cable.at("input").get<Index>(),
                            cable.at("command").get<double>(), cable.at("tension").get<Index>(),
                            cable.at("ratio").get<Index>()});
-  for (const nlohmann::json& piece : told.at("pieces")) data.pieces.push_back(piece_of(piece, arrays));
-  if (!told.contains("shape")) return data;
-  const nlohmann::json& shape = told.at("shape");
+  for (const nlohmann::json& piece : reported.at("pieces")) data.pieces.push_back(piece_of(piece, arrays));
+  if (!reported.contains("shape")) return data;
+  const nlohmann::json& shape = reported.at("shape");
   MapShape& made = data.shape.emplace();
   made.accuracy_mm = shape.at("accuracy_mm").get<double>();
   data.check.shape_largest_mm = shape.at("largest_error_mm").get<double>();
@@ -227,12 +228,12 @@ MapData map_from_bytes(std::string_view bytes, const std::string& file_name) {
   if (!bytes.starts_with("{\"softkin_map\":") || end == std::string_view::npos)
     throw InvalidInput({file_name}, "is no map of softkin; softkin map makes one");
   try {
-    const nlohmann::json told = nlohmann::json::parse(bytes.substr(0, end));
-    const int found = told.at("softkin_map").get<int>();
+    const nlohmann::json reported = nlohmann::json::parse(bytes.substr(0, end));
+    const int found = reported.at("softkin_map").get<int>();
     if (found > format)
       throw InvalidInput("it is of a newer softkin, in format " + std::to_string(found) + "; this one reads format " +
                          std::to_string(format));
-    return data_of(told, ArrayReader(bytes.substr(end + 1)));
+    return data_of(reported, ArrayReader(bytes.substr(end + 1)));
   } catch (const nlohmann::json::exception& error) {
     throw InvalidInput({file_name}, std::string("is a broken map: ") + error.what());
   } catch (const InvalidInput& error) {
@@ -295,9 +296,9 @@ std::string map_text(const MapData& data) {
 
 std::string map_json(const MapData& data, const std::string& file_name, double seconds) {
   Arrays arrays;
-  nlohmann::ordered_json told = header(data, arrays), made{{"map", file_name}};
+  nlohmann::ordered_json reported = header(data, arrays), made{{"map", file_name}};
   for (const char* key : {"softkin", "robot", "name", "equilibria", "inputs", "outputs", "checked"})
-    made[key] = told[key];
+    made[key] = reported[key];
   made["pieces"] = nlohmann::ordered_json::array();
   for (const MapPiece& piece : data.pieces) {
     Index terms = 0;
@@ -305,7 +306,7 @@ std::string map_json(const MapData& data, const std::string& file_name, double s
     made["pieces"].push_back({{"taut", piece.taut}, {"cells", piece.cells.size()}, {"terms", terms}});
   }
   if (data.shape) {
-    made["shape"] = told["shape"];
+    made["shape"] = reported["shape"];
     for (const char* key : {"mean", "modes", "units"}) made["shape"].erase(key);
     made["shape"]["modes"] = data.shape->units.size();
   }

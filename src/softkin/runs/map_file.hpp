@@ -8,7 +8,8 @@
 
 namespace softkin::runs {
 
-/// A map on disk: a line of JSON that tells where each array is, and the arrays behind it; docs/maps.md has the layout.
+/// A map on disk: a line of JSON with the position of each array, and the arrays behind it; docs/maps.md has the
+/// layout.
 [[nodiscard]] std::string map_bytes(const MapData& data);
 void write_map(const std::filesystem::path& path, const MapData& data);
 
@@ -17,7 +18,7 @@ void write_map(const std::filesystem::path& path, const MapData& data);
 /// file_name: for messages
 [[nodiscard]] MapData map_from_bytes(std::string_view bytes, const std::string& file_name);
 
-/// throws  InvalidInput telling what differs: the map is of another robot, or of this one as it was
+/// throws  InvalidInput naming the difference: the map is of another robot, or of this one before a change
 void check_robot(const MapData& data, const Model& model, const std::string& file_name);
 
 /// "36 equilibria; checked at 200 points: tip within 0.00018 mm, ..." and what it refused, a line each.

@@ -84,7 +84,7 @@ maps::Sample unpacked_sample(std::string bytes) {
   return sample;
 }
 
-/// Lines that tell of what the records are a function.
+/// Lines that identify all inputs of the records.
 std::string journal_head(const Model& model, const MapOptions& options) {
   std::string ranges;
   for (const Actuator& actuator : model.actuators)

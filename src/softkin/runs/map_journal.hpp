@@ -14,7 +14,7 @@ namespace softkin::runs {
 /// the map is there.
 class MapJournal : public MapDesk {
  public:
-  /// Begins, or with resume goes on with what is there.
+  /// Begins or, with resume, continues the journal.
   ///
   /// throws  InvalidInput where there is a journal that is not to be gone on with, or one of another robot or other
   ///         options that is; where it cannot be written

@@ -50,7 +50,7 @@ namespace {
 
 std::string typed;
 
-std::string told_of(const std::string& file, std::size_t bytes) {
+std::string text_of(const std::string& file, std::size_t bytes) {
   return "page: " + file + " (" + decimal(static_cast<double>(bytes) / 1e6, 1) + " MB; open it in a browser)";
 }
 
@@ -90,8 +90,8 @@ void RunPage::write() {
   bytes_ = html.size();
 }
 
-std::string RunPage::told() const {
-  return bytes_ == 0 ? "" : told_of(file_, bytes_);
+std::string RunPage::reported() const {
+  return bytes_ == 0 ? "" : text_of(file_, bytes_);
 }
 
 std::string write_comparison_page(const std::string& file, const Comparison& comparison, const std::string& command) {
@@ -104,7 +104,7 @@ std::string write_comparison_page(const std::string& file, const Comparison& com
       {"comparison", {{"notes", comparison.notes}, {"tables", tables}, {"plot", svg_text(comparison.plot)}}}};
   const std::string html = page_html(embedded_page(), document.dump());
   write_file(file, html);
-  return told_of(file, html.size());
+  return text_of(file, html.size());
 }
 
 }  // namespace softkin::runs

@@ -36,17 +36,17 @@ inline constexpr const char* no_page = "this softkin was built without its page;
 void keep_command(std::vector<std::string> words);
 [[nodiscard]] const std::string& kept_command();
 
-/// What a page shows beside each other, without a robot.
+/// The content of a page that compares results, without a robot.
 struct Comparison {
   std::vector<std::string> notes;                     // a line each
   std::vector<std::pair<std::string, Table>> tables;  // with their captions
   Plot plot;
 };
 
-/// Writes the page of a comparison. command: the line that makes it. Returns what RunPage::told() says.
+/// Writes the page of a comparison. command: the line that makes it. Returns the text of RunPage::reported().
 std::string write_comparison_page(const std::string& file, const Comparison& comparison, const std::string& command);
 
-/// A page that is written when all is known that it shows.
+/// A page that is written once all its content is available.
 class RunPage {
  public:
   /// All must outlive the object. file: empty: there is no page; command: the line that makes it, for people
@@ -69,7 +69,7 @@ class RunPage {
   /// Into the file; nothing where there is nothing but the robot at rest.
   void write();
   /// "page: F.html (2.1 MB; open it in a browser)"; empty where none was written.
-  [[nodiscard]] std::string told() const;
+  [[nodiscard]] std::string reported() const;
 
  private:
   void add(const StepRecord& record, const Points& positions, const ElementDeformation* made, const Statics* statics);

@@ -84,7 +84,7 @@ WorstPlace worst_of(const Json& json) {
   return worst;
 }
 
-/// What the physical formulation knows of forces and of stability.
+/// The results of the physical formulation on forces and stability.
 template <class Report, class Visit>
 void forces(Report& physical, const Visit& visit) {
   visit("residual_N", physical.residual_N);
@@ -121,7 +121,7 @@ LoadBranch branch_of(const Model& model, const Json& json) {
 }  // namespace
 
 Json physical_json(const Model& model, const StepRecord& record) {
-  Json json = {{"shape_load_share", record.shape_load_share}};
+  Json json = {{"shape_load_share", record.shape_load_fraction}};
   forces(record.physical, [&json](const char* key, const auto& value) { write_number(value, json[key]); });
   json["stress"] = record.forces.stress ? stress_json(*record.forces.stress) : Json();
   if (!record.physical.branch.points.empty()) json["branch"] = branch_json(model, record.physical.branch);
@@ -133,14 +133,14 @@ Json physical_json(const Model& model, const StepRecord& record) {
   if (!record.forces.fibres.empty()) json["fibres"] = fibres_json(model, record.forces.fibres);
   if (!record.forces.layers.empty()) json["layers"] = layers_json(model, record.forces.layers);
   if (model.contact.any()) json["contacts"] = contacts_json(model, record.forces.contacts);
-  if (model.contact.rubs()) json["friction_change"] = known(record.physical.friction_change);
+  if (model.contact.has_friction()) json["friction_change"] = known(record.physical.friction_change);
   if (!record.anchors.empty()) json["anchors"] = anchors_json(record.anchors);
   if (!record.eyelets.empty()) json["eyelets_mm"] = record.eyelets;
   return json;
 }
 
 void read_physical(const Model& model, const Json& json, StepRecord& record) {
-  record.shape_load_share = json.at("shape_load_share").get<double>();
+  record.shape_load_fraction = json.at("shape_load_share").get<double>();
   forces(record.physical, [&json](const char* key, auto& value) { read_number(json.at(key), value); });
   if (const Json& stress = json.at("stress"); !stress.is_null()) record.forces.stress = stress_of(stress);
   if (json.contains("branch")) record.physical.branch = branch_of(model, json.at("branch"));
@@ -156,7 +156,7 @@ void read_physical(const Model& model, const Json& json, StepRecord& record) {
   if (!model.contact.any()) return;
   if (const Json& contacts = json.at("contacts"); !contacts.is_null())
     record.forces.contacts = contacts_of(model, contacts);
-  if (model.contact.rubs()) record.physical.friction_change = number_or_nan(json.at("friction_change"));
+  if (model.contact.has_friction()) record.physical.friction_change = number_or_nan(json.at("friction_change"));
   if (json.contains("anchors")) record.anchors = anchors_of(model, json.at("anchors"));
 }
 

@@ -13,7 +13,7 @@ namespace softkin::runs {
 
 namespace {
 
-constexpr std::size_t most_markers = 12;  // with panels of their own
+constexpr std::size_t max_markers = 12;  // with panels of their own
 
 /// Of every actuator over the steps. Records: a range of records, or of references to them.
 template <class Records>
@@ -33,7 +33,7 @@ StepAxis step_axis_of(const Records& records, const std::vector<StepCurve>& comm
   return step_axis(times, commands);
 }
 
-/// "volume ratio" and so on of the actuators that are commanded by a load: it against itself would tell nothing.
+/// "volume ratio" and so on of the actuators that are commanded by a load, whose plot over itself would be useless.
 template <class Records>
 std::vector<PlotPanel> measure_panels(const Model& model, const StepAxis& along, const Records& records) {
   std::vector<PlotPanel> panels;
@@ -114,7 +114,7 @@ class Steps {
     return curves;
   }
 
-  /// On each body, by what touches it.
+  /// The force of all contacts on each body.
   [[nodiscard]] std::vector<StepCurve> contacts() const {
     std::vector<StepCurve> curves;
     const auto knows = [](const StepRecord& step) { return step.forces.contacts.has_value(); };
@@ -127,14 +127,14 @@ class Steps {
     return curves;
   }
 
-  [[nodiscard]] SpaceCurve way(std::size_t marker) const {
+  [[nodiscard]] SpaceCurve route(std::size_t marker) const {
     SpaceCurve curve{model_.markers[marker].name, {}, true, true};
     for (const StepRecord& step : steps_) curve.points.push_back(step.markers[marker]);
     return curve;
   }
 
   [[nodiscard]] PlotPanel marker_panel(std::size_t marker) const {
-    const SpaceCurve curve = way(marker);
+    const SpaceCurve curve = route(marker);
     std::vector<StepCurve> coordinates{{"x", "mm", {}}, {"y", "mm", {}}, {"z", "mm", {}}};
     for (const Vec3& point : curve.points)
       for (int axis = 0; axis < 3; ++axis) coordinates[axis].values.push_back(point[axis]);
@@ -165,7 +165,7 @@ class Steps {
   StepAxis along_;
 };
 
-constexpr double least_error = 1e-9;  // [mm], as small as a logarithmic axis is to show
+constexpr double min_error = 1e-9;  // [mm], as small as a logarithmic axis is to show
 
 class PathPlot {
  public:
@@ -218,10 +218,10 @@ class PathPlot {
     PlotSeries error, tolerance;
     error.label = "error";
     error.x = along_.values;
-    for (const WaypointRecord& each : done_) error.y.push_back(std::max(each.error_mm, least_error));
+    for (const WaypointRecord& each : done_) error.y.push_back(std::max(each.error_mm, min_error));
     tolerance.label = "tolerance " + number(tolerance_mm_) + " mm";
     tolerance.x = {along_.values.front(), along_.values.back()};
-    tolerance.y = {std::max(tolerance_mm_, least_error), std::max(tolerance_mm_, least_error)};
+    tolerance.y = {std::max(tolerance_mm_, min_error), std::max(tolerance_mm_, min_error)};
     tolerance.marks = false;
     tolerance.style = 4;
     panel.series = {error, tolerance};
@@ -289,22 +289,22 @@ Plot plot_of_steps(const Model& model, const std::vector<StepRecord>& steps, con
   const Steps path(model, steps);
   Plot plot;
   plot.title = title;
-  if (model.markers.size() > most_markers)
+  if (model.markers.size() > max_markers)
     plot.title +=
-        " (the first " + std::to_string(most_markers) + " of " + std::to_string(model.markers.size()) + " markers)";
+        " (the first " + std::to_string(max_markers) + " of " + std::to_string(model.markers.size()) + " markers)";
   const auto add = [&plot](std::vector<PlotPanel> row) {
     if (!row.empty()) plot.rows.push_back(std::move(row));
   };
   if (!path.along().command) add(curve_panels(path.along(), path.commands(), "command"));
-  std::vector<SpaceCurve> ways;
+  std::vector<SpaceCurve> routes;
   std::vector<PlotPanel> row;
-  for (std::size_t m = 0; m < std::min(model.markers.size(), most_markers); ++m) {
-    ways.push_back(path.way(m));
+  for (std::size_t m = 0; m < std::min(model.markers.size(), max_markers); ++m) {
+    routes.push_back(path.route(m));
     row.push_back(path.marker_panel(m));
     if (row.size() == 2) add(std::exchange(row, {}));
   }
   add(std::move(row));
-  add(curve_panels(path.along(), path.turns(line, ways.size()), "turn"));
+  add(curve_panels(path.along(), path.turns(line, routes.size()), "turn"));
   add(path.measures());
   std::vector<PlotPanel> loads = curve_panels(path.along(), path.loads("pressure_kPa", "kPa"), "gauge pressure");
   for (PlotPanel& panel : curve_panels(path.along(), path.loads("tension_N", "N"), "tension"))
@@ -313,7 +313,7 @@ Plot plot_of_steps(const Model& model, const std::vector<StepRecord>& steps, con
     loads.push_back(std::move(panel));
   add(std::move(loads));
   add(curve_panels(path.along(), path.contacts(), "contact force"));
-  if (!ways.empty()) add(projections(ways));
+  if (!routes.empty()) add(projections(routes));
   if (plot.rows.empty()) add({PlotPanel{}});
   return plot;
 }

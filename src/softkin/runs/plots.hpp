@@ -10,12 +10,12 @@
 
 namespace softkin::runs {
 
-/// "gait.csv by finger.yaml: physical", with the names of the files alone. by: what was done; empty: not told
+/// "gait.csv by finger.yaml: physical", with the names of the files alone. by: the file of commands; empty: left out
 [[nodiscard]] std::string plot_title(const Model& model, const std::string& scene, const std::string& by = "");
 
-/// Commands, markers and how far they turned, what the actuators answer with (pressures, tensions; volume, length and
-/// area where the load is what is commanded), forces of contact on bodies, and the markers' ways through space. Steps
-/// whose numbers are not known are left out; those that did not converge are marked. line: whose turn is drawn, too
+/// Commands, markers and their turns, the responses of the actuators (pressures, tensions; volume, length and area
+/// where the load is commanded), contact forces on bodies, and the marker trajectories in space. Steps without finite
+/// numbers are left out; those that did not converge are marked. line: whose turn is drawn, too
 [[nodiscard]] Plot plot_of_steps(const Model& model, const std::vector<StepRecord>& steps, const std::string& title,
                                  const std::optional<MarkerLine>& line = {});
 

@@ -54,7 +54,7 @@ void FileDesk::keep(const WorkspaceSample& sample) {
 Ranks::Ranks() {
   if (launched() > 1)
     throw InvalidInput(
-        "this softkin was built without MPI, so that its copies cannot share a workspace: build it with "
+        "this softkin was built without MPI, so that its copies cannot divide a workspace: build it with "
         "-DSOFTKIN_MPI=ON, or run it without mpirun");
 }
 Ranks::~Ranks() = default;
@@ -62,8 +62,8 @@ void Ranks::together(const std::function<void()>& part) const {
   part();
 }
 void Ranks::agree_on(const std::string&) const {}
-void Ranks::share(const Model&, const WorkspacePlan&, GroupDesk* desk,
-                  const std::function<void(GroupDesk&)>& work) const {
+void Ranks::distribute(const Model&, const WorkspacePlan&, GroupDesk* desk,
+                       const std::function<void(GroupDesk&)>& work) const {
   work(*desk);
 }
 
@@ -90,11 +90,11 @@ void wait_for(MPI_Request& request) {
   }
 }
 
-int tell_status(const std::optional<Status>& status) {
+int report_status(const std::optional<Status>& status) {
   return status ? static_cast<int>(*status) : -1;
 }
 
-std::optional<Status> told_status(int number) {
+std::optional<Status> reported_status(int number) {
   return number < 0 ? std::nullopt : std::optional(static_cast<Status>(number));
 }
 
@@ -114,7 +114,7 @@ class RemoteDesk : public GroupDesk {
     wait_for(request);
     if (reply[0] < 0) return std::nullopt;
     GroupTask task{reply[0], {}};
-    for (int i = 0; i < reply[1]; ++i) task.known.push_back(told_status(reply[2 + i]));
+    for (int i = 0; i < reply[1]; ++i) task.known.push_back(reported_status(reply[2 + i]));
     return task;
   }
 
@@ -185,7 +185,7 @@ class Counter {
     std::vector<int> reply{-1, 0};
     if (const std::optional<GroupTask> task = desk_.take()) {
       reply = {task->group, static_cast<int>(task->known.size())};
-      for (const auto& known : task->known) reply.push_back(tell_status(known));
+      for (const auto& known : task->known) reply.push_back(report_status(known));
     }
     check_mpi(MPI_Send(reply.data(), static_cast<int>(reply.size()), MPI_INT, rank, group_given, MPI_COMM_WORLD));
   }
@@ -253,8 +253,8 @@ void Ranks::agree_on(const std::string& text) const {
   });
 }
 
-void Ranks::share(const Model& model, const WorkspacePlan& plan, GroupDesk* desk,
-                  const std::function<void(GroupDesk&)>& work) const {
+void Ranks::distribute(const Model& model, const WorkspacePlan& plan, GroupDesk* desk,
+                       const std::function<void(GroupDesk&)>& work) const {
   if (size_ == 1) return work(*desk);
   const auto give_up = [](const char* why) {  // others wait for this rank and would wait forever
     std::fprintf(stderr, "softkin: %s\n", why);

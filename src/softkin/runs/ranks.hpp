@@ -9,8 +9,8 @@
 
 namespace softkin::runs {
 
-/// The processes of mpirun that share a workspace, or this one alone. Rank 0 hands out groups of samples, keeps what is
-/// made of them, and alone reads and writes the files of the workspace.
+/// The processes of mpirun that work on one workspace, or this process alone. Rank 0 distributes groups of samples,
+/// keeps the results, and alone reads and writes the files of the workspace.
 class Ranks {
  public:
   /// throws  InvalidInput where mpirun has started several copies of a softkin that was built without MPI
@@ -32,14 +32,14 @@ class Ranks {
 
   /// Solves all groups of the desk, which is that of rank 0, with all ranks. work: solves groups of the desk that it is
   /// given until there are none.
-  void share(const Model& model, const WorkspacePlan& plan, GroupDesk* desk,
-             const std::function<void(GroupDesk&)>& work) const;
+  void distribute(const Model& model, const WorkspacePlan& plan, GroupDesk* desk,
+                  const std::function<void(GroupDesk&)>& work) const;
 
  private:
   int rank_ = 0, size_ = 1;
 };
 
-/// The failure of another rank, which tells of it.
+/// The failure of another rank, which reports it.
 struct Silence {};
 
 /// Groups that have something left, and the file that keeps what is made of them.

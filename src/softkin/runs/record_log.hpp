@@ -16,7 +16,7 @@ namespace softkin::runs {
 /// What a run writes.
 struct RunFiles {
   std::filesystem::path report{};  // JSON; empty: none
-  std::filesystem::path shapes{};  // .pvd of a series, its shapes beside it; empty: none
+  std::filesystem::path shapes{};  // .pvd of a series, its shapes next to it; empty: none
 };
 
 /// A record that names other actuators than the model has.
@@ -31,20 +31,20 @@ struct Codec {
   std::function<Record(std::string_view line)> read;  // throws  InvalidInput where the line is none of write
 };
 
-/// The records of a run on disk. While it goes on they are in a journal beside the report, REPORT.run; at its end they
-/// become the report and the series that users know. A killed run leaves its journal and the shapes, and nothing torn.
+/// The records of a run on disk. During the run they are in a journal next to the report, REPORT.run; at its end they
+/// become the report and the series. A killed run leaves its journal and the shapes, and no half-written file.
 class RecordLog {
  public:
-  /// head  what the report says before its steps: a JSON object on one line
+  /// head  the report's entries before its steps: a JSON object on one line
   /// same  keys of the head that a run to be resumed must have had alike, beside version, robot, solver and start
   RecordLog(const Model& model, RunFiles files, const std::string& head, std::vector<std::string> same);
   ~RecordLog();
   RecordLog(RecordLog&&) noexcept;
 
-  /// Goes on with the journal or, where there is none, with the report; else begins.
+  /// Continues the journal or, where there is none, the report; else begins.
   ///
-  /// take     called with every line; throws where it is not what is asked for now (refuse)
-  /// remark   for the user, of what was not there as it was written; empty: all was
+  /// take     called with every line; throws where it is not the requested record (refuse)
+  /// remark   for the user, of missing or damaged records; empty: there are none
   /// throws   InvalidInput where it is no report, or one of another robot, solver, start or `same`
   void resume(const std::function<const StepRecord&(std::size_t number, std::string_view line)>& take,
               std::string& remark);
@@ -59,8 +59,8 @@ class RecordLog {
 
   /// Writes the shape into the series and the record, with its shape, behind the others.
   void add_shape(StepRecord& record, const State& state, const ElementDeformation& deformation) const;
-  /// The same of a record that was stopped on its way, which is none of the others: beside the series, and by
-  /// note_stopped() in the report.
+  /// The same of a record that was stopped on its path, which is none of the others: the shape next to the series, and,
+  /// by note_stopped(), the record in the report.
   void add_stopped_shape(StepRecord& record, const State& state, const ElementDeformation& deformation) const;
   void note_stopped(std::string_view line);
   void add(std::string_view line, double seconds);
@@ -89,7 +89,7 @@ class TypedLog : public RecordLog {
            Codec<Record> codec)
       : RecordLog(model, std::move(files), head, std::move(same)), codec_(std::move(codec)) {}
 
-  /// check: why a record is not what is asked for now; empty: it is
+  /// check: returns why a record is not the requested one; empty: it is
   void resume(const std::function<std::string(std::size_t number, const Record&)>& check, std::string& remark) {
     Record record;
     RecordLog::resume(

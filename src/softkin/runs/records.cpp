@@ -33,7 +33,7 @@ ActuatorRecord actuator_record(const Model& model, const Equilibrium& found, std
   if (found.state.multipliers.size() == 0) return record;  // not known
   record.multiplier = found.state.multipliers[i];
   if (under_voltage(actuator)) record.layer = electric_layer(model, i, found.state.positions, record.multiplier);
-  // what holds it holds it exactly, while a map's shape is a little off
+  // a constraint is satisfied exactly, while the shape of a map is slightly off
   if (found.report.answered() && actuator.control == Control::ratio &&
       (!actuator.is<CableDrive>() || record.multiplier > 0))
     record.achieved = found.actuation[i];
@@ -42,8 +42,8 @@ ActuatorRecord actuator_record(const Model& model, const Equilibrium& found, std
   return record;
 }
 
-/// Share of the way from the step before to what was asked for.
-std::optional<double> reached_share(const Model& model, const SolveReport& report) {
+/// Returns the fraction of the path from the step before to the request that was completed.
+std::optional<double> reached_fraction(const Model& model, const SolveReport& report) {
   if (report.status == Status::converged) return 1;
   if (model.formulation != Formulation::physical || !std::isfinite(report.reached)) return std::nullopt;
   return report.reached;
@@ -61,10 +61,10 @@ StepRecord step_record(const Model& model, const Equilibrium& found, const Eleme
   StepRecord record;
   static_cast<SolveReport&>(record) = found.report;
   record.actuation = found.actuation;
-  record.reached_share = reached_share(model, found.report);
+  record.reached_fraction = reached_fraction(model, found.report);
   if (found.state.knows(found.actuation.size())) {
     record.shape_actuation = found.state.actuation;
-    record.shape_load_share = found.state.share;
+    record.shape_load_fraction = found.state.load_factor;
   }
   record.anchors = found.state.anchors;
   record.eyelets = found.state.eyelets;
@@ -87,13 +87,13 @@ StepRecord step_record(const Model& model, const Equilibrium& found, const Eleme
   return record;
 }
 
-WaypointRecord waypoint_record(const Model& model, const Waypoint& asked, const InverseResult& found,
+WaypointRecord waypoint_record(const Model& model, const Waypoint& requested, const InverseResult& found,
                                const ElementDeformation& deformation) {
   WaypointRecord record;
   static_cast<StepRecord&>(record) = step_record(model, found.equilibrium, deformation);
   record.seconds = found.seconds;
-  record.time_s = asked.time;
-  record.asked = asked;
+  record.time_s = requested.time;
+  record.requested = requested;
   record.end = found.status;
   record.error_mm = found.errors_mm.maxCoeff();
   record.equilibria = found.equilibria;
@@ -137,7 +137,7 @@ State state_of(const Model& model, const StepRecord& record, Points positions) {
   State state{std::move(positions), record.shape_actuation.value_or(Actuation()),
               Eigen::VectorXd::Zero(model.actuators.size())};
   if (model.formulation != Formulation::physical) return state;
-  state.share = record.shape_actuation ? record.shape_load_share : -1;
+  state.load_factor = record.shape_actuation ? record.shape_load_fraction : -1;
   for (std::size_t a = 0; a < model.actuators.size(); ++a) state.multipliers[a] = record.actuators[a].multiplier;
   state.anchors = record.anchors;
   state.eyelets = record.eyelets;
@@ -148,8 +148,8 @@ std::vector<Shortfall> shortfalls(const Model& model, const StepRecord& record) 
   std::vector<Shortfall> short_of;
   if (!record.shape_actuation) return short_of;
   for (Index a = 0; a < std::ssize(model.actuators); ++a) {
-    const double told = record.actuation[a], acts = (*record.shape_actuation)[a];
-    if (!(acts >= told && acts <= told + model.actuators[a].backlash)) short_of.push_back({a, acts, told});
+    const double reported = record.actuation[a], acts = (*record.shape_actuation)[a];
+    if (!(acts >= reported && acts <= reported + model.actuators[a].backlash)) short_of.push_back({a, acts, reported});
   }
   return short_of;
 }

@@ -15,7 +15,7 @@
 
 namespace softkin::runs {
 
-// What is kept of what was computed. A number that a diverged solve does not know is not finite here, and null in JSON.
+// Records of results. A number that a diverged solve leaves undefined is not finite here, and null in JSON.
 
 /// An actuator in a shape.
 struct ActuatorRecord {
@@ -27,7 +27,7 @@ struct ActuatorRecord {
   double multiplier = 0;                 // tension [N], gauge pressure [kPa] or voltage [kV]; physical
   bool slack = false;                    // a cable that carries nothing because its path is shorter than it
   std::optional<ElectricLayer> layer{};  // of a dea under voltage
-  std::optional<TendonForces> tendon{};  // of a cable that rubs
+  std::optional<TendonForces> tendon{};  // of a cable with friction
   std::vector<double> volumes_mL{};      // of each of several chambers that are connected
 };
 
@@ -41,15 +41,15 @@ struct StepForces {
   std::optional<std::vector<PairForces>> contacts{};  // where the robot may touch anything
 };
 
-/// One equilibrium: what was asked, what came of it, and how. Of a report a step. The history of a record that was read
-/// has the iterations that were written.
+/// One equilibrium: the request, the result, and the solver's report. Of a report a step. The history of a record that
+/// was read has the iterations that were written.
 struct StepRecord : SolveReport {
-  Actuation actuation;                         // m, asked for
-  std::optional<double> reached_share{};       // of the way from the step before [-]; none: not known
+  Actuation actuation;                         // m, requested
+  std::optional<double> reached_fraction{};    // of the path from the step before [-]; none: not known
   std::optional<Actuation> shape_actuation{};  // m, of the shape; none: not known
-  double shape_load_share = 1;         // of dead loads, prestretch and displacements of supports, as State::share
+  double shape_load_fraction = 1;      // of dead loads, prestretch and displacements of supports, as State::fraction
   std::vector<Anchor> anchors{};       // of friction
-  std::vector<double> eyelets{};       // of cables that rub; see State
+  std::vector<double> eyelets{};       // of cables with friction; see State
   std::size_t inverted_elements = 0;   // of the shape
   double largest_displacement_mm = 0;  // of a vertex from its place at rest
   SelfOverlap self_overlap;            // of the shape, set by who makes the record
@@ -68,7 +68,7 @@ struct StepRecord : SolveReport {
 
 /// A waypoint of a path of markers.
 struct WaypointRecord : StepRecord {
-  Waypoint asked;                                    // where its markers were to be
+  Waypoint requested;                                // where its markers were to be
   InverseStatus end = InverseStatus::not_converged;  // of the search
   double error_mm = 0;                               // of the marker that is farthest from its target
   int equilibria = 0;                                // that the search solved for
@@ -92,27 +92,27 @@ struct WalkRecord : StepRecord {
 /// deformation: of the equilibrium's shape; what is not of it is left as it is: shape, time_s, self_overlap
 [[nodiscard]] StepRecord step_record(const Model& model, const Equilibrium& found,
                                      const ElementDeformation& deformation);
-[[nodiscard]] WaypointRecord waypoint_record(const Model& model, const Waypoint& asked, const InverseResult& found,
+[[nodiscard]] WaypointRecord waypoint_record(const Model& model, const Waypoint& requested, const InverseResult& found,
                                              const ElementDeformation& deformation);
 /// How far the record's commands and the path's markers are from those of the waypoint before.
 void note_jump(const Model& model, const MarkerPath& path, const WaypointRecord& before, WaypointRecord& record);
 [[nodiscard]] WalkRecord walk_record(const Model& model, std::size_t cycle, const WalkStep& found,
                                      const ElementDeformation& deformation);
 
-/// The sum of all normal forces between a part of the surroundings, such as a body, and what touches it [N].
+/// Returns the sum of all normal forces on a part of the surroundings, such as a body, by its contacts [N].
 [[nodiscard]] double normal_force_on(const Model& model, const std::string& part, const std::vector<PairForces>& pairs);
 
 /// The state that a record's shape is, as if it had just been solved.
 [[nodiscard]] State state_of(const Model& model, const StepRecord& record, Points positions);
 
-/// An actuator that did not come as far as was asked, in its own unit.
+/// An actuator that did not reach its request, in its own unit.
 struct Shortfall {
-  Index actuator = -1;            // of the model
-  double reached = 0, asked = 0;  // in the unit of its command
+  Index actuator = -1;                // of the model
+  double reached = 0, requested = 0;  // in the unit of its command
 };
 
-/// Where the shape of a step that did not converge falls short of what was asked; none where only loads or displaced
-/// supports do (StepRecord::reached_share), or it is not known.
+/// Returns where the shape of a step that did not converge falls short of the request; none where only loads or
+/// displaced supports do (StepRecord::reached_fraction), or it is not known.
 [[nodiscard]] std::vector<Shortfall> shortfalls(const Model& model, const StepRecord& record);
 
 }  // namespace softkin::runs

@@ -34,11 +34,11 @@ Json strain_json(const StrainHistogram& histogram) {
                {"greatest", histogram.greatest},
                {"magnitude_percentile_95", histogram.percentile_95},
                {"bin_edges", histogram.edges},
-               {"volume_shares", histogram.shares},
+               {"volume_shares", histogram.fractions},
                {"beyond_linear_range", Json::array()}};
   for (const auto& beyond : histogram.beyond)
     json["beyond_linear_range"].push_back(
-        {{"region", beyond.region}, {"linear_range", beyond.linear_range}, {"volume_share", beyond.share}});
+        {{"region", beyond.region}, {"linear_range", beyond.linear_range}, {"volume_share", beyond.fraction}});
   return json;
 }
 
@@ -48,7 +48,7 @@ StrainHistogram strain_of(const Json& json) {
   strain.greatest = json.at("greatest").get<double>();
   strain.percentile_95 = json.at("magnitude_percentile_95").get<double>();
   strain.edges = json.at("bin_edges").get<std::vector<double>>();
-  strain.shares = json.at("volume_shares").get<std::vector<double>>();
+  strain.fractions = json.at("volume_shares").get<std::vector<double>>();
   for (const Json& beyond : json.at("beyond_linear_range"))
     strain.beyond.push_back({beyond.at("region").get<std::string>(), beyond.at("linear_range").get<double>(),
                              beyond.at("volume_share").get<double>()});
@@ -187,7 +187,7 @@ std::vector<double> marker_turns_of(const Model& model, const Json& step) {
 Json step_json(const Model& model, const StepRecord& record) {
   Json step = {{"actuation", by_actuator(model, record.actuation)},
                {"status", name_of(record.status)},
-               {"reached", record.reached_share ? Json(*record.reached_share) : Json()},
+               {"reached", record.reached_fraction ? Json(*record.reached_fraction) : Json()},
                {"remark", record.remark},
                {"shape_actuation", Json()}};
   counts_and_measures(record, [&step](const char* key, const auto& value) { write_number(value, step[key]); });
@@ -267,12 +267,12 @@ Json to_json(const Model& model, const StepRecord& record) {
 Json to_json(const Model& model, const MarkerPath& path, const WaypointRecord& record) {
   Json step = step_json(model, record);
   Json& json = step["waypoint"];
-  json = {{"inserted", record.asked.inserted}, {"targets", Json::object()}};
-  if (record.asked.time) json["time_s"] = *record.asked.time;
+  json = {{"inserted", record.requested.inserted}, {"targets", Json::object()}};
+  if (record.requested.time) json["time_s"] = *record.requested.time;
   for (std::size_t m = 0; m < path.markers.size(); ++m) {
     Json& target = json["targets"][marker_name(model, path, m)] = Json::array();
     for (std::size_t axis = 0; axis < 3; ++axis)
-      target.push_back(path.axes[m][axis] ? Json(record.asked.targets[m][axis]) : Json());
+      target.push_back(path.axes[m][axis] ? Json(record.requested.targets[m][axis]) : Json());
   }
   json["status"] = name_of(record.end);
   json["reached"] = record.is_reached();
@@ -301,7 +301,7 @@ Json to_json(const Model& model, const WalkRecord& record) {
 void from_json(const Model& model, const Json& json, StepRecord& record) {
   record.actuation = by_actuator(model, json.at("actuation"));
   record.status = status_of(json.at("status").get<std::string>());
-  if (const Json& reached = json.at("reached"); !reached.is_null()) record.reached_share = reached.get<double>();
+  if (const Json& reached = json.at("reached"); !reached.is_null()) record.reached_fraction = reached.get<double>();
   record.remark = json.at("remark").get<std::string>();
   if (const Json& shape = json.at("shape_actuation"); !shape.is_null())
     record.shape_actuation = by_actuator(model, shape);
@@ -324,8 +324,8 @@ void from_json(const Model& model, const Json& json, StepRecord& record) {
 void from_json(const Model& model, const MarkerPath& path, const Json& step, WaypointRecord& record) {
   from_json(model, step, static_cast<StepRecord&>(record));
   const Json& json = step.at("waypoint");
-  record.asked.inserted = json.at("inserted").get<bool>();
-  if (json.contains("time_s")) record.asked.time = json.at("time_s").get<double>();
+  record.requested.inserted = json.at("inserted").get<bool>();
+  if (json.contains("time_s")) record.requested.time = json.at("time_s").get<double>();
   if (json.at("targets").size() != path.markers.size()) throw std::out_of_range("other markers");
   for (std::size_t m = 0; m < path.markers.size(); ++m) {
     const Json& target = json.at("targets").at(marker_name(model, path, m));
@@ -334,7 +334,7 @@ void from_json(const Model& model, const MarkerPath& path, const Json& step, Way
       if (target.at(axis).is_null() == path.axes[m][axis]) throw std::out_of_range("other axes");
       if (path.axes[m][axis]) point[axis] = target.at(axis).get<double>();
     }
-    record.asked.targets.push_back(point);
+    record.requested.targets.push_back(point);
   }
   record.end = named(ends, json.at("status").get<std::string>());
   record.error_mm = json.at("error_mm").get<double>();

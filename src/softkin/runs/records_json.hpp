@@ -19,7 +19,7 @@ void from_json(const Model& model, const Json& json, WalkRecord& record);
 
 /// JSON on one line; text that is no UTF-8 is replaced.
 [[nodiscard]] std::string line_of(const Json& json);
-/// JSON knows no NaN: what a diverged solve does not know is null.
+/// JSON has no NaN: numbers that a diverged solve leaves undefined are null.
 [[nodiscard]] Json known(double value);
 [[nodiscard]] double number_or_nan(const Json& json);
 /// A measure, which may not be known, or a count.

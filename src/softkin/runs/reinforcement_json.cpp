@@ -10,7 +10,7 @@ Json fibres_json(const Model& model, const std::vector<FibreForces>& fibres) {
     all.push_back({{"fibre", model.reinforcement.fibres[f].name},
                    {"mean_N", known(fibres[f].mean_N)},
                    {"largest_N", known(fibres[f].largest_N)},
-                   {"least_N", known(fibres[f].least_N)},
+                   {"least_N", known(fibres[f].min_N)},
                    {"at_mm", json_of(fibres[f].where)},
                    {"stretch", known(fibres[f].stretch)},
                    {"slack", known(fibres[f].slack)}});
@@ -22,7 +22,7 @@ Json layers_json(const Model& model, const std::vector<LayerForces>& layers) {
   for (std::size_t l = 0; l < layers.size(); ++l)
     all.push_back({{"layer", model.reinforcement.layers[l]->name},
                    {"largest_N_mm", known(layers[l].largest_N_mm)},
-                   {"least_N_mm", known(layers[l].least_N_mm)},
+                   {"least_N_mm", known(layers[l].min_N_mm)},
                    {"at_mm", json_of(layers[l].where)},
                    {"strain", known(layers[l].strain)},
                    {"wrinkled", known(layers[l].wrinkled)},

@@ -15,7 +15,7 @@ namespace softkin::runs {
 
 namespace {
 
-/// What the robot answers with, beside the actuators that are asked for it.
+/// Returns the load of each actuator in a report's step.
 std::vector<std::pair<std::string, double>> loads_of(const Json& actuators) {
   std::vector<std::pair<std::string, double>> loads;
   for (const auto& [name, actuator] : actuators.items())
@@ -103,7 +103,7 @@ std::vector<Value> values_of(const ReportedPath& path, std::vector<std::pair<std
   return values;
 }
 
-std::string asked_text(const ReportedStep& step) {
+std::string requested_text(const ReportedStep& step) {
   std::string text;
   for (const auto& [name, value] : step.actuation)
     text += (text.empty() ? "" : ", ") + name + " = " + number(value, 12);
@@ -119,8 +119,8 @@ void check_same_steps(const ReportedPath& first, const ReportedPath& second) {
            std::to_string(first.steps.size()));
   for (std::size_t i = 0; i < first.steps.size(); ++i)
     if (second.steps[i].actuation != first.steps[i].actuation)
-      refuse("step " + std::to_string(i) + " asks for " + asked_text(second.steps[i]) + ", but in " + first.file +
-             " for " + asked_text(first.steps[i]));
+      refuse("step " + std::to_string(i) + " asks for " + requested_text(second.steps[i]) + ", but in " + first.file +
+             " for " + requested_text(first.steps[i]));
 }
 
 std::vector<double> distances_of(const ReportedPath& path, const ReportedPath& from, const std::string& marker) {
@@ -214,8 +214,8 @@ ReportedPath read_reported_path(const std::string& file) {
   }
 }
 
-std::string marker_of(const ReportedPath& path, const std::string& asked, const std::string& hint) {
-  if (!asked.empty()) return asked;
+std::string marker_of(const ReportedPath& path, const std::string& requested, const std::string& hint) {
+  if (!requested.empty()) return requested;
   const auto& markers = path.steps.front().markers;
   if (markers.empty()) throw InvalidInput({path.file}, "the report has no markers" + hint);
   return markers.front().first;
@@ -317,13 +317,13 @@ std::string ReportComparison::json() const {
 Plot ReportComparison::plot() const {
   const StepAxis along = axis_of(paths.front());
   std::vector<StepCurve> turned, off, loads, ratios;
-  std::vector<SpaceCurve> ways;
+  std::vector<SpaceCurve> routes;
   for (std::size_t p = 0; p < paths.size(); ++p) {
     if (!turns.empty()) turned.push_back({labels[p], "degrees", turns[p]});
     if (p > 0) off.push_back({labels[p], "mm", distances[p]});
     add_curves(paths[p], labels[p], &ReportedStep::loads, loads);
     add_curves(paths[p], labels[p], &ReportedStep::ratios, ratios);
-    ways.push_back({labels[p], places_of(paths[p], marker), true, true});
+    routes.push_back({labels[p], places_of(paths[p], marker), true, true});
   }
   Plot plot;
   plot.title = marker + ": differences from " + paths.front().file;
@@ -337,7 +337,7 @@ Plot ReportComparison::plot() const {
     plot.rows.back()[0].series[i].style = static_cast<int>(i) + 1;
   add(loads, "load");
   add(ratios, "over that at rest");
-  plot.rows.push_back(projections(ways));
+  plot.rows.push_back(projections(routes));
   return plot;
 }
 

@@ -14,7 +14,7 @@ namespace softkin::runs {
 // A report of `softkin fk` as it is read without the robot that it is of.
 
 struct ReportedStep {
-  std::vector<std::pair<std::string, double>> actuation;  // what was asked for, by actuator
+  std::vector<std::pair<std::string, double>> actuation;  // requested, by actuator
   std::vector<std::pair<std::string, Vec3>> markers;      // in the order of the scene [mm]
   std::vector<std::pair<std::string, double>> loads;  // "air [kPa]", "tendon [N]"; none in the target-shape formulation
   std::vector<std::pair<std::string, double>> ratios;  // "air volume [-]", of actuators that are commanded by a load
@@ -27,14 +27,16 @@ struct ReportedPath {
   std::string file;
   std::string method;  // "physical, newton"
   std::vector<ReportedStep> steps;
-  std::map<std::string, std::string> units;  // of the commands, where the report tells them; a ratio is "-"
+  std::map<std::string, std::string> units;  // of the commands, where the report contains them; a ratio is "-"
 };
 
 /// throws  InvalidInput where the file is not a report of `softkin fk` with at least one step
 [[nodiscard]] ReportedPath read_reported_path(const std::string& file);
 
-/// asked, or the first marker where that is empty. Throws InvalidInput where there is none; hint: what that means
-[[nodiscard]] std::string marker_of(const ReportedPath& path, const std::string& asked, const std::string& hint = "");
+/// Returns the requested marker, or the first where that is empty. Throws InvalidInput where there is none; hint: what
+/// that means
+[[nodiscard]] std::string marker_of(const ReportedPath& path, const std::string& requested,
+                                    const std::string& hint = "");
 
 // In each step. throws  InvalidInput where a step has no such marker or actuator
 
@@ -46,9 +48,9 @@ struct ReportedPath {
 struct ReportComparison {
   std::vector<ReportedPath> paths;             // the first is the one to compare with
   std::vector<std::string> labels;             // of tables and legends: the names of their files
-  std::string marker;                          // whose distance is told
+  std::string marker;                          // whose distance is reported
   std::vector<std::vector<double>> distances;  // path, step [mm], from the first path
-  std::vector<std::vector<double>> turns;      // path, step [degrees]; empty: not asked for
+  std::vector<std::vector<double>> turns;      // path, step [degrees]; empty: not requested
   std::vector<double> poses;                   // turns whose time is looked for [degrees]
 
   /// Until the first step that turns at least so far [s]; nothing where none does.
@@ -58,7 +60,7 @@ struct ReportComparison {
   /// How long each took, until the poses and in all.
   [[nodiscard]] Table times() const;
   [[nodiscard]] std::string json() const;
-  /// Turns, distances and loads over the steps, and the marker's ways through space.
+  /// Turns, distances and loads over the steps, and the marker's trajectories in space.
   [[nodiscard]] Plot plot() const;
 };
 

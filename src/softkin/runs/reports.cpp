@@ -157,7 +157,7 @@ Json counted_json(const Vec3& vector, const std::array<bool, 3>& axes) {
   return json;
 }
 
-Json asked_json(const Goal& goal) {
+Json requested_json(const Goal& goal) {
   if (const auto* position = std::get_if<PositionGoal>(&goal.what))
     return {{"kind", "target"}, {"target_mm", counted_json(position->target, position->axes)}};
   if (const auto* force = std::get_if<ForceGoal>(&goal.what))
@@ -174,7 +174,7 @@ Json goals_json(const Model& model, const std::vector<NamedGoal>& goals, const I
   for (std::size_t i = 0; i < goals.size(); ++i) {
     const Goal& goal = goals[i].goal;
     Json json = {{"of", goals[i].name}};
-    json.update(asked_json(goal));
+    json.update(requested_json(goal));
     const bool direction = std::holds_alternative<DirectionGoal>(goal.what);
     const bool force = std::holds_alternative<ForceGoal>(goal.what);
     json[force       ? "found_N"

@@ -26,13 +26,13 @@ struct UsedStart {
   std::string fingerprint;  // of its positions
 };
 
-// What a report says before its steps, a JSON object on one line: version, scene, robot, formulation, materials,
+// The entries of a report before its steps, a JSON object on one line: version, scene, robot, formulation, materials,
 // actuators, solver, units, mesh, notes. scene: its file, as the user named it; map: null: none
 
 /// Of steps; map: null: none; start: null: the robot at rest
 [[nodiscard]] std::string report_head(const Model& model, const std::string& scene, const StaticsOptions& options,
                                       const UsedMap* map = nullptr, const UsedStart* start = nullptr);
-/// With what changes the waypoints' results beside robot and solver, "follow".
+/// With the options that change the waypoints' results besides robot and solver, "follow".
 [[nodiscard]] std::string follow_head(const Model& model, const std::string& scene, const TrajectoryOptions& options,
                                       const UsedMap* map = nullptr);
 /// With what is walked, and the feet.
@@ -61,12 +61,12 @@ struct InverseRecord : StepRecord {
 /// Where the marker of a goal is, the unit vector between its markers, or the force that is exerted [mm, -, N].
 [[nodiscard]] Vec3 found_of(const Model& model, const Goal& goal, const Points& positions, const StepRecord& record);
 
-/// A search: what was asked and how, and what came of it.
+/// A search: its request, and its result.
 struct InverseAnswer {
   const InverseOptions& options;        // of the search
-  const std::vector<NamedGoal>& goals;  // that were asked for
-  const InverseResult& found;           // what it came to
-  const InverseRecord& record;          // what is kept of it
+  const std::vector<NamedGoal>& goals;  // that were requested
+  const InverseResult& found;           // of the search
+  const InverseRecord& record;          // of its equilibrium
 };
 
 /// The report of it, to be written to file at its finish().

@@ -98,7 +98,7 @@ std::string point_text(const Vec3& point, int decimals, std::size_t width) {
   return text;
 }
 
-/// What is done to the surroundings is told apart from what answers: a body's force from that of its contacts.
+/// The title of a command on the surroundings begins with "command", so that it differs from that of a contact force.
 std::string command_title(const Actuator& actuator, const std::string& name) {
   return (drives(actuator) ? "" : "command ") + name + " " + bracketed_unit(actuator);
 }
@@ -153,12 +153,12 @@ Table errors_table(const Model& model, const MarkerPath& path, const std::vector
     if (done[i].time_s) row.emplace_back(*done[i].time_s);
     for (std::size_t m = 0; m < path.markers.size(); ++m) {
       for (std::size_t axis = 0; axis < 3; ++axis)
-        if (path.axes[m][axis]) row.emplace_back(done[i].asked.targets[m][axis]);
+        if (path.axes[m][axis]) row.emplace_back(done[i].requested.targets[m][axis]);
       for (const double x : done[i].markers[path.markers[m]]) row.emplace_back(x);
     }
     row.insert(row.end(),
                {done[i].command_change, done[i].step_mm, done[i].error_mm, std::int64_t{done[i].is_reached()},
-                std::int64_t{done[i].asked.inserted}, std::int64_t{done[i].equilibria}});
+                std::int64_t{done[i].requested.inserted}, std::int64_t{done[i].equilibria}});
     table.rows.push_back(std::move(row));
   }
   return table;
@@ -316,14 +316,14 @@ Row row_of(const Model& model, const WalkRecord& record) {
   return row;
 }
 
-Table table_of_traces(const std::vector<std::vector<TracedStep>>& ways) {
+Table table_of_traces(const std::vector<std::vector<TracedStep>>& paths) {
   Table table;
   table.columns = {{.key = "shape"},          {.key = "along"},        {.key = "from"},         {.key = "to"},
                    {.key = "length"},         {.key = "predicted_mm"}, {.key = "corrected_mm"}, {.key = "iterations"},
                    {.key = "factorisations"}, {.key = "in_double"},    {.key = "projections"},  {.key = "shifts"},
                    {.key = "taken"},          {.key = "why"}};
-  for (std::size_t shape = 0; shape < ways.size(); ++shape)
-    for (const TracedStep& step : ways[shape])
+  for (std::size_t shape = 0; shape < paths.size(); ++shape)
+    for (const TracedStep& step : paths[shape])
       table.rows.push_back({std::int64_t(shape), step.along, step.from, step.to, step.length, step.predicted_mm,
                             step.corrected_mm, std::int64_t(step.iterations), std::int64_t(step.factorisations),
                             std::int64_t(step.factorisations_in_double), std::int64_t(step.projections),

@@ -35,8 +35,8 @@ namespace softkin::runs {
 [[nodiscard]] Table table_of_walk(const Model& model);
 [[nodiscard]] Row row_of(const Model& model, const WalkRecord& record);
 
-/// Of the way to each of some shapes, from 0.
-[[nodiscard]] Table table_of_traces(const std::vector<std::vector<TracedStep>>& ways);
+/// The path to each of several shapes, from 0.
+[[nodiscard]] Table table_of_traces(const std::vector<std::vector<TracedStep>>& paths);
 
 [[nodiscard]] Table table_of_pulls();
 [[nodiscard]] Row row_of(const Pull& pull);

@@ -63,7 +63,7 @@ std::vector<PictureMark> marks_of(const Model& model, const Points& positions, c
   return marks;
 }
 
-/// Stresses of the cells; of the points, what holds them and who.
+/// Adds the stresses of the cells; to the points, the reactions and the supports that exert them.
 void add_forces(const Model& model, const ElementDeformation& deformation, VtuContent& content) {
   const ElementStress& stress = deformation.stress;
   if (stress.von_mises.empty()) return;
@@ -123,8 +123,9 @@ void add_layers(const Model& model, VtuContent& content) {
 }
 
 // What read_state() reads.
-constexpr const char *state_share = "state_share", *state_elapsed = "state_elapsed_s", *state_anchors = "state_anchors",
-                     *state_history = "state_history", *state_eyelets = "state_eyelets";
+constexpr const char *state_fraction = "state_share", *state_elapsed = "state_elapsed_s",
+                     *state_anchors = "state_anchors", *state_history = "state_history",
+                     *state_eyelets = "state_eyelets";
 const std::string state_command = "state_command_", state_multiplier = "state_multiplier_";
 constexpr int anchor_values = 7;
 constexpr double same_mesh = 1e-9;  // of the diagonal
@@ -132,8 +133,8 @@ constexpr double same_mesh = 1e-9;  // of the diagonal
 void add_state(const Model& model, const State& state, VtuContent& content) {
   const Index actuators = model.actuators.size();
   const bool known = state.knows(actuators) && state.multipliers.size() == actuators && state.actuation.allFinite() &&
-                     state.multipliers.allFinite() && std::isfinite(state.share);
-  content.constants.emplace_back(state_share, known ? state.share : -1);
+                     state.multipliers.allFinite() && std::isfinite(state.load_factor);
+  content.constants.emplace_back(state_fraction, known ? state.load_factor : -1);
   if (!known) return;
   for (Index a = 0; a < actuators; ++a) {
     const std::string& name = model.actuators[a].name;
@@ -203,12 +204,12 @@ State read_state(const fs::path& path, const Model& model) {
     const auto found = arrays.find(name);
     return found != arrays.end() && found->second.size() == 1 ? std::optional(found->second[0]) : std::nullopt;
   };
-  const std::optional<double> share = number_of(state_share);
-  if (!share)
-    throw InvalidInput({path.string()}, "it does not tell of what it is an equilibrium: no array '" +
-                                            std::string(state_share) + "', which softkin writes");
-  state.share = *share;
-  if (state.share < 0) return state;
+  const std::optional<double> fraction = number_of(state_fraction);
+  if (!fraction)
+    throw InvalidInput({path.string()}, "it does not contain its load state: no array '" + std::string(state_fraction) +
+                                            "', which softkin writes");
+  state.load_factor = *fraction;
+  if (state.load_factor < 0) return state;
   const Index actuators = model.actuators.size();
   state.actuation = state.multipliers = Eigen::VectorXd::Zero(actuators);
   for (Index a = 0; a < actuators; ++a) {

@@ -19,7 +19,7 @@ namespace softkin::runs {
 void write_shape(const std::filesystem::path& path, const Model& model, const State& state,
                  const ElementDeformation& deformation, bool converged);
 
-/// The state that write_shape() wrote, from which a solve goes on.
+/// The state that write_shape() wrote, from which a solve continues.
 ///
 /// throws  InvalidInput naming the file: it is none of softkin's, of another mesh, or of other actuators
 [[nodiscard]] State read_state(const std::filesystem::path& path, const Model& model);

@@ -7,13 +7,13 @@ namespace softkin::runs {
 
 std::string reached_text(const Model& model, const StepRecord& step) {
   std::string text;
-  for (const auto& [a, reached, asked] : shortfalls(model, step)) {
+  for (const auto& [a, reached, requested] : shortfalls(model, step)) {
     const Actuator& actuator = model.actuators[a];
     text += (text.empty() ? "" : ", ") + actuator.name + " reached " + command_text(actuator, reached) + " of " +
-            command_text(actuator, asked);
+            command_text(actuator, requested);
   }
   if (!text.empty()) return text;
-  return decimal(100 * step.reached_share.value_or(0), 1) + " % of the loads and displacements were reached";
+  return decimal(100 * step.reached_fraction.value_or(0), 1) + " % of the loads and displacements were reached";
 }
 
 namespace {
@@ -80,7 +80,7 @@ std::string worst_text(const WorstPlace& worst) {
 
 std::string shortfall_text(const Model& model, const StepRecord& step) {
   if (step.answered()) return step.remark + "; the shape is the last one";
-  if (model.formulation == Formulation::physical && step.reached_share == 1)
+  if (model.formulation == Formulation::physical && step.reached_fraction == 1)
     return step.remark + "; the shape is the last one";
   if (model.formulation == Formulation::physical)
     return reached_text(model, step) + ": " + step.remark + "; the shape is the last good one" +

@@ -14,7 +14,7 @@ namespace softkin::runs {
 /// A last line that a kill tore counts for nothing. Adding a record costs the same however many there are.
 class Store {
  public:
-  /// Begins the file with head, whole lines; or, where resume is set and the file is there, goes on with it.
+  /// Begins the file with head, whole lines; or, where resume is set and the file exists, continues it.
   ///
   /// path    empty: a temporary file without a name
   /// throws  InvalidInput where it cannot be written or another softkin is at work on it

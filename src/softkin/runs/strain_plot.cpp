@@ -11,17 +11,17 @@ namespace softkin::runs {
 
 namespace {
 
-constexpr std::size_t most_histograms = 12, histograms_in_a_row = 2;
+constexpr std::size_t max_histograms = 12, histograms_in_a_row = 2;
 constexpr double at_rest = 1e-6;  // strains below it are all in one bin, which would dwarf the others
 
 /// Ends of both axes over all histograms [%].
 struct StrainAxes {
-  double least = 0, greatest = 0, share = 0;
+  double least = 0, greatest = 0, fraction = 0;
 
   void cover(const StrainHistogram& strain) {
     least = std::min(least, 100 * strain.edges.front());
     greatest = std::max(greatest, 100 * strain.edges.back());
-    share = std::max(share, 100 * *std::max_element(strain.shares.begin(), strain.shares.end()));
+    fraction = std::max(fraction, 100 * *std::max_element(strain.fractions.begin(), strain.fractions.end()));
   }
 };
 
@@ -34,10 +34,10 @@ PlotSeries outline(const StrainHistogram& strain) {
     series.x.push_back(100 * x);
     series.y.push_back(100 * y);
   };
-  for (std::size_t i = 0; i < strain.shares.size(); ++i) {
+  for (std::size_t i = 0; i < strain.fractions.size(); ++i) {
     add(strain.edges[i], 0);
-    add(strain.edges[i], strain.shares[i]);
-    add(strain.edges[i + 1], strain.shares[i]);
+    add(strain.edges[i], strain.fractions[i]);
+    add(strain.edges[i + 1], strain.fractions[i]);
     add(strain.edges[i + 1], 0);
   }
   return series;
@@ -53,7 +53,7 @@ PlotSeries limits(double linear_range, const StrainAxes& axes) {
   for (const double x : {-100 * linear_range, 100 * linear_range}) {
     if (x < axes.least || x > axes.greatest) continue;
     series.x.insert(series.x.end(), {x, x});
-    series.y.insert(series.y.end(), {0, axes.share});
+    series.y.insert(series.y.end(), {0, axes.fraction});
   }
   return series;
 }
@@ -61,9 +61,9 @@ PlotSeries limits(double linear_range, const StrainAxes& axes) {
 std::string beyond_text(const StrainHistogram& strain) {
   std::string text;
   for (const StrainHistogram::Beyond& each : strain.beyond) {
-    char share[32];
-    std::snprintf(share, sizeof share, "%.1f", 100 * each.share);
-    text += "; " + std::string(share) + " % of " + each.region + " beyond";
+    char fraction[32];
+    std::snprintf(fraction, sizeof fraction, "%.1f", 100 * each.fraction);
+    text += "; " + std::string(fraction) + " % of " + each.region + " beyond";
   }
   return text;
 }
@@ -72,11 +72,11 @@ PlotPanel panel_of(const Model& model, const StepRecord& step, const StrainAxes&
   PlotPanel panel;
   panel.title = commands_title(model, step.actuation) + beyond_text(step.strain);
   panel.x.label = "principal strain [%]";
-  panel.y.label = "share of the body's volume [%]";
+  panel.y.label = "fraction of the body's volume [%]";
   panel.x.low = axes.least;
   panel.x.high = axes.greatest;
   panel.y.low = 0;
-  panel.y.high = axes.share;
+  panel.y.high = axes.fraction;
   panel.series.push_back(outline(step.strain));
   std::set<double> ranges;
   for (const StrainHistogram::Beyond& each : step.strain.beyond) ranges.insert(each.linear_range);
@@ -108,11 +108,11 @@ std::string commands_title(const Model& model, const Actuation& actuation, int d
 Plot plot_of_strains(const Model& model, const std::vector<StepRecord>& steps, const std::string& title) {
   std::vector<const StepRecord*> known, strained;
   for (const StepRecord& step : steps) {
-    if (step.strain.shares.empty() || !std::isfinite(step.strain.percentile_95)) continue;
+    if (step.strain.fractions.empty() || !std::isfinite(step.strain.percentile_95)) continue;
     known.push_back(&step);
     if (step.strain.percentile_95 > at_rest) strained.push_back(&step);
   }
-  known = spread(strained.empty() ? known : strained, most_histograms);
+  known = spread(strained.empty() ? known : strained, max_histograms);
   StrainAxes axes;
   for (const StepRecord* step : known) axes.cover(step->strain);
   Plot plot;

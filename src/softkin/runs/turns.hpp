@@ -55,7 +55,7 @@ class LineTurns {
   /// returns  by number(), [degrees]; that of two markers at one place at rest means nothing
   std::vector<double> next(const std::vector<Vec3>& markers);
 
-  /// Where the turn of a line is. That of the line the other way round is the same.
+  /// Returns the position of a line's turn. It is the same for the reversed line.
   [[nodiscard]] static std::size_t number(const MarkerLine& line);
 
  private:

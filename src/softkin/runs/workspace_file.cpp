@@ -210,7 +210,7 @@ Actuation nearest_actuation(const Model& model, const std::string& workspace, co
 
 Index shown_marker(const Model& model, const std::string& name) {
   if (model.markers.empty())
-    throw InvalidInput("the robot has no marker, so there is nothing whose reach could be told: add one to the scene");
+    throw InvalidInput("the robot has no marker, so there is no workspace to sample: add one to the scene");
   if (name.empty()) return 0;
   std::vector<std::string> names;
   for (std::size_t p = 0; p < model.markers.size(); ++p) {

@@ -36,7 +36,7 @@ class Store;  // store.hpp
 /// the rows alone say what has been done. At the end it is put in the order of the samples.
 class WorkspaceFile {
  public:
-  /// Begins the file, or with resume goes on with what is there. columns must outlive it.
+  /// Begins the file or, with resume, continues it. columns must outlive it.
   ///
   /// throws  InvalidInput where there is an unfinished workspace that is not to be resumed, or one of another robot,
   ///         solver or sampling that is; where another softkin is at work on it; where it cannot be written
@@ -91,7 +91,7 @@ struct Reach {
   std::string marker;                    // its name
   std::vector<WorkspaceSample> samples;  // those with equilibria
   Points positions;                      // of the marker, #samples by 3 [mm]
-  std::optional<Hull> hull{};            // where it is asked for and there are samples
+  std::optional<Hull> hull{};            // where it is requested and there are samples
 };
 
 /// The marker of that name; empty: the first. Throws InvalidInput on a robot without markers or an unknown name

@@ -8,7 +8,7 @@ namespace softkin {
 
 namespace {
 
-/// The nodes of a cap, each a vertex or a point that vertices carry.
+/// The nodes of a cap, each a vertex or an embedded point.
 class CapNodes {
  public:
   CapNodes(const ChamberDrive& chamber, const ChamberCap& cap) {
@@ -20,7 +20,7 @@ class CapNodes {
 
   [[nodiscard]] std::size_t size() const { return vertices_.size() + points_.size(); }
 
-  /// The nodes' rows of something that the vertices have, #V by 3.
+  /// Returns the nodes' values of a field on the vertices, #V by 3.
   [[nodiscard]] Points of(const Points& values) const {
     Points rows(static_cast<Eigen::Index>(size()), 3);
     for (Eigen::Index i = 0; i < rows.rows(); ++i)
@@ -29,7 +29,7 @@ class CapNodes {
     return rows;
   }
 
-  /// Calls visit(vertex, its weight) for what carries a node.
+  /// Calls visit(vertex, its weight) for the vertices of a node.
   template <class Visit>
   void each_vertex(std::size_t node, const Visit& visit) const {
     if (points_.empty()) return visit(vertices_[node], 1.0);

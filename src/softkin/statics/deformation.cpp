@@ -265,10 +265,10 @@ StrainHistogram strain_histogram(const Model& model, const ElementDeformation& d
   const double width = bin_width(highest - lowest);
   const double first = std::floor(lowest / width);
   const auto bins = static_cast<std::size_t>(std::floor(highest / width) - first) + 1;
-  histogram.shares.assign(bins, 0);
+  histogram.fractions.assign(bins, 0);
   for (std::size_t i = 0; i <= bins; ++i) histogram.edges.push_back((first + static_cast<double>(i)) * width);
   for (const Sample& s : samples)
-    histogram.shares[std::min(bins - 1, static_cast<std::size_t>(std::floor(s.strain / width) - first))] +=
+    histogram.fractions[std::min(bins - 1, static_cast<std::size_t>(std::floor(s.strain / width) - first))] +=
         s.volume / total;
 
   for (std::size_t m = 0; m < model.elements.materials.size(); ++m) {

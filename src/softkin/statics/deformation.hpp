@@ -7,7 +7,7 @@
 
 namespace softkin {
 
-/// What an actuator controls, as it is in a shape, over its value at rest [-], whatever its control: polyline length,
+/// Returns the measure of an actuator in a shape, over its value at rest [-], whatever its control: polyline length,
 /// sum of the prisms' mean areas, or volume of the chamber, Eq. (17): of its elements (target-shape), enclosed by its
 /// boundary (physical) or by its surface.
 [[nodiscard]] double achieved_ratio(const Model& model, const Actuator& actuator, const Points& positions);
@@ -18,33 +18,33 @@ struct ElementStress {
   std::vector<std::array<double, 3>> principal;  // descending; tension is positive
 };
 
-/// What magnetic fields do to the robot.
+/// Force and moment of magnetic fields on the robot.
 struct MagneticLoad {
   Vec3 force = Vec3::Zero();   // [N]
   Vec3 moment = Vec3::Zero();  // about the centre [N mm]
-  Vec3 center = Vec3::Zero();  // of the volume of what is magnetic, where it is [mm]
+  Vec3 center = Vec3::Zero();  // of the magnetic volume in the shape [mm]
 };
 
-/// What a cable that rubs is like in a shape.
+/// State of a cable with friction in a shape.
 struct TendonForces {
   double end_N = 0;   // tension at its far end [N]
-  double sticks = 0;  // share of all that could rub which sticks [-]
+  double sticks = 0;  // fraction of the largest possible friction at places that stick [-]
 };
 
-/// What a thread is like in a shape.
+/// State of a fibre in a shape.
 struct FibreForces {
-  double largest_N = 0, least_N = 0, mean_N = 0;  // tension along it; below 0: pressed
-  Vec3 where = Vec3::Zero();                      // the largest [mm]
-  double stretch = 1;                             // length over that at rest [-]
-  double slack = 0;                               // share of its length that carries nothing [-]
+  double largest_N = 0, min_N = 0, mean_N = 0;  // tension along it; below 0: compression
+  Vec3 where = Vec3::Zero();                    // the largest [mm]
+  double stretch = 1;                           // length over that at rest [-]
+  double slack = 0;                             // fraction of its length without force [-]
 };
 
-/// What a sheet is like in a shape.
+/// State of a sheet in a shape.
 struct LayerForces {
-  double largest_N_mm = 0, least_N_mm = 0;  // principal tension per present width; below 0: pressed
-  Vec3 where = Vec3::Zero();                // the largest [mm]
-  double strain = 0;                        // largest principal stretch minus 1 [-]
-  double wrinkled = 0, slack = 0;           // shares of its area that carry along one direction alone, and not at all
+  double largest_N_mm = 0, min_N_mm = 0;  // principal tension per present width; below 0: compression
+  Vec3 where = Vec3::Zero();              // the largest [mm]
+  double strain = 0;                      // largest principal stretch minus 1 [-]
+  double wrinkled = 0, slack = 0;         // fractions of its area with tension in one direction, and without
 };
 
 /// Deformation of every element, tetrahedra first, then prisms (their strain at the centre). Of order 2: the least
@@ -63,7 +63,7 @@ struct ElementDeformation {
                      // axes; without pressures of chambers on the supports themselves, see ChamberForce
   std::optional<ContactForces> contacts;               // where the robot may touch anything
   std::optional<MagneticLoad> magnetic;                // where there is a magnetic field
-  std::vector<std::optional<TendonForces>> tendons{};  // per actuator where any cable rubs; of those
+  std::vector<std::optional<TendonForces>> tendons{};  // per actuator where any cable has friction; of those
   std::vector<FibreForces> fibres{};                   // of each
   std::vector<LayerForces> layers{};                   // the same
 };
@@ -97,19 +97,19 @@ struct StressExtremes {
 [[nodiscard]] std::optional<StressExtremes> stress_extremes(const Model& model, const Points& positions,
                                                             const ElementDeformation& deformation);
 
-/// The paper's Fig. 6: how much of the body's volume is strained how far. In shares, percentile_95 and beyond each body
-/// element counts with its principal strain of largest magnitude; shares are of the body's rest volume. The prisms of a
-/// dea are not body.
+/// Distribution of strain over the body's volume, as in the paper's Fig. 6. In fractions, percentile_95 and beyond,
+/// each body element counts with its principal strain of largest magnitude; fractions are of the body's rest volume.
+/// The prisms of a dea are no part of the body.
 struct StrainHistogram {
-  std::vector<double> edges;       // of the bins, one more than shares [-]
-  std::vector<double> shares;      // sum to 1
+  std::vector<double> edges;       // of the bins, one more than fractions [-]
+  std::vector<double> fractions;   // sum to 1
   double least = 0, greatest = 0;  // of the principal strains, whatever their magnitude
   double percentile_95 = 0;        // of the magnitude
-  /// What of a material is strained beyond its linear range.
+  /// The part of a material that is strained beyond its linear range.
   struct Beyond {
     std::string region;       // of the material
     double linear_range = 0;  // largest |principal strain| of it [-]
-    double share = 0;         // of the material's volume whose magnitude is beyond
+    double fraction = 0;      // of the material's volume whose magnitude is beyond
   };
   std::vector<Beyond> beyond;  // materials that state a linear range
 };

@@ -26,7 +26,7 @@ double thickness(const PrismNodes& nodes, double volume_mm3) {
   return volume_mm3 / area;
 }
 
-/// What a prism stores per square of the voltage, its largest true field per voltage [1/mm], and its volume [mm^3].
+/// Capacity of a prism, its largest true field per voltage [1/mm], and its volume [mm^3].
 struct PrismField {
   double capacity_mm = 0;  // integral of J |F^-T grad zeta|^2
   double field_per_mm = 0;
@@ -56,8 +56,8 @@ std::vector<double> layer_permittivity(const Model& model, Index actuator) {
   for (std::size_t i = 0; i < dea.prisms.size(); ++i) {
     const Index e = dea.prisms[i];
     permittivity[e] = energy::vacuum_permittivity_MPa *
-                      model.elements.materials[model.elements.prism_roles[e].material].permittivity * dea.shares[i] *
-                      dea.shares[i];
+                      model.elements.materials[model.elements.prism_roles[e].material].permittivity * dea.fractions[i] *
+                      dea.fractions[i];
   }
   return permittivity;
 }
@@ -73,8 +73,8 @@ ElectricLayer electric_layer(const Model& model, Index actuator, const Points& p
     const PrismNodes nodes = nodes_of(positions, prism);
     const PrismField field = field_of(nodes_of(model.rest, prism), nodes);
     layer.capacitance_pF += pF_per_unit * permittivity[dea.prisms[i]] * field.capacity_mm;
-    if (dea.shares[i] * field.field_per_mm <= most) continue;
-    most = dea.shares[i] * field.field_per_mm;
+    if (dea.fractions[i] * field.field_per_mm <= most) continue;
+    most = dea.fractions[i] * field.field_per_mm;
     layer.at = nodes.colwise().mean().transpose();
     layer.thickness_mm = thickness(nodes, field.volume_mm3);
   }

@@ -4,7 +4,7 @@
 
 namespace softkin {
 
-/// Permittivity of every prism of the model, times the square of the share of the voltage that it has
+/// Permittivity of every prism of the model, times the square of the fraction of the voltage across it
 /// [MPa per (kV/mm)^2]; 0 for prisms of other actuators or none.
 [[nodiscard]] std::vector<double> layer_permittivity(const Model& model, Index actuator);
 

@@ -8,7 +8,8 @@ namespace softkin {
 
 class PhysicalSolver;
 
-/// The threads of a robot's solves: kept from call to call, as many as pay where nobody asks for a number.
+/// The threads of a robot's solves. They are kept from call to call; as many are used as pay unless the options set
+/// their number.
 class Lender {
  public:
   explicit Lender(const Model& model);
@@ -19,8 +20,8 @@ class Lender {
   TeamPool teams_;
 };
 
-/// What finds the equilibria of a robot, or knows them: the solver of each formulation, and what is given (a map).
-/// Arguments are checked already, but for options that it does not have.
+/// Source of the equilibria of a robot: the solver of each formulation, or given equilibria (a map). Arguments are
+/// checked already, except for options that it does not have.
 class FormulationSolver {
  public:
   FormulationSolver() = default;
@@ -38,14 +39,14 @@ class FormulationSolver {
   [[nodiscard]] virtual Sensitivity sensitivity(const State& at, const StaticsOptions& options,
                                                 double accuracy) const = 0;
 
-  /// What alone has forces, or null.
+  /// Returns the physical solver, which alone has forces, or null.
   [[nodiscard]] virtual PhysicalSolver* physical() { return nullptr; }
 
-  /// Drops what earlier solves left.
+  /// Drops the factors of earlier solves.
   virtual void forget() const {}
 };
 
-/// 8e-8 of the robot's diagonal, where none is asked for [mm].
+/// Returns the tolerance of the options, or 8e-8 of the robot's diagonal where they have none [mm].
 [[nodiscard]] double step_tolerance_mm(const Model& model, const StaticsOptions& options);
 
 /// throws  InvalidInput on a time that is negative

@@ -5,7 +5,7 @@
 
 namespace softkin {
 
-/// Where a robot is nearest to an obstacle or a body that it may touch.
+/// Place where a robot is nearest to an obstacle or a body with which it may have contact.
 struct Gap {
   double width_mm = 0;            // >= 0
   Vec3 towards = Vec3::Zero();    // from the robot to the other, of length 1; 0 where the two touch
@@ -14,15 +14,15 @@ struct Gap {
   bool vertex_of_robot = true;    // else the triangle is the robot's
 };
 
-/// Looks at vertices of the one before triangles of the other, both ways: edges that cross count as far apart as their
-/// ends are.
+/// Finds the smallest distance of a vertex of either to a triangle of the other: crossing edges count as far apart as
+/// their ends.
 ///
 /// part       of model.contact.parts, an obstacle or a body
 /// positions  #V by 3 [mm]
-/// returns    none where the robot and the part do not feel each other
+/// returns    none where contact between the robot and the part is excluded
 [[nodiscard]] std::optional<Gap> gap_before(const Model& model, Index part, const Points& positions);
 
-/// How its width changes along moves of the vertices, #V by 3 [mm], to first order [mm].
+/// Returns the change of its width along moves of the vertices, #V by 3 [mm], to first order [mm].
 [[nodiscard]] double change_of(const Gap& gap, const Model& model, const Points& moves);
 
 }  // namespace softkin

@@ -6,10 +6,10 @@ namespace softkin {
 
 namespace {
 
-double change_of(const ShapeGradient& told, const ParameterSensitivity& found, Index number) {
+double change_of(const ShapeGradient& reported, const ParameterSensitivity& found, Index number) {
   double sum = 0;
-  if (told.by_places.rows() > 0) sum += told.by_places.cwiseProduct(found.positions[number]).sum();
-  if (told.by_loads.size() > 0) sum += told.by_loads.dot(found.multipliers.col(number));
+  if (reported.by_places.rows() > 0) sum += reported.by_places.cwiseProduct(found.positions[number]).sum();
+  if (reported.by_loads.size() > 0) sum += reported.by_loads.dot(found.multipliers.col(number));
   return sum;
 }
 
@@ -43,11 +43,11 @@ ParameterSensitivity Perturbations::at(const State& at, const StaticsOptions& op
   return statics.equilibria()->sensitivity(at, parts_->perturbations, options.reuse_factor, accuracy, reactions, *team);
 }
 
-Eigen::MatrixXd Perturbations::gradients(const State& at, const std::vector<ShapeGradient>& told,
+Eigen::MatrixXd Perturbations::gradients(const State& at, const std::vector<ShapeGradient>& reported,
                                          const StaticsOptions& options, double accuracy) const {
   Statics::Parts& statics = *parts_->statics.parts_;
   statics.check_known(at, options, "the sensitivity of a shape");
-  for (const ShapeGradient& each : told) {
+  for (const ShapeGradient& each : reported) {
     const bool places = each.by_places.rows() == 0 || each.by_places.rows() == at.positions.rows();
     const bool loads = each.by_loads.size() == 0 || each.by_loads.size() == at.multipliers.size();
     if (!places || !loads || !each.by_places.allFinite() || !each.by_loads.allFinite())
@@ -57,13 +57,13 @@ Eigen::MatrixXd Perturbations::gradients(const State& at, const std::vector<Shap
   }
   if (statics.equilibria()->system().reciprocal()) {
     const TeamPool::Lent team = statics.lender.lend(options);
-    return statics.equilibria()->gradients(at, parts_->perturbations, told, options.reuse_factor, accuracy, *team);
+    return statics.equilibria()->gradients(at, parts_->perturbations, reported, options.reuse_factor, accuracy, *team);
   }
   const ParameterSensitivity found = this->at(at, options, accuracy);
   if (!found.regular) return {};
-  Eigen::MatrixXd result(told.size(), found.positions.size());
+  Eigen::MatrixXd result(reported.size(), found.positions.size());
   for (Index p = 0; p < result.cols(); ++p)
-    for (Index r = 0; r < result.rows(); ++r) result(r, p) = change_of(told[r], found, p);
+    for (Index r = 0; r < result.rows(); ++r) result(r, p) = change_of(reported[r], found, p);
   return result;
 }
 

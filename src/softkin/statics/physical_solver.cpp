@@ -21,12 +21,12 @@ physical::Equilibria::Options PhysicalSolver::options_of(const StaticsOptions& o
           .reuse_factor = options.reuse_factor,
           .stable = options.stable,
           .beyond = options.beyond,
-          .force_share = blur,
+          .force_fraction = blur,
           .history = options.history,
           .elapsed_s = options.elapsed_s};
 }
 
-/// Where a viscous robot has stood for long, relaxed, before times begin: found once. Else not converged.
+/// Finds, once, the relaxed equilibrium of a viscous robot after a long rest, before times begin; else not converged.
 Equilibrium PhysicalSolver::long_rest(StaticsOptions options, const ProgressCallback& progress, Team& team) {
   const std::lock_guard lock(rested_mutex_);
   if (rested_) return *rested_;
@@ -54,7 +54,7 @@ Equilibrium PhysicalSolver::solve(const Actuation& actuation, const State& start
   if (rest.report.status != Status::converged) {
     rest.actuation = actuation;
     rest.state.actuation.resize(0);
-    rest.state.share = -1;
+    rest.state.load_factor = -1;
     rest.report.reached = 0;
     rest.report.remark = "where the robot rests before times begin: " + rest.report.remark;
     return rest;

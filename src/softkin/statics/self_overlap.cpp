@@ -61,7 +61,7 @@ std::vector<std::array<Index, 4>> neighbours_of(const std::vector<Tetrahedron>& 
 
 }  // namespace
 
-/// What is measured of a shape once.
+/// Data of a shape that are computed once.
 class OverlapSearch::Shape {
  public:
   Shape(const OverlapSearch& search, const Points& positions)
@@ -144,7 +144,7 @@ class OverlapSearch::Shape {
 OverlapSearch::OverlapSearch(const Model& model)
     : cells_(body_cells(model)),
       tree_(std::make_shared<BoxTree>(bounds_of(model.rest, cells_))),
-      least_mm_(touching * model.diagonal_mm) {
+      min_mm_(touching * model.diagonal_mm) {
   for (const Triangle& face : boundary_of(cells_, {}).triangles)
     surface_.insert(surface_.end(), face.begin(), face.end());
   sort_unique(surface_);
@@ -158,7 +158,7 @@ SelfOverlap OverlapSearch::in(const Points& positions) const {
     const Index cell = shape.around(vertex);
     if (cell < 0) continue;
     const double deep = shape.depth(vertex, cell);
-    if (!(deep > least_mm_)) continue;
+    if (!(deep > min_mm_)) continue;
     ++overlap.points;
     if (deep <= overlap.deepest_mm) continue;
     overlap.deepest_mm = deep;

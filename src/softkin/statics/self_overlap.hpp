@@ -14,7 +14,7 @@ struct SelfOverlap {
   Vec3 where = Vec3::Zero();  // of the deepest one [mm]
 };
 
-/// Looks whether shapes of a robot pass through themselves.
+/// Detects shapes of a robot that pass through themselves.
 ///
 /// body        every element but the air in chambers; prisms as three tetrahedra, tetrahedra of order 2 as eight with
 ///             straight edges
@@ -38,7 +38,7 @@ class OverlapSearch {
   std::vector<Tetrahedron> cells_;
   std::vector<Index> surface_;           // vertices of the boundary
   std::shared_ptr<const BoxTree> tree_;  // of the cells at rest
-  double least_mm_ = 0;                  // less deep counts as touching
+  double min_mm_ = 0;                    // less deep counts as touching
 };
 
 }  // namespace softkin

@@ -26,10 +26,10 @@ struct ParameterSensitivity {
   std::vector<Points> positions;    // per number, #V by 3 [mm per unit of it]
   Eigen::MatrixXd multipliers;      // m by numbers: of tension [N] or pressure [kPa] of actuator i
   bool regular = false;             // false: at a limit of existence or a branch; then all values are zero
-  std::vector<Points> reactions{};  // per number where asked for, #V by 3: of what supports exert [N per unit of it]
+  std::vector<Points> reactions{};  // per number where requested, #V by 3: of the forces of supports [N per unit of it]
 };
 
-/// How a number that is told of an equilibrium changes with its shape and loads.
+/// Gradient of a number that is reported of an equilibrium, by its shape and loads.
 struct ShapeGradient {
   Points by_places;          // #V by 3 [per mm]; no rows: not at all
   Eigen::VectorXd by_loads;  // m: by tensions [per N] and pressures [per kPa]; no rows: not at all

@@ -15,7 +15,7 @@ double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
-/// A robot of which nothing has to be solved.
+/// Source of given equilibria, without a solver.
 class GivenSolver : public FormulationSolver {
  public:
   explicit GivenSolver(std::unique_ptr<const GivenEquilibria> given) : given_(std::move(given)) {}
@@ -32,12 +32,12 @@ class GivenSolver : public FormulationSolver {
   std::unique_ptr<const GivenEquilibria> given_;
 };
 
-/// Of what had not ended after as many iterations as it may have, in the middle of what the remark tells.
-void tell_limit(int iterations, SolveReport& report) {
-  const std::string told =
+/// Reports that the limit of iterations ended a solve, also within a remark that has begun.
+void report_limit(int iterations, SolveReport& report) {
+  const std::string reported =
       "the limit of " + counted(static_cast<std::size_t>(iterations), "iteration") + " (max_iterations) was reached";
   const bool begun = report.remark.ends_with(": ");
-  report.remark = report.remark.empty() ? told : report.remark + (begun ? told : " (" + told + ")");
+  report.remark = report.remark.empty() ? reported : report.remark + (begun ? reported : " (" + reported + ")");
 }
 
 std::unique_ptr<FormulationSolver> solver_of(const Model& model, Lender& lender) {
@@ -99,7 +99,7 @@ State Statics::rest() const {
 }
 
 Equilibrium Statics::solve(const Actuation& actuation, const State& start, const StaticsOptions& options,
-                           const ProgressCallback& asked_progress) const {
+                           const ProgressCallback& requested_progress) const {
   const auto begin = std::chrono::steady_clock::now();
   const int most = options.iteration_limit();
   bool stops = false, late = false, spent = false;
@@ -107,10 +107,10 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
   int before = 0;      // iterations until then: the limit is one of a step, for as long as the path advances
   const ProgressCallback progress = [&](const Progress& p) {
     if (stops) return false;
-    stops = asked_progress && !asked_progress(p);
-    late = options.deadline.passed();  // afterwards, as what is asked may look at the same deadline
-    if (p.share > reached) {
-      reached = p.share;
+    stops = requested_progress && !requested_progress(p);
+    late = options.deadline.passed();  // afterwards, as the callback may check the same deadline
+    if (p.fraction > reached) {
+      reached = p.fraction;
       before = p.iteration;
     }
     spent = !stops && !late && p.iteration - before >= most;
@@ -133,7 +133,7 @@ Equilibrium Statics::solve(const Actuation& actuation, const State& start, const
     report.stopped = !spent;
     if (late || spent) report.status = Status::not_converged;
     if (late) report.remark = options.deadline.spent();
-    if (spent) tell_limit(most, report);
+    if (spent) report_limit(most, report);
   }
   report.seconds = seconds_since(begin);
   return result;
@@ -158,7 +158,7 @@ ParameterSensitivity Statics::sensitivity_along(const State& at, const std::vect
 
 std::vector<Points> Statics::reciprocal_moves(const State& at, const std::vector<Points>& forces,
                                               const StaticsOptions& options, double accuracy) const {
-  parts_->check_known(at, options, "how a shape gives way");
+  parts_->check_known(at, options, "the compliance of a shape");
   for (const Points& force : forces)
     if (force.rows() != at.positions.rows() || !force.allFinite())
       throw InvalidInput("forces must be of three finite values for each of the robot's vertices");
@@ -167,28 +167,28 @@ std::vector<Points> Statics::reciprocal_moves(const State& at, const std::vector
   return equilibria->moves_under(at, forces, options.reuse_factor, accuracy, *parts_->lender.lend(options));
 }
 
-bool Statics::foresee(const Actuation& actuation, const State& at, const StaticsOptions& options,
-                      Points& positions) const {
+bool Statics::extrapolate(const Actuation& actuation, const State& at, const StaticsOptions& options,
+                          Points& positions) const {
   check_actuation(parts_->model, actuation);
-  parts_->check_known(at, options, "what is foreseen from a shape");
-  if (!foresees() || !options.reuse_factor) return false;
-  return parts_->equilibria()->foresee(actuation, at, positions, *parts_->lender.lend(options));
+  parts_->check_known(at, options, "the extrapolation from a shape");
+  if (!extrapolates() || !options.reuse_factor) return false;
+  return parts_->equilibria()->extrapolate(actuation, at, positions, *parts_->lender.lend(options));
 }
 
-bool Statics::foretell(const State& at, State there, const StaticsOptions& options) const {
+bool Statics::set_initial_guess(const State& at, State there, const StaticsOptions& options) const {
   check_actuation(parts_->model, there.actuation);
-  parts_->check_known(there, options, "what is foretold");
-  if (!foresees() || !options.reuse_factor) return false;
-  return parts_->equilibria()->foretell(at, std::move(there));
+  parts_->check_known(there, options, "the initial guess");
+  if (!extrapolates() || !options.reuse_factor) return false;
+  return parts_->equilibria()->set_initial_guess(at, std::move(there));
 }
 
-bool Statics::foresees() const {
+bool Statics::extrapolates() const {
   return parts_->equilibria() && !parts_->model.contact.any();
 }
 
 ElementDeformation Statics::measured(const State& at) const {
   ElementDeformation deformation = deformation_of(parts_->model, at.positions);
-  const bool unknown = at.share < 0 || (at.actuation.size() == 0 && !parts_->model.actuators.empty());
+  const bool unknown = at.load_factor < 0 || (at.actuation.size() == 0 && !parts_->model.actuators.empty());
   const physical::Equilibria* equilibria = parts_->equilibria();
   if (!equilibria || unknown) return deformation;
   const StaticsOptions options;

@@ -33,26 +33,26 @@ struct StaticsOptions {
   int max_iterations = 0;     // of a step of a solve's path, >= 0; 0: iteration_limit()
   int anderson = 6;           // earlier steps that Anderson acceleration combines, 0 <= anderson <= 20; 0: as printed
   bool as_published = false;  // local_global: without acceleration, to PublishedStop; for what ends there, not for use
-  int threads = 0;            // 0: as many as the machine has and the robot is worth; the result is the same
+  int threads = 0;            // 0: as many as the machine has and the robot's size justifies; the result is the same
   bool keep_history = true;   // SolveReport::history
   bool trace = false;         // SolveReport::trace; physical
   Deadline deadline{};        // solve() ends there, not converged, with its last good shape
   bool stable = false;        // physical: leave an unstable equilibrium along its lowest mode for a stable one
-  /// physical: where one pressure or tension that changes comes to its maximum, the way goes on beyond it along its
-  /// volume or length, over that at rest, to this one, > 0 [-], and from there back along the same equilibria; 0: it
+  /// physical: where one pressure or tension that changes reaches its maximum, the path continues past it along the
+  /// volume or length, up to this one over that at rest, > 0 [-], and from there back along the same equilibria; 0: it
   /// ends at the maximum.
   double beyond = 0;
   /// The factor of an earlier solve that ended at the start, where no other thread has taken it by then: the same
   /// result within the tolerance. false: bit for bit that of a new object.
   bool reuse_factor = true;
-  /// Viscous: what the material remembers, none: a long rest under the scene's loads; and the time that passes until
-  /// the shape asked for [s], >= 0: 0 is the instant answer, infinity the relaxed one, which depends on no history.
+  /// Viscous: the history of the material, none: a long rest under the scene's loads; and the time that passes until
+  /// the requested shape [s], >= 0: 0 is the instant answer, infinity the relaxed one, which depends on no history.
   std::shared_ptr<const ViscousHistory> history{};
   double elapsed_s = std::numeric_limits<double>::infinity();
 
-  /// After how many iterations without an advance along its path a solve ends, not converged, with its last good shape:
-  /// max_iterations, or 500 of Newton's method, which 999 of 1,000 random robots that have an equilibrium do not need,
-  /// and 50,000 of Algorithm 1.
+  /// Returns the number of iterations without an advance along its path after which a solve ends, not converged, with
+  /// its last good shape: max_iterations, or 500 of Newton's method, which 999 of 1,000 random robots that have an
+  /// equilibrium do not need, and 50,000 of Algorithm 1.
   [[nodiscard]] int iteration_limit() const {
     if (max_iterations > 0) return max_iterations;
     return solver == Solver::newton ? 500 : 50000;
@@ -67,14 +67,14 @@ class GivenEquilibria {
   GivenEquilibria& operator=(const GivenEquilibria&) = delete;
   virtual ~GivenEquilibria() = default;
 
-  /// That of an actuation inside the ranges; status limit and the start where none is known.
+  /// Returns the equilibrium of an actuation inside the ranges; status limit and the start where none is known.
   [[nodiscard]] virtual Equilibrium at(const Actuation& actuation, const State& start) const = 0;
   /// See Statics::sensitivity.
   [[nodiscard]] virtual Sensitivity sensitivity(const State& at) const = 0;
 };
 
-/// answers: nothing is solved. starts: every solve begins at the given equilibrium instead of the start it is told,
-/// where there is one; not of robots that touch something, which would pass through it.
+/// answers: nothing is solved. starts: every solve begins at the given equilibrium, where there is one, instead of its
+/// start; not of robots with contact, whose surfaces would pass through each other.
 enum class Given { answers, starts };
 
 /// Equilibria of one robot. Assembles and factorises once, and keeps threads, memory and factors from call to call, so
@@ -105,7 +105,7 @@ class Statics {
   /// actuation  m values in model.actuators order: length, area or volume over that at rest [-], or tension [N] or
   ///            gauge pressure [kPa] where control is load
   /// start      where the search begins; its positions are n x 3 [mm]; fixed vertices and rigid regions of it are
-  ///            projected to what holds them
+  ///            projected to their supports
   /// returns    positions n x 3 [mm], multipliers [N or kPa] (physical formulation, else 0) and report; not converging
   ///            is report.status
   /// source     target-shape: Fang et al. 2020, Alg. 1, Eqs. (1)-(11) as corrected in docs/paper.md; Newton: same
@@ -114,13 +114,13 @@ class Statics {
   [[nodiscard]] Equilibrium solve(const Actuation& actuation, const State& start, const StaticsOptions& options = {},
                                   const ProgressCallback& progress = {}) const;
 
-  /// How an equilibrium changes with its actuation, by implicit differentiation of the equations that solve() meets;
-  /// with the factor that the solve left behind where there is one.
+  /// Returns the derivatives of an equilibrium by its actuation, by implicit differentiation of the equations that
+  /// solve() meets; with the factor that the solve left behind where there is one.
   ///
   /// at        an equilibrium that solve() returned; its actuation and, physical, its multipliers must be known
-  /// accuracy  of the derivatives, relative, > 0: what is left of the equations, seen through their factor
-  /// returns   zero by slack cables, which are those without tension that are shorter than they may be; another one
-  ///           without tension counts as taut, as when it is pulled. Not regular at a limit of existence
+  /// accuracy  of the derivatives, relative, > 0: bound of the preconditioned residual of the equations
+  /// returns   zero by slack cables, which are those without tension that are shorter than their largest length;
+  ///           another one without tension counts as one in tension. Not regular at a limit of existence
   /// throws    InvalidInput on a size mismatch, an unknown actuation, or a number that is not finite
   [[nodiscard]] Sensitivity sensitivity(const State& at, const StaticsOptions& options = {},
                                         double accuracy = 1e-8) const;
@@ -128,58 +128,61 @@ class Statics {
   /// The same along some changes of the actuation alone.
   ///
   /// changes    k of m values each, in the units of the commands
-  /// reactions  are those of supports asked for
+  /// reactions  are those of supports computed, too
   /// returns    of each change; see ParameterSensitivity
   /// throws     InvalidInput as the other, of target shapes, and on a change that is not of m finite values
   [[nodiscard]] ParameterSensitivity sensitivity_along(const State& at, const std::vector<Actuation>& changes,
                                                        const StaticsOptions& options = {}, double accuracy = 1e-8,
                                                        bool reactions = false) const;
 
-  /// How vertices move under dead forces on them. Where the stiffness is symmetric that is, too, how the number whose
-  /// derivative by the vertices' places is such a force changes with a force anywhere: one solution for all places.
+  /// Returns the moves of vertices under dead forces on them. Where the stiffness is symmetric they are also
+  /// derivatives of a number by a force anywhere, if the derivative of that number by the vertices' places is the dead
+  /// force: one solution serves all places.
   ///
   /// at       as sensitivity() has it
   /// forces   k, each #V by 3 [N]
-  /// returns  k, each #V by 3 [mm]; none of target shapes, where something rubs or pushes so that the stiffness is not
+  /// returns  k, each #V by 3 [mm]; none of target shapes, where friction or follower loads make the stiffness not
   ///          symmetric, and at a limit of existence
   /// source   Maxwell 1864, Betti 1872: reciprocity
   /// throws   InvalidInput as sensitivity() does, and on forces of another size or that are not finite
   [[nodiscard]] std::vector<Points> reciprocal_moves(const State& at, const std::vector<Points>& forces,
                                                      const StaticsOptions& options = {}, double accuracy = 1e-8) const;
 
-  /// The shape under another actuation by second order, at the price of a small part of a solve. One that follows, from
-  /// the same equilibrium to that actuation or near it, begins there.
+  /// Extrapolates the shape under another actuation to second order, at a small part of the cost of a solve. A solve
+  /// that follows, from the same equilibrium to that actuation or near it, begins there.
   ///
-  /// at         an equilibrium that solve() returned and whose sensitivity() was asked for
+  /// at         an equilibrium that solve() returned and whose sensitivity() was computed
   /// positions  n x 3 [mm]
-  /// returns    false where that is not known any more, where something may touch, and of target shapes
+  /// returns    false where the derivatives are not stored any more, where contact is possible, and of target shapes
   /// throws     InvalidInput as solve() and sensitivity() do
-  bool foresee(const Actuation& actuation, const State& at, const StaticsOptions& options, Points& positions) const;
+  bool extrapolate(const Actuation& actuation, const State& at, const StaticsOptions& options, Points& positions) const;
 
-  /// A solve that follows, from an equilibrium to that actuation, begins at a shape that the caller foretells, instead
-  /// of along the tangent; the factor at hand serves where that is near.
+  /// Sets where the next solve from an equilibrium to an actuation begins, instead of along the tangent; the current
+  /// factor serves where that is near.
   ///
   /// at     an equilibrium that solve() returned
   /// there  positions n x 3 [mm], actuation, multipliers [N or kPa]
-  /// returns  false where foresees() is, of mixed elements, and where what the last solve left is not known any more
+  /// returns  false where extrapolates() is, of mixed elements, and where the data of the last solve are not stored any
+  ///          more
   /// throws   InvalidInput as solve() does
-  bool foretell(const State& at, State there, const StaticsOptions& options) const;
+  bool set_initial_guess(const State& at, State there, const StaticsOptions& options) const;
 
-  /// Does foresee() do for this robot: in the physical formulation, where nothing may touch?
-  [[nodiscard]] bool foresees() const;
+  /// Does extrapolate() work for this robot: in the physical formulation, without contact?
+  [[nodiscard]] bool extrapolates() const;
 
-  /// What a shape measures: deformation_of and, physical, the stress of the elements and what holds the robot.
+  /// Returns the deformation of a shape, see deformation_of, and in the physical formulation stresses and forces, too.
   ///
-  /// at       what solve() returned; without its actuation, where a search ended on its way: deformation_of alone
+  /// at       a state that solve() returned; without its actuation, where a search ended on its path: deformation_of
+  ///          alone
   /// throws   InvalidInput as sensitivity() does
   [[nodiscard]] ElementDeformation measured(const State& at) const;
 
-  /// How what presses on obstacles and bodies changes along moves of the vertices.
+  /// Returns the changes of the contact forces on obstacles and bodies along moves of the vertices.
   ///
   /// at       an equilibrium that solve() returned
   /// moves    k, each #V by 3 [mm]
-  /// returns  k, each of model.contact.parts: change of the force that all that touches a part exerts on it, friction
-  ///          for sliding on included [N]; zero of parts of the robot and where nothing can touch
+  /// returns  k, each of model.contact.parts: change of the sum of the contact forces on a part, with friction as if
+  ///          sliding continued [N]; zero of parts of the robot and where no contact is possible
   /// throws   InvalidInput as sensitivity() does, of target shapes, and on moves of another size or that are not finite
   [[nodiscard]] std::vector<std::vector<Vec3>> pressing_changes(const State& at,
                                                                 const std::vector<Points>& moves) const;
@@ -187,7 +190,7 @@ class Statics {
   /// Has the robot Maxwell branches? Then solve() takes a history and a time.
   [[nodiscard]] bool viscous() const;
 
-  /// What the material remembers of an equilibrium, the history of what follows it.
+  /// Returns the history of the material after an equilibrium, for the solves that follow it.
   ///
   /// at       an equilibrium that solve() returned, with its history and time
   /// returns  no history where the robot is not viscous
@@ -211,25 +214,25 @@ class Perturbations {
  public:
   /// statics and the models must outlive the object.
   ///
-  /// perturbed  by 1e-5 or so of the number, or of what it is beside: more is less exact, less is rounded
+  /// perturbed  by about 1e-5 of the number, or of its typical size: more is less accurate, less is rounded
   /// throws     InvalidInput in the target-shape formulation, and where the models differ by more than numbers
   Perturbations(const Statics& statics, const std::vector<Perturbed>& perturbed);
   ~Perturbations();
   Perturbations(Perturbations&&) noexcept;
   Perturbations& operator=(Perturbations&&) noexcept;
 
-  /// As Statics::sensitivity. Several threads may ask at once. reactions: those of supports, too
+  /// As Statics::sensitivity. Several threads may call it at once. reactions: those of supports, too
   [[nodiscard]] ParameterSensitivity at(const State& at, const StaticsOptions& options = {}, double accuracy = 1e-8,
                                         bool reactions = false) const;
 
-  /// What is told of an equilibrium by all numbers: K Y = G^T in place of K X = F, a solution for each that is told,
-  /// however many numbers there are. Where the equations are not their own adjoint (friction, tendons that rub) by a
-  /// solution for each number.
+  /// Returns the gradients of reported numbers of an equilibrium by all perturbed numbers. It solves K Y = G^T in place
+  /// of K X = F, once for each reported number, however many perturbed ones there are. Where the equations are not
+  /// self-adjoint (friction, tendons with friction), it solves once for each perturbed number.
   ///
-  /// told     k gradients by the vertices' places and the loads
+  /// reported  k gradients by the vertices' places and the loads
   /// returns  k by numbers; no columns at a limit of existence or a branch
   /// throws   InvalidInput as at(), and on gradients of another size or that are not finite
-  [[nodiscard]] Eigen::MatrixXd gradients(const State& at, const std::vector<ShapeGradient>& told,
+  [[nodiscard]] Eigen::MatrixXd gradients(const State& at, const std::vector<ShapeGradient>& reported,
                                           const StaticsOptions& options = {}, double accuracy = 1e-8) const;
 
  private:

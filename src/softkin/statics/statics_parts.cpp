@@ -38,7 +38,7 @@ void check_start(const Model& model, const State& start, const StaticsOptions& o
   const auto finite = [](double length) { return std::isfinite(length); };
   if (!start.eyelets.empty() && (start.eyelets.size() != physical::Tendons(model).remembered() ||
                                  !std::all_of(start.eyelets.begin(), start.eyelets.end(), finite)))
-    throw InvalidInput("the start's cables rub elsewhere than the robot's");
+    throw InvalidInput("the start's cables have friction elsewhere than the robot's");
   if (!std::all_of(start.anchors.begin(), start.anchors.end(), lies_on_model))
     throw InvalidInput("the start's friction is of another robot");
   if (!(options.step_tolerance_mm >= 0) || options.max_iterations < 0 || options.anderson < 0 ||
@@ -57,7 +57,7 @@ TeamPool::Lent Lender::lend(const StaticsOptions& options) {
   if (options.threads > 0) return teams_.lend(options.threads);
   try {
     return teams_.lend(worthwhile_);
-  } catch (const InvalidInput&) {  // nobody asked for so many; the result is the same
+  } catch (const InvalidInput&) {  // the caller did not set this number; the result is the same
     worthwhile_ = 1;
     return teams_.lend(1);
   }
@@ -74,7 +74,7 @@ void check_elapsed(double elapsed_s) {
 void Statics::Parts::check_actuation(const State& at, const StaticsOptions& options, const std::string& of) const {
   check_start(model, at, options);
   if (!at.knows(model.actuators.size())) throw InvalidInput(of + " needs the actuation of which it is the equilibrium");
-  if (!std::isfinite(at.share)) throw InvalidInput("the share of the loads at the shape is not finite");
+  if (!std::isfinite(at.load_factor)) throw InvalidInput("the load factor at the shape is not finite");
 }
 
 void Statics::Parts::check_known(const State& at, const StaticsOptions& options, const std::string& of) const {

@@ -7,7 +7,7 @@ namespace softkin {
 /// throws  InvalidInput on what is not of the model, and on options out of range
 void check_start(const Model& model, const State& start, const StaticsOptions& options);
 
-/// What a robot's equilibria are found with.
+/// The objects with which a robot's equilibria are found.
 struct Statics::Parts {
   explicit Parts(const Model& robot) : model(robot), lender(robot) {}
 
@@ -23,7 +23,7 @@ struct Statics::Parts {
   const Model& model;
   Lender lender;
   std::unique_ptr<FormulationSolver> solver;
-  std::unique_ptr<const GivenEquilibria> starts;  // null: solves begin where they are told to
+  std::unique_ptr<const GivenEquilibria> starts;  // null: solves begin at the start that they are given
 };
 
 }  // namespace softkin

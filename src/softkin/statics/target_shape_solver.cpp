@@ -8,7 +8,7 @@ namespace softkin {
 
 namespace {
 
-/// Of Algorithm 1 for its own sake: where it converges slowly its steps hardly shrink for long.
+/// Patience of Algorithm 1 where it is selected: where it converges slowly, its steps hardly shrink for long.
 constexpr target_shape::Patience patience = {2000, std::numeric_limits<double>::infinity(), true};
 
 void check_target_shape(const StaticsOptions& options) {
@@ -45,31 +45,31 @@ Equilibrium TargetShapeSolver::solve(const Actuation& actuation, const State& st
   return result;
 }
 
-/// From result.state.positions; where supports turn far by equilibria on the way: what is held is put in its place at
-/// once, and elements that it turns over would stay so.
+/// Solves from result.state.positions. Where supports turn far it goes through intermediate equilibria: supported
+/// vertices are put in their places at once, and elements that this turns over would stay so.
 void TargetShapeSolver::follow_turns(const Actuation& start, const StaticsOptions& options,
                                      const ProgressCallback& progress, Team& team, Equilibrium& result) const {
-  constexpr double most_turn = 10;  // at once [degrees]
-  const Actuation asked = result.actuation;
-  Actuation from = start.size() > 0 ? start : asked;
-  for (Index a = 0; start.size() == 0 && a < asked.size(); ++a)
+  constexpr double max_turn = 10;  // at once [degrees]
+  const Actuation requested = result.actuation;
+  Actuation from = start.size() > 0 ? start : requested;
+  for (Index a = 0; start.size() == 0 && a < requested.size(); ++a)
     if (model_.actuators[a].is<TurnCommand>()) from[a] = turning_.angle(a, result.state.positions);
-  const int steps = std::max(1, static_cast<int>(std::ceil(turning_.largest_turn(from, 1, asked, 1) / most_turn)));
+  const int steps = std::max(1, static_cast<int>(std::ceil(turning_.largest_turn(from, 1, requested, 1) / max_turn)));
   Actuation last = steps > 1 ? from : start;
-  int on_the_way = 0;
+  int intermediate = 0;
   for (int step = 1; step <= steps; ++step) {
-    result.actuation = step == steps ? asked : Actuation(from + (asked - from) * step / steps);
+    result.actuation = step == steps ? requested : Actuation(from + (requested - from) * step / steps);
     result.report.status = Status::not_converged;
     if (options.solver == Solver::newton)
       newton_.solve(last, options, progress, team, result);
     else
       target_shape::solve_local_global({model_, system_, global_}, options, patience, progress, team, result);
-    on_the_way += result.report.continuation_steps;
+    intermediate += result.report.continuation_steps;
     if (result.report.status != Status::converged) break;
     last = result.actuation;
   }
-  if (options.solver == Solver::newton) result.report.continuation_steps = on_the_way;
-  result.actuation = asked;
+  if (options.solver == Solver::newton) result.report.continuation_steps = intermediate;
+  result.actuation = requested;
 }
 
 Sensitivity TargetShapeSolver::sensitivity(const State& at, const StaticsOptions& options, double accuracy) const {

@@ -5,8 +5,8 @@
 
 namespace softkin {
 
-/// What a viscous material remembers along a path with times. Before its first time the robot has been at rest for
-/// long, and comes to the first shape at once. Of other robots, and where there are no times, it changes nothing.
+/// The history of a viscous material along a path with times. Before its first time the robot has been at rest for
+/// long, and reaches the first shape at once. Of other robots, and where there are no times, it changes nothing.
 class ViscousClock {
  public:
   /// statics must outlive the object.
@@ -22,7 +22,7 @@ class ViscousClock {
     options.elapsed_s = last_s_ ? *time_s - *last_s_ : 0;
   }
 
-  /// Goes on from an equilibrium at a time.
+  /// Continues from an equilibrium at a time.
   ///
   /// returns  energy that the material lost since the last one [mJ]; none where it counts no time
   std::optional<double> pass(const std::optional<double>& time_s, const State& at) {

@@ -7,7 +7,7 @@ namespace softkin {
 
 namespace {
 
-/// Where an element's volume is less than this it counts by that, else by its strain.
+/// An element with a smaller volume ratio than this ranks by that, else by its strain.
 constexpr double crushed = 0.2;
 constexpr double near_edges = 2;
 
@@ -41,8 +41,8 @@ class Surroundings {
       for (const Index b : corners_) edge_ = std::max(edge_, (positions.row(a) - positions.row(b)).norm());
   }
 
-  void tell(WorstPlace& place) const {
-    if (tell_cables(place) || tell_rigid(place) || tell_chambers(place)) return;
+  void describe(WorstPlace& place) const {
+    if (report_cables(place) || report_rigid(place) || report_chambers(place)) return;
     if (has([&](Index v) { return model_.held.fixed[v] != std::array<bool, 3>{}; })) place.beside = "what is held";
   }
 
@@ -52,7 +52,7 @@ class Surroundings {
     return std::any_of(corners_.begin(), corners_.end(), is);
   }
 
-  bool tell_cables(WorstPlace& place) const {
+  bool report_cables(WorstPlace& place) const {
     double nearest = near_edges * edge_;
     for (const Actuator& actuator : model_.actuators) {
       const auto* cable = actuator.as<CableDrive>();
@@ -68,7 +68,7 @@ class Surroundings {
     return !place.beside.empty();
   }
 
-  bool tell_rigid(WorstPlace& place) const {
+  bool report_rigid(WorstPlace& place) const {
     for (const RigidRegion& rigid : model_.rigid)
       if (has([&](Index v) {
             return std::find(rigid.vertices.begin(), rigid.vertices.end(), v) != rigid.vertices.end();
@@ -77,7 +77,7 @@ class Surroundings {
     return !place.beside.empty();
   }
 
-  bool tell_chambers(WorstPlace& place) const {
+  bool report_chambers(WorstPlace& place) const {
     for (const Actuator& actuator : model_.actuators) {
       const auto* chamber = actuator.as<ChamberDrive>();
       const auto on_wall = [&](Index v) {
@@ -114,7 +114,7 @@ std::optional<WorstPlace> worst_place(const Model& model, const Points& position
                                                      : std::span<const Index>(model.elements.tetrahedra[e]);
   place.at.setZero();
   for (const Index v : corners) place.at += positions.row(v).transpose() / static_cast<double>(corners.size());
-  Surroundings(model, positions, corners).tell(place);
+  Surroundings(model, positions, corners).describe(place);
   return place;
 }
 

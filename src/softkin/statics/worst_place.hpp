@@ -6,7 +6,7 @@
 
 namespace softkin {
 
-/// The element of the body that is deformed most, and what stands next to it.
+/// The element of the body that is deformed most, and the part of the robot next to it.
 struct WorstPlace {
   bool prism = false;       // else a tetrahedron
   Index element = 0;        // among the tetrahedra or the prisms of the model
@@ -18,8 +18,9 @@ struct WorstPlace {
                             // 'tip'"; empty: nothing is as near as two edges of the element
 };
 
-/// What is nearest to the element: at least one of its vertices, or a point less than two of its edges away; points of
-/// cables before rigid regions, these before walls of chambers, these before what is held.
+/// Finds the most deformed element and the part nearest to it: at least one of its vertices, or a point less than two
+/// of its edges away; points of cables before rigid regions, these before walls of chambers, these before supported
+/// vertices.
 ///
 /// positions  #V by 3 [mm]; deformation: of them
 /// returns    none where the model has no body

@@ -16,10 +16,10 @@ namespace softkin::vision {
 
 namespace {
 
-constexpr double step = 0.5;                 // along a profile [px]
-constexpr double least_board_contrast = 25;  // of 255
-constexpr double far_off = 0.5;              // of a line: on something else [px]
-constexpr double end_share = 0.12;           // of an edge: left out at both ends, where blur rounds the corner
+constexpr double step = 0.5;               // along a profile [px]
+constexpr double min_board_contrast = 25;  // of 255
+constexpr double far_off = 0.5;            // of a line: on something else [px]
+constexpr double end_fraction = 0.12;      // of an edge: left out at both ends, where blur rounds the corner
 
 using Line = Eigen::Hyperplane<double, 2>;
 
@@ -65,7 +65,7 @@ std::optional<Line> edge_line(const GrayImage& gray, const Vec2& from, const Vec
             columns = static_cast<int>(2 * reach / step + 1e-9) + 1;
   Eigen::ArrayXXd profiles(columns, rows);
   const auto place = [&](int i) {
-    return Vec2(from + (end_share + (1 - 2 * end_share) * (i + 0.5) / rows) * (to - from));
+    return Vec2(from + (end_fraction + (1 - 2 * end_fraction) * (i + 0.5) / rows) * (to - from));
   };
   for (int i = 0; i < rows; ++i)
     for (int k = 0; k < columns; ++k) profiles(k, i) = between(gray, place(i) + (step * k - reach) * outwards);
@@ -73,7 +73,7 @@ std::optional<Line> edge_line(const GrayImage& gray, const Vec2& from, const Vec
   // are hardly wider than the blur
   const Eigen::ArrayXd mean = profiles.rowwise().mean();
   const double dark = mean.head((columns + 1) / 2).minCoeff(), light = mean.tail(columns / 2).maxCoeff();
-  if (!(light - dark > least_board_contrast)) return std::nullopt;
+  if (!(light - dark > min_board_contrast)) return std::nullopt;
   std::vector<Vec2> points;
   for (int i = 0; i < rows; ++i)
     if (const auto s = passage(profiles.col(i), reach, (dark + light) / 2)) {
@@ -156,7 +156,7 @@ void check(const BoardSpec& board) {
     throw InvalidInput("board: a board of squares has 3x3 or more; inner corners are what is measured");
 }
 
-constexpr double least_share = 0.4;  // of a board's tags or corners: fewer fix its perspective badly
+constexpr double min_fraction = 0.4;  // of a board's tags or corners: fewer fix its perspective badly
 
 /// Corners of a tag: top left, then clockwise.
 std::array<Vec2, 4> tag_places(const BoardSpec& board, int number) {
@@ -201,7 +201,7 @@ std::map<int, Tag> tags_on(const RgbImage& picture, const BoardSpec& board, cons
     if (!found.emplace(place, tag).second)
       throw InvalidInput("tag " + std::to_string(tag.number) + " of the board is in the picture twice");
   }
-  const int least = std::max(1, static_cast<int>(std::ceil(least_share * board.tags())));
+  const int least = std::max(1, static_cast<int>(std::ceil(min_fraction * board.tags())));
   if (static_cast<int>(found.size()) < least) refuse(board, static_cast<int>(found.size()), board.tags(), "tags");
   return found;
 }
@@ -232,9 +232,9 @@ std::vector<PlanePoint> charuco_corners(const RgbImage& picture, const BoardSpec
       corners.push_back(pixel);
     }
   const int all = (board.rows - 1) * (board.columns - 1);
-  if (static_cast<double>(corners.size()) < std::max(4.0, least_share * all))
+  if (static_cast<double>(corners.size()) < std::max(4.0, min_fraction * all))
     refuse(board, static_cast<int>(corners.size()), all, "corners");
-  // the window holds the crossing alone, not the tags beside it
+  // the window holds the crossing alone, not the tags next to it
   const double margin = side * (board.square - board.tag) / (2 * board.square);
   const int reach = std::max(2, static_cast<int>(0.9 * margin));
   corners = opencv::crossings(gray_of(picture), corners, reach);

@@ -26,8 +26,8 @@ struct Tag {
 [[nodiscard]] std::vector<Tag> find_tags(const RgbImage& picture, const std::string& dictionary,
                                          const std::optional<Camera>& camera);
 
-/// Corners of a dark square on light ground, to a few hundredths of a pixel: lines through the places where the picture
-/// is half way between dark and light, which blur does not move, and where these lines cross.
+/// Corners of a dark square on light ground, to a few hundredths of a pixel: lines through the places where the
+/// brightness is halfway between dark and light, which blur does not move, and where these lines cross.
 ///
 /// corners  as found roughly, in order around the square [px]
 /// module   width of the dark border by that of the square [-]

@@ -18,9 +18,9 @@ namespace softkin::vision {
 
 namespace {
 
-constexpr std::size_t least_pictures = 4;
-constexpr double most_focal_error = 0.03;  // of the focal length
-constexpr double least_tilt = 0.2;         // between two boards [rad]: seen straight, near and small is far and large
+constexpr std::size_t min_pictures = 4;
+constexpr double max_focal_error = 0.03;  // of the focal length
+constexpr double min_tilt = 0.2;          // between two boards [rad]: seen straight, near and small is far and large
 
 /// Largest angle between the planes of two of the boards [rad].
 double tilt_between(const std::vector<std::array<double, 3>>& rotations) {
@@ -189,10 +189,10 @@ Vec2 distorted(const Camera& camera, const Vec2& ideal) {
 }
 
 Vec2 undistorted(const Camera& camera, const Vec2& seen) {
-  constexpr int most_rounds = 100;
+  constexpr int max_rounds = 100;
   const Vec2 bent = direction_of(camera, seen);
   Vec2 direction = bent;
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < max_rounds; ++round) {
     const Bend bend(camera, direction);
     if (!(bend.radial > 0)) return seen;  // where the picture is folded over itself nothing is taken out
     const Vec2 next = (bent - bend.tangential) / bend.radial;
@@ -204,8 +204,8 @@ Vec2 undistorted(const Camera& camera, const Vec2& seen) {
 }
 
 Camera fit_camera(const std::vector<BoardSight>& sights, int width, int height, std::vector<double>& errors) {
-  if (sights.size() < least_pictures)
-    throw InvalidInput("a camera is found from " + std::to_string(least_pictures) +
+  if (sights.size() < min_pictures)
+    throw InvalidInput("a camera is found from " + std::to_string(min_pictures) +
                        " pictures of the board or more, better 10 to 20 under different angles");
   const std::optional<opencv::Fit> fit = opencv::calibrated(sights, width, height);
   if (!fit) throw InvalidInput("no camera fits these pictures; is the board flat, and are they all from one camera?");
@@ -215,10 +215,10 @@ Camera fit_camera(const std::vector<BoardSight>& sights, int width, int height, 
   std::tie(camera.k1, camera.k2, camera.p1, camera.p2) = std::tuple_cat(fit->lens);
   camera.focal_error = std::max(fit->focal_errors[0], fit->focal_errors[1]);
   camera.reprojection_error = fit->reprojection_error;
-  if (!std::isfinite(camera.reprojection_error) || !(camera.focal_error < most_focal_error * camera.fx) ||
-      !(tilt_between(fit->rotations) > least_tilt))
+  if (!std::isfinite(camera.reprojection_error) || !(camera.focal_error < max_focal_error * camera.fx) ||
+      !(tilt_between(fit->rotations) > min_tilt))
     throw InvalidInput(
-        "these pictures do not tell the focal length: take the board under different angles, tilted by "
+        "these pictures do not determine the focal length: take the board under different angles, tilted by "
         "20 to 45 degrees to different sides");
   return camera;
 }
@@ -289,7 +289,7 @@ PlaneView::PlaneView(std::optional<Camera> camera, const std::vector<PlanePoint>
     if (!rows.allFinite() || solver.rank() < 8)
       throw InvalidInput("the points of the plane lie on a line: its perspective cannot be found");
     if (round == 5) {
-      // an exact fit of four points says nothing about their errors
+      // an exact fit of four points does not show their errors
       const double variance = n > 8 ? miss.squaredNorm() / static_cast<double>(n - 8) : 0;
       covariance_ = variance * size.asDiagonal() * inverse_of(rows.transpose() * rows) * size.asDiagonal();
       break;

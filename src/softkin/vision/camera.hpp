@@ -50,7 +50,7 @@ struct BoardSight {
 /// width, height  of the pictures [px]
 /// errors         receives the root mean square distance of the corners in each picture [px]
 /// source         Zhang, A flexible new technique for camera calibration, IEEE PAMI 22(11), 2000; by OpenCV
-/// throws         InvalidInput: fewer than 4 pictures, or angles too much alike to tell the focal length
+/// throws         InvalidInput: fewer than 4 pictures, or angles too much alike to determine the focal length
 [[nodiscard]] Camera fit_camera(const std::vector<BoardSight>& sights, int width, int height,
                                 std::vector<double>& errors);
 

@@ -11,15 +11,15 @@ namespace softkin::vision {
 
 namespace {
 
-constexpr int least_area = 20;                // [px]: a diameter of 5
-constexpr double least_fullness = 0.88;       // a half disc has 0.95
+constexpr int min_area = 20;                  // [px]: a diameter of 5
+constexpr double min_fullness = 0.88;         // a half disc has 0.95
 constexpr double largest_elongation = 3;      // a disc seen at 70 degrees
-constexpr double rival_share = 0.3;           // of the largest dot's area: smaller ones are dirt
+constexpr double rival_fraction = 0.3;        // of the largest dot's area: smaller ones are dirt
 constexpr int blur = 4;                       // the edge of a dot fades within so many pixels
 constexpr int ring = 4;                       // width of the ground looked at around it [px]
-constexpr double most_glare = 0.02;           // of a dot's inner pixels
-constexpr double most_white = 0.7;            // more of it: a ring on paper, not a highlight on a dot
-constexpr double over_exposed_picture = 0.3;  // share of clipped pixels that explains a missing dot
+constexpr double max_glare = 0.02;            // of a dot's inner pixels
+constexpr double max_white = 0.7;             // more of it: a ring on paper, not a highlight on a dot
+constexpr double over_exposed_picture = 0.3;  // fraction of clipped pixels that explains a missing dot
 
 using Rgb3 = Eigen::RowVector3d;
 
@@ -27,8 +27,8 @@ std::string at_pixel(const Vec2& place) {
   return "(" + std::to_string(std::lround(place.x())) + ", " + std::to_string(std::lround(place.y())) + ")";
 }
 
-std::string percent(double share) {
-  return std::to_string(std::lround(100 * share)) + " %";
+std::string percent(double fraction) {
+  return std::to_string(std::lround(100 * fraction)) + " %";
 }
 
 /// Some pixels, a row each: (1, x, y) from the dot's centre, and their colours.
@@ -132,19 +132,19 @@ MarkerPlace refined(const RgbImage& picture, const Blob& blob, const PlaneView& 
   const Pixels near = pixels_in(picture, window, blob.centre, [&](int x, int y) { return steps(x, y) <= blur; });
   const Rgb3 contrast = core_colour(picture, blob) - ground.fit.row(0);
   const double size = contrast.squaredNorm();
-  const Eigen::VectorXd shares = (near.colours - near.places * ground.fit) * contrast.transpose() / size;
-  Eigen::MatrixX2d places(shares.size(), 2);
-  Eigen::VectorXd areas(shares.size());
-  for (Eigen::Index i = 0; i < shares.size(); ++i) {
+  const Eigen::VectorXd fractions = (near.colours - near.places * ground.fit) * contrast.transpose() / size;
+  Eigen::MatrixX2d places(fractions.size(), 2);
+  Eigen::VectorXd areas(fractions.size());
+  for (Eigen::Index i = 0; i < fractions.size(); ++i) {
     const Vec2 seen = blob.centre + near.places.row(i).tail<2>().transpose();
     places.row(i) = view.to_mm(seen);
     areas[i] = view.pixel_area(seen);
   }
-  const double sum = shares.dot(areas);
+  const double sum = fractions.dot(areas);
   MarkerPlace result;
-  result.place = places.transpose() * shares.cwiseProduct(areas) / sum;
+  result.place = places.transpose() * fractions.cwiseProduct(areas) / sum;
   result.pixel = view.to_pixel(result.place);
-  const double noise = (contrast * ground.noise).dot(contrast) / (size * size);  // variance of a pixel's share
+  const double noise = (contrast * ground.noise).dot(contrast) / (size * size);  // variance of a pixel's fraction
   const double arm = areas.cwiseAbs2().dot((places.rowwise() - result.place.transpose()).rowwise().squaredNorm());
   result.error = std::hypot(std::sqrt(noise * arm / 2) / sum, pixel_error * std::sqrt(view.pixel_area(result.pixel)),
                             view.error_at(result.pixel));
@@ -164,28 +164,27 @@ double glare(const RgbImage& picture, const Blob& blob) {
 
 MarkerPlace find_dot(const RgbImage& picture, const Colour& colour, const PlaneView& view, const std::string& name) {
   const std::string dot = name == colour.name ? "dot '" + name + "'" : colour.name + " dot '" + name + "'";
-  std::vector<Blob> blobs = find_blobs(picture, colour, least_area);
+  std::vector<Blob> blobs = find_blobs(picture, colour, min_area);
   const bool white = colour.name == "white";
   const auto refuse_glare = [&](const Blob& blob) {
-    const double share = white || blob.elongation() > largest_elongation ? 0 : glare(picture, blob);
-    if (share > most_glare && share < most_white)
-      throw InvalidInput(percent(share) + " of " + dot + " at " + at_pixel(blob.centre) +
+    const double fraction = white || blob.elongation() > largest_elongation ? 0 : glare(picture, blob);
+    if (fraction > max_glare && fraction < max_white)
+      throw InvalidInput(percent(fraction) + " of " + dot + " at " + at_pixel(blob.centre) +
                          " is white: it is over-exposed, has a highlight, or is not a full dot");
   };
   const std::vector<Blob> all = blobs;
-  std::erase_if(blobs, [](const Blob& blob) {
-    return blob.fullness() < least_fullness || blob.elongation() > largest_elongation;
-  });
+  std::erase_if(
+      blobs, [](const Blob& blob) { return blob.fullness() < min_fullness || blob.elongation() > largest_elongation; });
   if (blobs.empty()) {
     if (!all.empty()) refuse_glare(all[0]);
     std::string message = "no " + dot + " found";
     if (!all.empty()) message += ": nothing of this colour is round";
-    const double clipped = clipped_share(picture);
+    const double clipped = clipped_fraction(picture);
     if (!white && clipped > over_exposed_picture)
       message += "; the picture is over-exposed: " + percent(clipped) + " of it is white";
     throw InvalidInput(message);
   }
-  if (blobs.size() > 1 && blobs[1].area > rival_share * blobs[0].area)
+  if (blobs.size() > 1 && blobs[1].area > rival_fraction * blobs[0].area)
     throw InvalidInput("two candidates for " + dot + ": at " + at_pixel(blobs[0].centre) + " and " +
                        at_pixel(blobs[1].centre) + "; cover one, or give another colour");
   // a dot that fills what is free of the margin leaves no ground

@@ -14,8 +14,8 @@ struct MarkerPlace {
 
 /// The one round dot of a colour in a picture, to a fraction of a pixel.
 ///
-/// The centre is that of the share of dot colour, from 0 on the ground around it to 1 in its middle, over the area of
-/// the plane that each pixel sees: blur leaves it where it is, and neither perspective nor lens shift it.
+/// The centre is that of the fraction of dot colour, from 0 on the ground around it to 1 in its middle, over the area
+/// of the plane that each pixel sees: blur does not move it, and neither do perspective and lens.
 ///
 /// name    of the marker, for messages
 /// throws  InvalidInput naming the marker: no such dot, two that could be it, too near to the frame, over-exposed

@@ -11,7 +11,7 @@
 
 namespace softkin::vision {
 
-/// What the user asked for, as typed: docs/measure.md.
+/// The options of a measurement as typed: docs/measure.md.
 struct MeasureOptions {
   std::string board{}, scale{}, camera{}, dots{}, tags{}, dictionary{}, interface {
   }, origin{}, x_axis{}, outline{};
@@ -40,7 +40,7 @@ struct ScaleRequest {
   double length = 0;                   // [mm]
 };
 
-/// What the user asked for, understood.
+/// The options of a measurement, parsed.
 struct MeasureRequest {
   MeasureOptions given;
   std::vector<DotRequest> dots;

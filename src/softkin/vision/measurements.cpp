@@ -259,7 +259,7 @@ bool FilmTrack::advance() {
   return true;
 }
 
-double FilmTrack::share() const {
+double FilmTrack::fraction() const {
   return film_.frames() > 0 ? double(frames_) / double(film_.frames()) : -1;
 }
 

@@ -67,7 +67,7 @@ class FilmTrack {
   [[nodiscard]] bool advance();
 
   [[nodiscard]] std::size_t frames() const { return frames_; }  // so far
-  [[nodiscard]] double share() const;                           // of the film; < 0: not known
+  [[nodiscard]] double fraction() const;                        // of the film; < 0: not known
   [[nodiscard]] double rate() const { return film_.rate(); }
   [[nodiscard]] const Measurer& measurer() const { return measurer_; }
   /// Why each frame is left out.

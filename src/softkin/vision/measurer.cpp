@@ -137,7 +137,7 @@ void Measurer::append_tags(std::vector<NamedMarker>& markers, const RgbImage& pi
     for (const auto& [number, tag] : found) wanted.emplace(number, "tag" + std::to_string(number));
   for (const auto& [number, name] : wanted) {
     if (!found.contains(number)) {
-      const double clipped = clipped_share(picture);
+      const double clipped = clipped_fraction(picture);
       throw InvalidInput(
           "tag " + std::to_string(number) + (name == "tag" + std::to_string(number) ? "" : " '" + name + "'") +
           " not found; all of it must be in the picture, sharp, with a light margin around" +
@@ -162,7 +162,7 @@ std::vector<Angle> Measurer::angles_of(const std::vector<NamedMarker>& markers) 
       degrees = second - degrees;
       error = std::hypot(error, second_error);
     }
-    // from picture to picture the shorter way round, at first within half a turn
+    // from picture to picture the smaller of both rotations, at first within half a turn
     const double last = last_angles_.contains(request.name()) ? last_angles_[request.name()] : 0;
     degrees = last + std::remainder(degrees - last, 360.0);
     last_angles_[request.name()] = degrees;

@@ -20,8 +20,8 @@ struct Angle {
   double degrees = 0, error = 0;  // counter-clockwise; standard error
 };
 
-/// Finds in one picture after another what was asked for. The first picture fixes the scale (unless the camera moves or
-/// each picture has its board) and the axes of the mm frame.
+/// Measures the requested markers in one picture after another. The first picture fixes the scale (unless the camera
+/// moves or each picture has its board) and the axes of the mm frame.
 class Measurer {
  public:
   Measurer(MeasureRequest request, bool film) : request_(std::move(request)), film_(film) {}

@@ -18,7 +18,7 @@ namespace softkin::vision::opencv {
 /// Threads (0: one a core), and its own messages off.
 void prepare(int threads);
 
-/// The picture in the content of a file, turned as its camera says it should be; none where that is no picture.
+/// The picture in the content of a file, turned as its camera specifies; none where that is no picture.
 [[nodiscard]] std::optional<RgbImage> decoded(const std::string& content);
 
 /// A video that is open.
@@ -27,7 +27,7 @@ class Video {
   virtual ~Video() = default;
   /// The next frame; none after the last.
   [[nodiscard]] virtual std::optional<RgbImage> next() = 0;
-  [[nodiscard]] double rate() const { return rate_; }      // frames per second that it says; 0: none
+  [[nodiscard]] double rate() const { return rate_; }      // frames per second of its header; 0: none
   [[nodiscard]] double frames() const { return frames_; }  // that it should have; 0 or less: not known
 
  protected:

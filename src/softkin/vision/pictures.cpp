@@ -14,7 +14,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr int least_side = 16;  // [px]
+constexpr int min_side = 16;  // [px]
 
 /// A JPEG that was cut off would decode into a picture whose lower part is grey; libpng would print its own words.
 bool is_cut_off(const std::string& content) {
@@ -61,9 +61,9 @@ std::vector<fs::path> pictures_in(const fs::path& folder) {
   return pictures;
 }
 
-constexpr double hue_tolerance = 20;      // around the hue of #rrggbb [degrees]
-constexpr double least_saturation = 0.3;  // printed and painted colours under room light have 0.4 to 1
-constexpr double least_value = 50;        // of 255: darker pixels have no hue that can be trusted
+constexpr double hue_tolerance = 20;    // around the hue of #rrggbb [degrees]
+constexpr double min_saturation = 0.3;  // printed and painted colours under room light have 0.4 to 1
+constexpr double min_value = 50;        // of 255: darker pixels have no hue that can be trusted
 
 struct Known {
   const char* name;
@@ -71,7 +71,7 @@ struct Known {
 };
 
 constexpr Known by_hue(const char* name, double from, double to) {
-  return {name, {from, least_saturation, least_value}, {to, 1, 255}};
+  return {name, {from, min_saturation, min_value}, {to, 1, 255}};
 }
 
 constexpr std::array<Known, 9> all_known{by_hue("red", -20, 15),
@@ -94,7 +94,7 @@ Known known(const std::string& name) {
     throw InvalidInput("no colour '" + name + "'" + suggest_name(name, names) + " (or #rrggbb)");
   const auto bits = std::strtol(name.c_str() + 1, nullptr, 16);
   const auto [hue, saturation, value] = hsv_of({float(bits >> 16), float((bits >> 8) & 255), float(bits & 255)});
-  if (saturation < least_saturation || value < least_value)
+  if (saturation < min_saturation || value < min_value)
     throw InvalidInput("colour " + name + " has no hue; take one of more saturation, or black, or white");
   return by_hue("", hue - hue_tolerance, hue + hue_tolerance);
 }
@@ -112,13 +112,13 @@ RgbImage read_picture(const fs::path& path) {
   if (!picture)
     throw InvalidInput({path.string()},
                        is_cut_off(content) ? "the picture is cut off" : "not a picture that can be read");
-  if (picture->width < least_side || picture->height < least_side)
+  if (picture->width < min_side || picture->height < min_side)
     throw InvalidInput({path.string()}, "the picture is smaller than 16 x 16 pixels");
   return *std::move(picture);
 }
 
 bool is_film(const fs::path& path) {
-  std::error_code failure;  // a link to itself: told where it is read
+  std::error_code failure;  // a link to itself: reported where it is read
   if (fs::is_directory(path, failure)) return true;
   const std::string extension = lower_extension(path);
   for (const char* known : {".mp4", ".m4v", ".mov", ".avi", ".mkv", ".webm", ".mpg", ".mpeg", ".wmv"})
@@ -175,9 +175,10 @@ std::optional<Frame> Film::next() {
   return frame;
 }
 
-Colour::Colour(const std::string& asked) : name(asked), low(known(asked).low), high(known(asked).high) {}
+Colour::Colour(const std::string& requested)
+    : name(requested), low(known(requested).low), high(known(requested).high) {}
 
-double clipped_share(const RgbImage& picture) {
+double clipped_fraction(const RgbImage& picture) {
   std::size_t clipped = 0;
   for (std::size_t i = 0; i < picture.bytes.size(); i += 3)
     clipped += *std::min_element(picture.bytes.begin() + std::ptrdiff_t(i),

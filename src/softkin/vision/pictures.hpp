@@ -17,7 +17,7 @@ class Video;
 /// Before anything else of this room: threads of OpenCV (0: one a core), and its own messages off.
 void prepare_opencv(int threads);
 
-/// A picture of any common form (PNG, JPEG, TIFF, BMP, ...), 8 bits a channel, turned as its camera says it should be.
+/// A picture of any common form (PNG, JPEG, TIFF, BMP, ...), 8 bits a channel, turned as its camera specifies.
 /// throws  InvalidInput: cannot be read, cut off, smaller than 16 x 16 pixels
 [[nodiscard]] RgbImage read_picture(const std::filesystem::path& path);
 
@@ -33,7 +33,7 @@ struct Frame {
 class Film {
  public:
   /// files  the video, the folder, or the pictures
-  /// rate   frames in a second; none: what the video says
+  /// rate   frames in a second; none: that of the video
   /// throws  InvalidInput: cannot be read, no frame, no rate, a rate that is not > 0
   Film(std::vector<std::filesystem::path> files, std::optional<double> rate);
   ~Film();
@@ -70,6 +70,6 @@ struct Colour {
 };
 
 /// Share of pixels at full white in all channels, where nothing can be measured any more [-].
-[[nodiscard]] double clipped_share(const RgbImage& picture);
+[[nodiscard]] double clipped_fraction(const RgbImage& picture);
 
 }  // namespace softkin::vision

@@ -92,7 +92,7 @@ Blob blob_of(const std::vector<std::pair<int, int>>& pixels) {
   return blob;
 }
 
-/// The pixels around a place, and its shares of the way to those behind.
+/// The four pixels around a place, and the weights of the farther ones.
 struct Corner {
   int x0, y0, x1, y1;
   double right, down;

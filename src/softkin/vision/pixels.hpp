@@ -28,7 +28,7 @@ struct PixelBox {
   friend bool operator==(const PixelBox&, const PixelBox&) = default;
 };
 
-/// What two rectangles share; empty where that is nothing.
+/// The intersection of two rectangles; empty where there is none.
 [[nodiscard]] PixelBox shared_part(const PixelBox& a, const PixelBox& b);
 
 /// Brightness (ITU-R BT.601), 8 bits.

@@ -10,12 +10,12 @@ namespace softkin::vision {
 
 namespace {
 
-constexpr int least_silhouette = 100;       // [px]: smaller parts are dirt
+constexpr int min_silhouette = 100;         // [px]: smaller parts are dirt
 constexpr int frame_margin = 3;             // points nearer to the frame are left out [px]
-constexpr std::size_t most_outline = 400;   // points
+constexpr std::size_t max_outline = 400;    // points
 constexpr std::size_t chord = 4;            // to both sides along the outline, for its normal [px]
 constexpr std::size_t side_of_polygon = 8;  // by which the length is measured: steps of pixels are no length [px]
-constexpr double least_contrast = 30;       // between the robot and the ground, of 255
+constexpr double min_contrast = 30;         // between the robot and the ground, of 255
 constexpr double reach_of_edge = 3;         // to both sides, where the edge is looked for [px]
 constexpr double step_of_edge = 0.25;
 
@@ -62,11 +62,11 @@ TwoClasses two_classes(const GrayImage& gray) {
 Vec2 moved_to_edge(const RgbImage& picture, const Vec2& pixel, const Vec2& outward) {
   const auto colour = [&](double at) { return between(picture, pixel + at * outward); };
   const Eigen::Vector3d outside = colour(reach_of_edge), contrast = colour(-reach_of_edge) - outside;
-  const auto share = [&](double at) { return (colour(at) - outside).dot(contrast) / contrast.squaredNorm() - 0.5; };
+  const auto fraction = [&](double at) { return (colour(at) - outside).dot(contrast) / contrast.squaredNorm() - 0.5; };
   double before = 0.5;
-  for (double at = step_of_edge - reach_of_edge; contrast.norm() > least_contrast && at <= reach_of_edge;
+  for (double at = step_of_edge - reach_of_edge; contrast.norm() > min_contrast && at <= reach_of_edge;
        at += step_of_edge) {
-    const double here = share(at);
+    const double here = fraction(at);
     if (here <= 0) return pixel + (at - step_of_edge * here / (here - before)) * outward;
     before = here;
   }
@@ -88,7 +88,7 @@ std::vector<Vec2> edge_points(const RgbImage& picture, const std::vector<Vec2>& 
 GrayImage mask_by_brightness(const RgbImage& picture, const SilhouetteLook& look) {
   GrayImage mask = smoothed(gray_of(picture));
   const TwoClasses classes = two_classes(mask);
-  if (classes.bright - classes.dark < least_contrast)
+  if (classes.bright - classes.dark < min_contrast)
     throw InvalidInput("no outline found: the picture is nearly the same brightness everywhere");
   for (std::uint8_t& byte : mask.bytes) byte = (byte <= classes.threshold) == (look.name == "dark") ? 1 : 0;
   return mask;
@@ -103,7 +103,7 @@ double length_of(const std::vector<Vec2>& points) {
 
 const Blob& largest_of(const std::vector<Blob>& blobs, const SilhouetteLook& look, const RgbImage& picture) {
   if (blobs.empty())
-    throw InvalidInput("no outline found: nothing that is " + look.name + " has " + std::to_string(least_silhouette) +
+    throw InvalidInput("no outline found: nothing that is " + look.name + " has " + std::to_string(min_silhouette) +
                        " pixels or more");
   const Blob& blob = blobs[0];
   if (blob.box == PixelBox{0, 0, picture.width, picture.height})
@@ -120,7 +120,7 @@ Silhouette silhouette_of(const Blob& blob, const RgbImage& picture, const PlaneV
   silhouette.length = length_of(places);
   silhouette.area = moments_of(places).area;
   silhouette.cut = blob.touches_frame(picture, frame_margin);
-  const std::size_t each = (places.size() + most_outline - 1) / most_outline;
+  const std::size_t each = (places.size() + max_outline - 1) / max_outline;
   for (std::size_t i = 0; i < places.size(); i += each) {
     const Vec2& at = border[i];
     const double nearest = std::min({at.x(), at.y(), picture.width - 1 - at.x(), picture.height - 1 - at.y()});
@@ -131,13 +131,13 @@ Silhouette silhouette_of(const Blob& blob, const RgbImage& picture, const PlaneV
 
 }  // namespace
 
-SilhouetteLook::SilhouetteLook(const std::string& asked) : name(asked) {
-  if (asked != "dark" && asked != "bright") colour = Colour(asked);
+SilhouetteLook::SilhouetteLook(const std::string& requested) : name(requested) {
+  if (requested != "dark" && requested != "bright") colour = Colour(requested);
 }
 
 Silhouette find_silhouette(const RgbImage& picture, const SilhouetteLook& look, const PlaneView& view) {
-  const std::vector<Blob> blobs = look.colour ? find_blobs(picture, *look.colour, least_silhouette)
-                                              : find_blobs(mask_by_brightness(picture, look), least_silhouette);
+  const std::vector<Blob> blobs = look.colour ? find_blobs(picture, *look.colour, min_silhouette)
+                                              : find_blobs(mask_by_brightness(picture, look), min_silhouette);
   return silhouette_of(largest_of(blobs, look, picture), picture, view);
 }
 

@@ -10,11 +10,11 @@ namespace softkin::vision {
 
 /// What sets a robot apart from the ground behind it: a colour, or that it is darker or brighter.
 struct SilhouetteLook {
-  std::string name;              // as asked for: "red", "#rrggbb", "dark", "bright"
+  std::string name;              // as requested: "red", "#rrggbb", "dark", "bright"
   std::optional<Colour> colour;  // none: by brightness
 
   /// throws  InvalidInput: no such colour
-  explicit SilhouetteLook(const std::string& asked);
+  explicit SilhouetteLook(const std::string& requested);
 };
 
 /// The outer outline of a robot in a picture; holes have no part in it.

@@ -12,22 +12,22 @@ namespace softkin::vision {
 
 namespace {
 
-constexpr int least_part_area = 100;      // [px]
-constexpr double rival_part_share = 0.3;  // of the largest part's area
-constexpr int margin = 4;                 // to the frame [px]
-constexpr double used_width = 0.7;        // of the specimen: its long edges are rounded by blur
-constexpr double reach = 6;               // of the window around an edge [px]
-constexpr double levels = 3;              // beyond it, where the colours on both sides are read [px]
-constexpr int level_samples = 6;          // there, in each strip
-constexpr double strip_step = 0.5;        // along a strip [px]
+constexpr int min_part_area = 100;           // [px]
+constexpr double rival_part_fraction = 0.3;  // of the largest part's area
+constexpr int margin = 4;                    // to the frame [px]
+constexpr double used_width = 0.7;           // of the specimen: its long edges are rounded by blur
+constexpr double reach = 6;                  // of the window around an edge [px]
+constexpr double levels = 3;                 // beyond it, where the colours on both sides are read [px]
+constexpr int level_samples = 6;             // there, in each strip
+constexpr double strip_step = 0.5;           // along a strip [px]
 constexpr double degrees = 180 / std::numbers::pi;
 
 /// The outline of the part of a specimen that has this colour [mm].
 std::vector<Vec2> outline_in_mm(const RgbImage& picture, const Colour& colour, const PlaneView& view) {
-  const std::vector<Blob> blobs = find_blobs(picture, colour, least_part_area);
+  const std::vector<Blob> blobs = find_blobs(picture, colour, min_part_area);
   const std::string part = "part of the specimen that is " + colour.name;
   if (blobs.empty()) throw InvalidInput("no " + part + " found");
-  if (blobs.size() > 1 && blobs[1].area > rival_part_share * blobs[0].area)
+  if (blobs.size() > 1 && blobs[1].area > rival_part_fraction * blobs[0].area)
     throw InvalidInput("two candidates for the " + part);
   if (blobs[0].touches_frame(picture, margin)) throw InvalidInput("the " + part + " is partly outside the frame");
   std::vector<Vec2> outline = outline_of(blobs[0]);
@@ -80,7 +80,7 @@ struct LineFit {
   double offset, slope, offset_error, slope_error;
 };
 
-/// Line through rows of t, s, twice, the second time without what lies far off.
+/// Fits a line to rows of t, s, twice, the second time without outliers.
 LineFit line_through(Eigen::MatrixX2d points) {
   LineFit fit{};
   for (int round = 0; round < 2; ++round) {
@@ -137,10 +137,10 @@ SpecimenEdge edge_near(const RgbImage& rgb, const PlaneView& view, const BarFram
     if (!(size > 40 * 40))
       throw InvalidInput("the " + name + " cannot be seen: the colours on both sides of it are nearly the same");
     for (int i = 0; i < strips; ++i) {
-      // the edge is where the share of what lies behind it says
-      const double share =
+      // the edge is where the fraction of the colour behind it places it
+      const double fraction =
           (read[std::size_t(i)].middleCols(level_samples, samples).rowwise().mean() - before).dot(contrast) / size;
-      points(i, 1) += half * (1 - 2 * share);
+      points(i, 1) += half * (1 - 2 * fraction);
     }
     fit = line_through(points);
     if (!(std::abs(fit.offset - position) < half + level) || !(std::abs(fit.slope) < 1.5))

@@ -26,8 +26,8 @@ struct SpecimenView {
   [[nodiscard]] double interface_error() const { return std::hypot(fixed.error, interface.error); }
 };
 
-/// Ends and interface of the one specimen in a picture, to a fraction of a pixel: in strips along the axis the share of
-/// one colour is summed across each edge, which blur and noise do not shift, and a line goes through all strips.
+/// Ends and interface of the one specimen in a picture, to a fraction of a pixel: in strips along the axis the fraction
+/// of one colour is summed across each edge, which blur and noise do not shift, and a line is fitted to all strips.
 ///
 /// a, b    colours of the material at the fixed end and of the other
 /// source  Fang et al. 2020, Fig. 7

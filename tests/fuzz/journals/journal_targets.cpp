@@ -38,7 +38,7 @@ void check_records(const runs::Codec<Record>& codec, const std::string& text) {
   }
 }
 
-/// What --resume goes on from: journal, its head fitting or not, or as second part a report.
+/// Resumes from a journal, with a matching head or another one, or from a report as the second part.
 template <class Record>
 void resume(const Input& input, const runs::Job<Record>& job) {
   check_records(job.codec(), input.part(0));

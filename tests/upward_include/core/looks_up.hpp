@@ -1,3 +1,3 @@
 #pragma once
 
-#include <softkin/model/mesh/mesh.hpp>  // the core may not see the model: tests/check_rooms.cmake must say so
+#include <softkin/model/mesh/mesh.hpp>  // an upward include, which tests/check_rooms.cmake must report

@@ -2,12 +2,12 @@ import {
   type Camera, type Color, ConeGeometry, CylinderGeometry, Group, Mesh, MeshBasicMaterial, SphereGeometry, Vector3,
 } from 'three';
 
-// as the arrows of a marker
+// sizes on the screen, the same as those of a marker's arrows
 const shaftPx = 1.7, headPx = {length: 15, radius: 6}, ballPx = 4.5;
 const up = new Vector3(0, 1, 0);
 
-/** A vector as an arrow, from a ball, which alone is seen where it is zero: the flux density of the uniform fields
-    beside the robot [mT], a force at its place [N]. */
+/** A vector as an arrow that starts at a ball; a zero vector shows the ball alone. It shows the flux density of the
+    uniform fields next to the robot [mT] or a force at its point of application [N]. */
 export class Arrow {
   readonly group = new Group();
   private readonly material = new MeshBasicMaterial({depthTest: false, transparent: true});
@@ -16,9 +16,9 @@ export class Arrow {
   private readonly head = new Mesh(new ConeGeometry(1, 1, 14), this.material);
   private readonly ball = new Mesh(new SphereGeometry(1, 16, 12), this.material);
   private lengthMm = 0;
-  /** Where it ends [mm]. */
+  /** The end point [mm]. */
   tip: number[];
-  /** In the vector's unit. */
+  /** The length of the vector, in its unit. */
   size = 0;
 
   constructor(foot: Vector3, public mmPerUnit: number) {
@@ -31,20 +31,20 @@ export class Arrow {
 
   get visible(): boolean { return this.group.visible; }
 
-  /** Where it begins [mm]. */
+  /** The start point [mm]. */
   get foot(): number[] { return this.group.position.toArray(); }
 
-  dress(colour: Color): void { this.material.color = colour; }
+  setColour(colour: Color): void { this.material.color = colour; }
 
   set(vector: number[]): void {
-    const way = new Vector3().fromArray(vector).multiplyScalar(this.mmPerUnit);
+    const offset = new Vector3().fromArray(vector).multiplyScalar(this.mmPerUnit);
     this.size = Math.hypot(...vector);
-    this.lengthMm = way.length();
-    this.tip = this.group.position.clone().add(way).toArray();
-    if (this.lengthMm > 0) this.arrow.quaternion.setFromUnitVectors(up, way.normalize());
+    this.lengthMm = offset.length();
+    this.tip = this.group.position.clone().add(offset).toArray();
+    if (this.lengthMm > 0) this.arrow.quaternion.setFromUnitVectors(up, offset.normalize());
   }
 
-  /** As thick on the screen from near and far; a short arrow is all head. */
+  /** Keeps the thickness on the screen constant at any distance; a short arrow is drawn as its head alone. */
   fit(camera: Camera, mmPerPxAtOne: number): void {
     const mmPerPx = mmPerPxAtOne * camera.position.distanceTo(this.group.position);
     const head = Math.min(headPx.length * mmPerPx, this.lengthMm), shaft = this.lengthMm - head;

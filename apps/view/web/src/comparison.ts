@@ -1,6 +1,6 @@
 import {byId, element} from './text';
 
-/** What a page shows of results beside each other, without a robot. */
+/** A page that shows results next to each other, without a robot. */
 export interface ComparisonDocument {
   softkin: string; command: string;
   comparison: {notes: string[]; tables: {caption: string; rows: string[][]}[]; plot: string};

@@ -4,9 +4,9 @@ import {digits, plain} from './text';
 import {commandWords, loadWords, measured} from './words';
 
 const width = 340, height = 150, left = 46, right = 10, top = 20, bottom = 32;
-const sweepPoints = 33, trailPoints = 400;
+const sweepPoints = 33, maxVisited = 400;
 
-/** An element of a drawing. */
+/** Creates an SVG element. */
 export function drawn(tag: string, attributes: Record<string, string | number>, text = ''): SVGElement {
   const made = document.createElementNS('http://www.w3.org/2000/svg', tag);
   for (const [name, value] of Object.entries(attributes)) made.setAttribute(name, String(value));
@@ -14,11 +14,11 @@ export function drawn(tag: string, attributes: Record<string, string | number>, 
   return made;
 }
 
-/** Load against command of each actuator: the steps of the run, what the map says with the others as they are, and
-    where the robot was moved. Returns what brings them up to date. */
+/** Shows load against command of each actuator: the steps of the run, the values of the map with all other commands
+    fixed, and the states to which the user moved the robot. Returns the function that updates the curves. */
 export function makeCurves(box: HTMLElement, robot: Robot): () => void {
   const {steps, document: {actuators}} = robot;
-  const trails: [number, number][][] = actuators.map(() => []);
+  const visitedPoints: [number, number][][] = actuators.map(() => []);
   const svgs = actuators.map(({name, load_unit: unit}) => {
     const svg = drawn('svg', {viewBox: `0 0 ${width} ${height}`, role: 'img',
                               'aria-label': `Load of ${plain(name)} against its command`});
@@ -29,31 +29,31 @@ export function makeCurves(box: HTMLElement, robot: Robot): () => void {
     if (!actuator.load_unit) return;
     const {commands, loads, step} = robot.pose, load = loads[i];
     const now: [number, number][] = load === null ? [] : [[commands[i], load]];
-    const trail = trails[i], last = trail.at(-1);
+    const visited = visitedPoints[i], last = visited.at(-1);
     if (step < 0 && (robot.map || robot.link))
-      trail.push(...now.filter(([command, value]) => !last || last[0] !== command || last[1] !== value));
-    if (trail.length > trailPoints) trail.shift();
-    const ran = steps.flatMap((one): [number, number][] => {
+      visited.push(...now.filter(([command, value]) => !last || last[0] !== command || last[1] !== value));
+    if (visited.length > maxVisited) visited.shift();
+    const computed = steps.flatMap((one): [number, number][] => {
       const value = one.loads[i];
       return value === null ? [] : [[one.commands[i], value]];
     });
     const sweep: [number, number][] = [];
     for (let k = 0; robot.map && k < sweepPoints; ++k) {
       const command = actuator.low + k / (sweepPoints - 1) * (actuator.high - actuator.low);
-      const value = robot.ask(commands.map((c, j) => j === i ? command : c))?.loads[i];
+      const value = robot.evaluateMap(commands.map((c, j) => j === i ? command : c))?.loads[i];
       if (value !== undefined && value !== null) sweep.push([command, value]);
     }
-    plot(svgs[i], actuator, {ran, sweep, trail, now});
+    plot(svgs[i], actuator, {computed, sweep, visited, now});
   });
 }
 
 interface Lists {
-  ran: [number, number][]; sweep: [number, number][]; trail: [number, number][]; now: [number, number][];
+  computed: [number, number][]; sweep: [number, number][]; visited: [number, number][]; now: [number, number][];
 }
 
-function plot(svg: SVGElement, actuator: Actuator, {ran, sweep, trail, now}: Lists): void {
-  const values = [...ran, ...sweep, ...trail, ...now].map(([, load]) => load);
-  const zero = actuator.load_unit === measured ? 1 : 0;  // of a ratio nothing happens at 1
+function plot(svg: SVGElement, actuator: Actuator, {computed, sweep, visited, now}: Lists): void {
+  const values = [...computed, ...sweep, ...visited, ...now].map(([, load]) => load);
+  const zero = actuator.load_unit === measured ? 1 : 0;  // a ratio is 1 in the reference shape
   const low = Math.min(zero, ...values), high = Math.max(...values, low + 1e-9);
   const x = (c: number) => left + (c - actuator.low) / (actuator.high - actuator.low) * (width - left - right);
   const y = (l: number) => height - bottom - (l - low) / (high - low) * (height - top - bottom);
@@ -70,6 +70,6 @@ function plot(svg: SVGElement, actuator: Actuator, {ran, sweep, trail, now}: Lis
     drawn('text', {x: width - right, y: base + 13, 'text-anchor': 'end'}, digits(actuator.high, 3)),
     drawn('text', {x: (left + width - right) / 2, y: base + 26, 'text-anchor': 'middle'},
           `command [${commandWords(actuator)}]`),
-    ...dots(trail, 'trail', 1.2), drawn('polyline', {class: 'sweep', points: line(sweep)}),
-    drawn('polyline', {class: 'steps', points: line(ran)}), ...dots(ran, 'step', 3), ...dots(now, 'now', 5));
+    ...dots(visited, 'trail', 1.2), drawn('polyline', {class: 'sweep', points: line(sweep)}),
+    drawn('polyline', {class: 'steps', points: line(computed)}), ...dots(computed, 'step', 3), ...dots(now, 'now', 5));
 }

@@ -4,54 +4,55 @@ import type {RobotScene} from './scene';
 
 const grabPx = {mouse: 14, touch: 34};
 
-/** What a pointer holds, and what follows it. marker: it belongs to; null: none. */
-interface Hold { marker: number | null; move(x: number, y: number): void }
-/** A place that can be dragged, and how far it is from the pointer. */
-interface Grip { far: number; hold(): Hold }
+/** A drag in progress. marker: the marker that it moves, or null; move: follows the pointer. */
+interface Drag { marker: number | null; move(x: number, y: number): void }
+/** A point that can be dragged, and its distance from the pointer [px]. */
+interface Grip { distance: number; begin(): Drag }
 
-/** A marker, the target out of its reach, an arrow, or the tip of the field is taken with the pointer and dragged. */
+/** Lets the pointer drag a marker, a target out of reach, one of a marker's arrows, or the tip of the field. */
 export function makeDrag(canvas: HTMLCanvasElement, robot: Robot, scene: RobotScene): void {
-  let hold: Hold | null = null;
-  const find = (event: PointerEvent): Hold | null => {
+  let drag: Drag | null = null;
+  const find = (event: PointerEvent): Drag | null => {
     const touch = event.pointerType === 'touch', {offsetX: x, offsetY: y} = event;
-    const near = gripsOf(robot, scene, x, y).filter(({far}) => far < (touch ? grabPx.touch : grabPx.mouse));
-    const best = near.sort((a, b) => a.far - b.far).at(0), axis = scene.handles.under(x, y, touch);
-    if (axis < 0 || (best && best.far < 8)) return best?.hold() ?? null;
-    return holdAxis(robot, scene, axis, x, y);
+    const radius = touch ? grabPx.touch : grabPx.mouse;
+    const near = gripsOf(robot, scene, x, y).filter(({distance}) => distance < radius);
+    const best = near.sort((a, b) => a.distance - b.distance).at(0), axis = scene.handles.under(x, y, touch);
+    if (axis < 0 || (best && best.distance < 8)) return best?.begin() ?? null;
+    return dragAxis(robot, scene, axis, x, y);
   };
   canvas.addEventListener('pointerdown', (event) => {
-    hold = event.button === 0 && event.isPrimary ? find(event) : null;
-    if (!hold) return;
-    event.stopImmediatePropagation();  // the camera stays
-    robot.selected = hold.marker ?? robot.selected;
+    drag = event.button === 0 && event.isPrimary ? find(event) : null;
+    if (!drag) return;
+    event.stopImmediatePropagation();  // keeps the camera from turning
+    robot.selected = drag.marker ?? robot.selected;
     robot.remember();
-    if (hold.marker === null) scene.holdEye(true);
-    else scene.keepEye();
+    if (drag.marker === null) scene.lockCamera(true);
+    else scene.keepCamera();
     canvas.setPointerCapture(event.pointerId);
     canvas.classList.add('held');
   }, {capture: true});
   canvas.addEventListener('pointermove', (event) => {
-    if (!hold) {
+    if (!drag) {
       if (event.pointerType === 'mouse') canvas.classList.toggle('over', find(event) !== null);
       return;
     }
     event.stopImmediatePropagation();
-    hold.move(event.offsetX, event.offsetY);
+    drag.move(event.offsetX, event.offsetY);
   }, {capture: true});
-  const letGo = () => {
-    hold = null;
-    scene.holdEye(false);
+  const endDrag = () => {
+    drag = null;
+    scene.lockCamera(false);
     canvas.classList.remove('held');
   };
-  canvas.addEventListener('pointerup', letGo);
-  canvas.addEventListener('pointercancel', letGo);
+  canvas.addEventListener('pointerup', endDrag);
+  canvas.addEventListener('pointercancel', endDrag);
 }
 
-/** Places under or near a pixel, each held where the pointer took it. */
+/** Returns all points that can be dragged; each keeps its offset from the pixel (x, y) while it is dragged. */
 function gripsOf(robot: Robot, scene: RobotScene, x: number, y: number): Grip[] {
-  const grip = (at: number[], hold: (dx: number, dy: number) => Hold): Grip => {
+  const grip = (at: number[], begin: (dx: number, dy: number) => Drag): Grip => {
     const p = scene.project(at);
-    return {far: Math.hypot(p.x - x, p.y - y), hold: () => hold(p.x - x, p.y - y)};
+    return {distance: Math.hypot(p.x - x, p.y - y), begin: () => begin(p.x - x, p.y - y)};
   };
   const places = robot.pose.markers.map((at, marker) => ({marker, at}));
   if (robot.target) places.push(robot.target);
@@ -60,29 +61,29 @@ function gripsOf(robot: Robot, scene: RobotScene, x: number, y: number): Grip[] 
       marker, move: (to, down) => robot.reach(marker, scene.under(to + dx, down + dy, at)),
     })));
   if (scene.field?.visible && robot.able)
-    grips.push(grip(scene.field.tip, (dx, dy) => holdField(robot, scene, dx, dy)));
+    grips.push(grip(scene.field.tip, (dx, dy) => dragField(robot, scene, dx, dy)));
   return grips;
 }
 
-/** The tip of the field moves across the way from the eye, and the commands with it as far as they can. */
-function holdField(robot: Robot, scene: RobotScene, dx: number, dy: number): Hold {
-  const start = robot.commands.slice(), from = scene.field?.tip ?? [0, 0, 0], eye = scene.wayTo(from);
+/** Moves the tip of the field perpendicular to the line of sight; the commands follow within their ranges. */
+function dragField(robot: Robot, scene: RobotScene, dx: number, dy: number): Drag {
+  const start = robot.commands.slice(), from = scene.field?.tip ?? [0, 0, 0], sight = scene.directionTo(from);
   const perMm = 1 / (scene.field?.mmPerUnit ?? 1), {actuators} = robot.document;
   return {marker: null, move: (x, y) => {
-    const change = scene.under(x + dx, y + dy, from, eye).map((value, k) => (value - from[k]) * perMm);
-    robot.command(draggedField(actuators, start, change, eye));
+    const change = scene.under(x + dx, y + dy, from, sight).map((value, k) => (value - from[k]) * perMm);
+    robot.command(draggedField(actuators, start, change, sight));
   }};
 }
 
-function holdAxis(robot: Robot, scene: RobotScene, axis: number, x: number, y: number): Hold {
+function dragAxis(robot: Robot, scene: RobotScene, axis: number, x: number, y: number): Drag {
   const marker = robot.selected, start = placeOfHandles(robot) ?? [0, 0, 0];
   return {marker, move: (to, down) => {
-    const far = scene.handles.along(axis, to - x, down - y);
-    robot.reach(marker, start.map((value, k) => k === axis ? value + far : value));
+    const distance = scene.handles.along(axis, to - x, down - y);
+    robot.reach(marker, start.map((value, k) => k === axis ? value + distance : value));
   }};
 }
 
-/** Where the arrows stand: at the target, else at the marker that is chosen; null: nowhere. */
+/** Returns the position of the arrows: the target, or else the selected marker; null where there are none. */
 export function placeOfHandles(robot: Robot): number[] | null {
   if (!robot.canReach(robot.selected)) return null;
   return robot.target?.marker === robot.selected ? robot.target.at : robot.pose.markers[robot.selected];

@@ -3,17 +3,18 @@ import {
   MeshBasicMaterial, Vector3,
 } from 'three';
 import {Arrow} from './arrow';
-import {halfOpening, type ToldForce} from './estimate';
+import {halfOpening, type EstimatedForce} from './estimate';
 
-/** Corners of an ellipse that is drawn. */
+/** The number of vertices of a drawn ellipse. */
 const corners = 48;
-/** Of the robot's size: the arrow, or half of a wider cone, is as long; the scale stays while it is between these. */
+/** The length of the longest arrow, or of half the rim of a wider cone, as a fraction of the robot's size: after a
+    change of scale, and the range in which the scale is kept. */
 const longest = 0.32, kept = {low: 0.12, high: 0.4};
 
-/** 1, 2 or 5 times a power of ten, at most so much. */
-export function roundBelow(most: number): number {
-  const power = 10 ** Math.floor(Math.log10(most));
-  return (([5, 2, 1].find((n) => n * power <= most * (1 + 1e-9))) ?? 1) * power;
+/** Returns the largest number of 1, 2 or 5 times a power of ten that does not exceed the limit. */
+export function roundBelow(limit: number): number {
+  const power = 10 ** Math.floor(Math.log10(limit));
+  return (([5, 2, 1].find((n) => n * power <= limit * (1 + 1e-9))) ?? 1) * power;
 }
 
 const vector = (at: number[], scale = 1): Vector3 => new Vector3().fromArray(at).multiplyScalar(scale);
@@ -25,7 +26,7 @@ function ellipse(middle: Vector3, [a, b]: Vector3[]): Vector3[] {
   });
 }
 
-/** Triangles from a point to a ring around it. */
+/** Builds triangles from a point to a ring around it. */
 function fan(tip: Vector3, ring: Vector3[]): BufferGeometry {
   const index = ring.flatMap((_, i) => [0, 1 + i, 1 + (i + 1) % ring.length]);
   const geometry = new BufferGeometry().setFromPoints([tip, ...ring]);
@@ -33,7 +34,8 @@ function fan(tip: Vector3, ring: Vector3[]): BufferGeometry {
   return geometry;
 }
 
-/** One force: an arrow from its place, a cone over the ellipse that holds the arrow's tip, the ellipse of its place. */
+/** One force: an arrow from its point of application, a cone over the ellipse that contains the arrow's tip, and the
+    ellipse of the point of application. */
 class ForceShape {
   readonly group = new Group();
   readonly arrow = new Arrow(new Vector3(), 1);
@@ -56,7 +58,7 @@ class ForceShape {
     this.group.add(...this.parts, this.arrow.group);
   }
 
-  set(force: ToldForce, mmPerNewton: number): void {
+  set(force: EstimatedForce, mmPerNewton: number): void {
     const at = vector(force.at_mm), tip = at.clone().add(vector(force.force_N, mmPerNewton));
     this.arrow.group.position.copy(at);
     this.arrow.mmPerUnit = mmPerNewton;
@@ -74,38 +76,38 @@ class ForceShape {
   }
 }
 
-/** The forces that were told, all to one scale. */
+/** The estimated forces, all drawn to one scale. */
 export class Forces {
   readonly group = new Group();
-  /** As long is an arrow of 1 N [mm]. */
+  /** The length of an arrow of 1 N [mm]. */
   mmPerNewton = 0;
   private shapes: ForceShape[] = [];
   private colour: Color | null = null;
-  // on top of the body: what pushes is not hidden by what it pushes into
+  // drawn on top of the body, which would hide the forces that press into it
   private readonly clear = new MeshBasicMaterial({transparent: true, opacity: 0.2, depthTest: false, depthWrite: false,
                                                   side: DoubleSide});
   private readonly line = new LineBasicMaterial({transparent: true, opacity: 0.8, depthTest: false});
 
   constructor(private readonly size: number) {}
 
-  /** Where each arrow begins and ends [mm]. */
+  /** The start and end point of each arrow [mm]. */
   get arrows(): {foot: number[]; tip: number[]}[] { return this.shapes.map(({arrow}) => arrow); }
 
-  dress(colour: Color): void {
+  setColour(colour: Color): void {
     this.colour = this.clear.color = this.line.color = colour;
-    for (const {arrow} of this.shapes) arrow.dress(colour);
+    for (const {arrow} of this.shapes) arrow.setColour(colour);
   }
 
-  set(forces: ToldForce[]): void {
+  set(forces: EstimatedForce[]): void {
     const reach = Math.max(0, ...forces.map(({force_N: force, across_N: across}) =>
       Math.max(Math.hypot(...force), Math.hypot(...across[0]))));
-    const drawn = reach * this.mmPerNewton / this.size;
-    const stays = drawn > kept.low && drawn < kept.high;
-    if (reach > 0 && !stays) this.mmPerNewton = roundBelow(longest * this.size / reach);
+    const fraction = reach * this.mmPerNewton / this.size;
+    const isKept = fraction > kept.low && fraction < kept.high;
+    if (reach > 0 && !isKept) this.mmPerNewton = roundBelow(longest * this.size / reach);
     while (this.shapes.length > forces.length) this.group.remove((this.shapes.pop() as ForceShape).group);
     while (this.shapes.length < forces.length) {
       const shape = new ForceShape(this.clear, this.line);
-      if (this.colour) shape.arrow.dress(this.colour);
+      if (this.colour) shape.arrow.setColour(this.colour);
       this.shapes.push(shape);
       this.group.add(shape.group);
     }

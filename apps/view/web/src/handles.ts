@@ -3,14 +3,14 @@ import {
 } from 'three';
 
 const lengthPx = 74, shaftFrom = 0.3, grabPx = {mouse: 9, touch: 20};
-// Okabe and Ito 2008: told apart also by eyes with colour blindness; the letters say the rest.
+// Okabe and Ito 2008: distinguishable with colour blindness; each arrow also has the letter of its axis.
 const colours = ['#d55e00', '#009e73', '#3d8fd1'];
 const directions = [new Vector3(1, 0, 0), new Vector3(0, 1, 0), new Vector3(0, 0, 1)];
 
 interface Pixel { x: number; y: number }
 type Project = (at: number[]) => Pixel;
 
-/** Arrows along x, y and z at a place, to drag it along one of them. */
+/** Arrows along x, y and z at a point, to drag it along one axis. */
 export class Handles {
   readonly group = new Group();
   private place: number[] | null = null;
@@ -34,52 +34,52 @@ export class Handles {
     this.group.visible = false;
   }
 
-  /** null: none. */
+  /** Moves the arrows to a point; null hides them. */
   set(place: number[] | null): void {
     this.place = place;
     this.group.visible = place !== null;
     if (place) this.group.position.fromArray(place);
   }
 
-  /** As long on the screen from near and far. */
+  /** Keeps the length on the screen constant at any distance. */
   fit(camera: Camera, mmPerPxAtOne: number): void {
     this.lengthMm = lengthPx * mmPerPxAtOne * camera.position.distanceTo(this.group.position);
     this.group.scale.setScalar(this.lengthMm);
     this.arrows.forEach((arrow, k) => { arrow.visible = this.onScreen(k) !== null; });
   }
 
-  private tip(k: number, share: number): number[] {
-    return (this.place ?? [0, 0, 0]).map((x, i) => x + (i === k ? share * this.lengthMm : 0));
+  private tip(k: number, fraction: number): number[] {
+    return (this.place ?? [0, 0, 0]).map((x, i) => x + (i === k ? fraction * this.lengthMm : 0));
   }
 
-  /** The way of an arrow in pixels; null where it points at the eye. */
+  /** Returns the projection of an arrow [px]; null where it points towards or away from the camera. */
   private onScreen(k: number): Pixel | null {
     if (!this.place) return null;
     const from = this.project(this.place), to = this.project(this.tip(k, 1)), x = to.x - from.x, y = to.y - from.y;
     return Math.hypot(x, y) > 0.25 * lengthPx ? {x, y} : null;
   }
 
-  /** Where the letter of an axis stands; null: nowhere. */
+  /** Returns the position of the letter of an axis [px]; null where it is not shown. */
   letterAt(k: number): Pixel | null { return this.onScreen(k) && this.project(this.tip(k, 1.15)); }
 
-  /** The axis under a pixel, or -1. */
+  /** Returns the axis whose arrow is at a pixel, or -1. */
   under(x: number, y: number, touch: boolean): number {
     if (!this.place) return -1;
     const from = this.project(this.place);
-    let best = -1, least = touch ? grabPx.touch : grabPx.mouse;
+    let best = -1, smallest = touch ? grabPx.touch : grabPx.mouse;
     directions.forEach((_, k) => {
-      const way = this.onScreen(k);
-      if (!way) return;
-      const far = Math.hypot(way.x, way.y), along = ((x - from.x) * way.x + (y - from.y) * way.y) / far;
-      const beside = Math.abs((x - from.x) * way.y - (y - from.y) * way.x) / far;
-      if (along > shaftFrom * far && along < 1.1 * far && beside < least) [best, least] = [k, beside];
+      const arrow = this.onScreen(k);
+      if (!arrow) return;
+      const length = Math.hypot(arrow.x, arrow.y), along = ((x - from.x) * arrow.x + (y - from.y) * arrow.y) / length;
+      const across = Math.abs((x - from.x) * arrow.y - (y - from.y) * arrow.x) / length;
+      if (along > shaftFrom * length && along < 1.1 * length && across < smallest) [best, smallest] = [k, across];
     });
     return best;
   }
 
-  /** How far a move of the pointer [px] leads along an axis [mm]. */
+  /** Converts a motion of the pointer [px] to a distance along an axis [mm]. */
   along(k: number, dx: number, dy: number): number {
-    const way = this.onScreen(k);
-    return way ? (dx * way.x + dy * way.y) / (way.x * way.x + way.y * way.y) * this.lengthMm : 0;
+    const arrow = this.onScreen(k);
+    return arrow ? (dx * arrow.x + dy * arrow.y) / (arrow.x * arrow.x + arrow.y * arrow.y) * this.lengthMm : 0;
   }
 }

@@ -1,21 +1,21 @@
-/** What inverse kinematics asks of a map. */
+/** The part of a map that inverse kinematics uses. */
 export interface Differentiable {
   readonly inputs: {low: number; high: number}[];
   fk(commands: ArrayLike<number>): {outputs: number[]; jacobian: number[][]} | null;
 }
-/** reachedMm: as near it is there (0.001 mm); starts: from so many it tries (4). */
+/** reachedMm: the distance at which a target is reached (0.001 mm); starts: the number of initial guesses (4). */
 export interface IkOptions { reachedMm?: number; starts?: number }
 export interface IkResult { reached: boolean; commands: number[]; errorMm: number }
-/** One number of the outputs, and what it should be. */
+/** One of the outputs and its desired value. */
 export interface Goal { output: number; value: number }
-interface Look { commands: number[]; r: number[]; rows: number[][]; square: number }
+interface Evaluation { commands: number[]; r: number[]; rows: number[][]; square: number }
 
-/** a d = right, a symmetric and positive definite, by L D L^T; what is held stays 0. */
-function solve(a: number[][], held: number[], right: number[]): number[] {
-  const n = right.length, l = a.map((row) => row.slice()), d = right.map((value, i) => held[i] ? 0 : value);
+/** Solves a d = right for symmetric positive definite a by L D L^T; unknowns with a nonzero entry in fixed stay 0. */
+function solve(a: number[][], fixed: number[], right: number[]): number[] {
+  const n = right.length, l = a.map((row) => row.slice()), d = right.map((value, i) => fixed[i] ? 0 : value);
   for (let i = 0; i < n; ++i)
     for (let j = 0; j <= i; ++j) {
-      let sum = held[i] || held[j] ? (i === j ? 1 : 0) : a[i][j];
+      let sum = fixed[i] || fixed[j] ? (i === j ? 1 : 0) : a[i][j];
       for (let k = 0; k < j; ++k) sum -= l[i][k] * l[j][k] * l[k][k];
       l[i][j] = i > j ? sum / l[j][j] : Math.max(sum, 1e-12 * a[i][i]);
     }
@@ -25,36 +25,39 @@ function solve(a: number[][], held: number[], right: number[]): number[] {
   return d;
 }
 
-/** The least s.a.s / 2 - g.s with low <= s <= high, low <= 0 <= high: holds what meets a bound on the way there, frees
-    what wants to leave it. */
+/** Minimises s.a.s / 2 - g.s subject to low <= s <= high, where low <= 0 <= high, by an active-set method: fixes
+    variables that meet a bound, and frees those whose multiplier has the wrong sign. */
 function boundedStep(a: number[][], g: number[], low: number[], high: number[]): number[] {
-  const n = g.length, s = new Array<number>(n).fill(0), left = g.slice(), held = new Array<number>(n).fill(0);
-  for (let turn = 0; turn < 4 * n; ++turn) {
-    const d = solve(a, held, left);
-    let share = 1, at = -1, worst = 0;
+  const n = g.length, s = new Array<number>(n).fill(0), residual = g.slice(), fixed = new Array<number>(n).fill(0);
+  for (let iteration = 0; iteration < 4 * n; ++iteration) {
+    const d = solve(a, fixed, residual);
+    let fraction = 1, index = -1, worst = 0;
     for (let i = 0; i < n; ++i) {
       const room = (d[i] > 0 ? high[i] : low[i]) - s[i];
-      if (held[i] || (d[i] > 0 ? room >= share * d[i] : room <= share * d[i])) continue;
-      [share, at] = [room / d[i], i];
+      if (fixed[i] || (d[i] > 0 ? room >= fraction * d[i] : room <= fraction * d[i])) continue;
+      [fraction, index] = [room / d[i], i];
     }
     for (let i = 0; i < n; ++i) {
-      s[i] += share * d[i];
-      for (let j = 0; j < n; ++j) left[i] -= share * a[i][j] * d[j];
+      s[i] += fraction * d[i];
+      for (let j = 0; j < n; ++j) residual[i] -= fraction * a[i][j] * d[j];
     }
-    if (at >= 0) {
-      held[at] = Math.sign(d[at]);
-      s[at] = d[at] > 0 ? high[at] : low[at];
+    if (index >= 0) {
+      fixed[index] = Math.sign(d[index]);
+      s[index] = d[index] > 0 ? high[index] : low[index];
       continue;
     }
-    for (let i = 0; i < n; ++i) if (held[i] && -held[i] * left[i] > worst) [worst, at] = [-held[i] * left[i], i];
-    if (at < 0) return s;
-    held[at] = 0;
+    for (let i = 0; i < n; ++i) {
+      const excess = -fixed[i] * residual[i];
+      if (fixed[i] && excess > worst) [worst, index] = [excess, i];
+    }
+    if (index < 0) return s;
+    fixed[index] = 0;
   }
   return s;
 }
 
-/** What is left to the goals, and by how much that falls per range of each command. */
-function look(map: Differentiable, goals: Goal[], commands: number[]): Look | null {
+/** Returns the residuals of the goals and their derivatives per range of each command. */
+function evaluate(map: Differentiable, goals: Goal[], commands: number[]): Evaluation | null {
   const found = map.fk(commands);
   if (!found) return null;
   const r = goals.map(({output, value}) => value - found.outputs[output]);
@@ -62,37 +65,39 @@ function look(map: Differentiable, goals: Goal[], commands: number[]): Look | nu
   return {commands, r, rows, square: r.reduce((sum, value) => sum + value * value, 0)};
 }
 
-/** From the commands to those nearby that lead nearest to the goals: Levenberg and Marquardt's method, its steps
-    bounded by the ranges. */
+/** Minimises the residuals of the goals from an initial guess: the Levenberg-Marquardt method with steps bounded by the
+    ranges of the commands. */
 function descend(map: Differentiable, goals: Goal[], start: number[], reachedMm: number) {
   const {inputs} = map;
-  let here = look(map, goals, start), damping = 1e-3;
-  for (let turn = 0; here && turn < 100 && here.square > 0.01 * reachedMm * reachedMm; ++turn) {
-    const {rows, r, commands} = here;
+  let current = evaluate(map, goals, start), damping = 1e-3;
+  for (let iteration = 0; current && iteration < 100 && current.square > 0.01 * reachedMm * reachedMm; ++iteration) {
+    const {rows, r, commands} = current;
     const a = inputs.map((_, i) => inputs.map((_, j) => rows.reduce((sum, row) => sum + row[i] * row[j], 0)));
     const g = inputs.map((_, i) => rows.reduce((sum, row, k) => sum + row[i] * r[k], 0));
-    const most = Math.max(...a.map((row, i) => row[i]));
-    if (!(most > 0)) break;
-    a.forEach((row, i) => { row[i] += damping * most; });
+    const largest = Math.max(...a.map((row, i) => row[i]));
+    if (!(largest > 0)) break;
+    a.forEach((row, i) => { row[i] += damping * largest; });
     const room = (which: 'low' | 'high') =>
       inputs.map((input, i) => (input[which] - commands[i]) / (input.high - input.low));
     const s = boundedStep(a, g, room('low'), room('high'));
     if (!(Math.max(...s.map(Math.abs)) > 1e-7)) break;
-    const there = look(map, goals, inputs.map(({low, high}, i) =>
+    const next = evaluate(map, goals, inputs.map(({low, high}, i) =>
       Math.min(Math.max(commands[i] + s[i] * (high - low), low), high)));
-    if (!there || !(there.square < here.square)) {
+    if (!next || !(next.square < current.square)) {
       damping *= 8;
       continue;
     }
     const expected = s.reduce((sum, value, i) =>
-      sum + value * (2 * g[i] + damping * most * value - a[i].reduce((of, v, j) => of + v * s[j], 0)), 0);
-    const gain = (here.square - there.square) / expected;
+      sum + value * (2 * g[i] + damping * largest * value - a[i].reduce((of, v, j) => of + v * s[j], 0)), 0);
+    const gain = (current.square - next.square) / expected;
     damping = Math.max(damping * (gain > 0.75 ? 0.1 : gain < 0.25 ? 3 : 1), 1e-7);
-    here = there;
+    current = next;
   }
-  return here;
+  return current;
 }
 
+/** Finds commands that bring outputs nearest to their goals, from several initial guesses if necessary. start: the
+    first guess, by default the middles of the ranges. Returns null where the map has no value at the start. */
 export function inverse(map: Differentiable, goals: Goal[], start: ArrayLike<number> | undefined,
                         {reachedMm = 1e-3, starts = 4}: IkOptions): IkResult | null {
   const middle = map.inputs.map(({low, high}) => low + (high - low) / 2);
@@ -100,8 +105,8 @@ export function inverse(map: Differentiable, goals: Goal[], start: ArrayLike<num
   if (!best && start) return null;
   for (let n = 1; n < starts && !(best && best.square <= reachedMm * reachedMm); ++n) {
     const other = descend(map, goals, map.inputs.map(({low, high}, i) => {
-      const share = 0.5 + n * (i + 1) * 0.618034;
-      return low + (share - Math.floor(share)) * (high - low);
+      const fraction = 0.5 + n * (i + 1) * 0.618034;
+      return low + (fraction - Math.floor(fraction)) * (high - low);
     }), reachedMm);
     if (other && !(best && best.square <= other.square)) best = other;
   }

@@ -1,10 +1,11 @@
 import type {RobotScene} from './scene';
 import {byId} from './text';
 
-export interface Acts { undo(): void; reset(): void; play(): void; picture(): void }
+export interface Actions { undo(): void; reset(): void; play(): void; picture(): void }
 
-/** Keys: arrows, plus and minus turn and zoom where the picture has the focus; Ctrl+Z, space, R and S anywhere. */
-export function listenToKeys(scene: RobotScene, acts: Acts): void {
+/** Handles keys: arrows, plus and minus turn and zoom while the picture has the focus; Ctrl+Z, space, R and S work
+    anywhere. */
+export function listenToKeys(scene: RobotScene, actions: Actions): void {
   byId('canvas').addEventListener('keydown', (event) => {
     const turns: Record<string, [number, number, number]> = {
       ArrowLeft: [-0.1, 0, 1], ArrowRight: [0.1, 0, 1], ArrowUp: [0, 0.1, 1], ArrowDown: [0, -0.1, 1],
@@ -21,13 +22,13 @@ export function listenToKeys(scene: RobotScene, acts: Acts): void {
     const number = target instanceof HTMLInputElement && target.type === 'number';
     if (held && key === 'z' && !number) {
       event.preventDefault();
-      acts.undo();
+      actions.undo();
     }
     if (typing || held || event.altKey) return;
     if (key === ' ') {
       event.preventDefault();
-      acts.play();
-    } else if (key === 'r') acts.reset();
-    else if (key === 's') acts.picture();
+      actions.play();
+    } else if (key === 'r') actions.reset();
+    else if (key === 's') actions.picture();
   });
 }

@@ -1,7 +1,7 @@
 import type {Live, LiveState} from './live';
 import {byId} from './text';
 
-/** Who controls, in words; away: it was connected before. */
+/** Describes who has control. before: there was a connection before. */
 export function liveWords(state: LiveState, before: boolean): string {
   const {connected, secret, control, free, streamed, watchers} = state;
   if (!connected) return before ? 'softkin does not respond: trying again …' : 'Connecting to softkin …';
@@ -12,7 +12,7 @@ export function liveWords(state: LiveState, before: boolean): string {
   return secret ? who : `${who} To control it, open the whole address that softkin printed.`;
 }
 
-/** Why the sliders are off; empty: they are on. */
+/** Returns why the sliders are disabled; empty where they are not. */
 export function whyOff({connected, control, secret, free, streamed}: LiveState): string {
   if (control) return '';
   if (!connected) return 'Off: softkin does not respond.';
@@ -21,7 +21,7 @@ export function whyOff({connected, control, secret, free, streamed}: LiveState):
   return free ? 'Off: press "Take control" first.' : 'Off: another window has control. "Take control" takes it away.';
 }
 
-/** Who controls, and its button; returns what brings them up to date. */
+/** Shows who has control, with a button to take it or hand it over; returns the function that updates both. */
 export function makeLivePanel(live: Live): () => void {
   const button = byId<HTMLButtonElement>('control'), words = byId('live-words'), refused = byId('refused');
   let before = false;
@@ -33,9 +33,9 @@ export function makeLivePanel(live: Live): () => void {
   return () => {
     const {state} = live;
     before ||= state.connected;
-    const text = liveWords(state, before), told = state.refused && `softkin refused: ${state.refused}`;
+    const text = liveWords(state, before), refusal = state.refused && `softkin refused: ${state.refused}`;
     if (words.textContent !== text) words.textContent = text;
-    if (refused.textContent !== told) refused.textContent = told;
+    if (refused.textContent !== refusal) refused.textContent = refusal;
     words.className = state.connected ? '' : 'bad message';
     button.hidden = !state.connected || state.streamed || (!state.secret && !state.control);
     button.textContent = state.control ? 'Hand over' : 'Take control';

@@ -10,7 +10,7 @@ import {Live} from './live';
 import {makeLivePanel} from './live_panel';
 import {makeLooks} from './looks';
 import {eventTime, Meter} from './meter';
-import {makeOutputs, makeTable, stateWords, tellOrigin} from './numbers';
+import {makeOutputs, makeTable, stateWords, showOrigin} from './numbers';
 import {makePathPanel} from './path_panel';
 import {makePlayer} from './player';
 import {makeReadings} from './readings';
@@ -22,7 +22,7 @@ import {makeSliders} from './sliders';
 import {makeTarget} from './target';
 import {cornersOf, makeTensions} from './tensions';
 import {byId} from './text';
-import {makeLabels, tellAtSliders, tellAtTop} from './top';
+import {makeLabels, explainSliders, showHeading} from './top';
 
 function chooseTheme(dark: boolean): void {
   document.documentElement.dataset.theme = dark ? 'dark' : 'light';
@@ -35,28 +35,28 @@ async function savePicture(robot: Robot, scene: RobotScene): Promise<void> {
   if (picture) download(`${robotName(robot.document)}.png`, picture);
 }
 
-/** Connects the robot with the program that serves the page. */
+/** Connects the robot to the running softkin view. */
 function goLive(robot: Robot, meter: Meter, {path, model}: LiveDocument): Live {
   const url = `${location.protocol === 'https:' ? 'wss' : 'ws'}://${location.host}${path}`;
   const live = new Live(url, location.hash.slice(1), model, robot.document.rest.length / 3, {
     onFrame: (frame, mine, newest) => {
       meter.answer(frame.id);
-      robot.answered(frame, mine, newest);
+      robot.receive(frame, mine, newest);
     },
     onState: () => robot.onChange(),
     onOtherModel: () => location.reload(),
     onMap: (map) => {
       robot.takeMap(map);
-      tellOrigin(robot);
+      showOrigin(robot);
       robot.onChange();
     },
   });
   robot.link = {
     get state() { return live.state; },
     get busy() { return live.busy; },
-    send: (ask) => {
-      const since = eventTime(), id = live.send(ask);
-      meter.ask(id, since);
+    send: (request) => {
+      const since = eventTime(), id = live.send(request);
+      meter.request(id, since);
       return id;
     },
   };
@@ -65,8 +65,8 @@ function goLive(robot: Robot, meter: Meter, {path, model}: LiveDocument): Live {
 
 function readPage(): RobotDocument {
   const read = readDocument(byId('softkin-page').textContent ?? 'null');
-  if (!read) throw new Error('There is no robot in this page: softkin writes it into a copy.');
-  // A page that was saved has no program behind it.
+  if (!read) throw new Error('This page contains no robot: open a page that softkin wrote.');
+  // a page saved as a file has no running softkin
   return location.protocol.startsWith('http') ? read : {...read, live: null};
 }
 
@@ -82,7 +82,7 @@ function start(): void {
   const dark = matchMedia('(prefers-color-scheme: dark)');
   chooseTheme(dark.matches);
   const read = readPage(), robot = new Robot(read), canvas = byId<HTMLCanvasElement>('canvas'), meter = new Meter();
-  tellAtTop(robot);
+  showHeading(robot);
   const corners = cornersOf(robot);
   const shapes = [...read.steps.map(({positions}) => positions), ...corners.flatMap((at) => robot.shapeAt(at) ?? [])];
   const scene = new RobotScene(canvas, read, shapes);
@@ -97,7 +97,7 @@ function start(): void {
                  makeReadings(robot, () => scene.forces.mmPerNewton), ...(live ? [makeLivePanel(live)] : [])];
   const labels = makeLabels(robot, scene), record = makeRecorder(canvas, robot, player);
   byId('curves-section').hidden = !read.actuators.some((actuator) => actuator.load_unit);
-  tellOrigin(robot);
+  showOrigin(robot);
   byId('grid-size').textContent = `Grid: ${scene.gridMm} mm`;
   scene.onDrawn = () => {
     labels();
@@ -105,37 +105,37 @@ function start(): void {
     meter.drawn();
   };
   robot.onChange = () => {
-    scene.setForces(robot.estimate?.forces ?? []);  // whose scale is told
+    scene.setForces(robot.estimate?.forces ?? []);  // first, as the readings panel shows the scale of the forces
     for (const part of parts) part();
     scene.setShape(robot.pose.positions, robot.pose.markers);
     scene.setTarget(robot.target?.at ?? null, robot.target?.marker ?? 0);
     scene.setField(fieldOf(read.actuators, robot.commands));
     scene.handles.set(placeOfHandles(robot));
     if (!live && robot.pose.from === 'map') meter.show(eventTime());
-    tellAtSliders(robot, live && live.state);
+    explainSliders(robot, live && live.state);
     undo.disabled = !robot.canUndo;
     reset.disabled = !robot.able && !robot.steps.length;
-    byId('hint').hidden ||= robot.canUndo;  // has been understood
+    byId('hint').hidden ||= robot.canUndo;  // hidden after the first action
     const {text, bad} = stateWords(robot);
     if (state.textContent !== text) state.textContent = text;
     state.classList.toggle('bad', bad);
   };
   if (robot.steps.length > 1)
     read.markers.forEach((_, i) => scene.setTrace(i, robot.steps.map((step) => step.markers[i])));
-  const acts = {undo: () => robot.undo(), reset: () => robot.reset(), play: () => player.toggle(),
-                picture: () => void savePicture(robot, scene)};
-  undo.addEventListener('click', acts.undo);
-  reset.addEventListener('click', acts.reset);
-  byId('snapshot').addEventListener('click', acts.picture);
+  const actions = {undo: () => robot.undo(), reset: () => robot.reset(), play: () => player.toggle(),
+                   picture: () => void savePicture(robot, scene)};
+  undo.addEventListener('click', actions.undo);
+  reset.addEventListener('click', actions.reset);
+  byId('snapshot').addEventListener('click', actions.picture);
   const theme = (on: boolean) => {
     chooseTheme(on);
-    scene.dress();
-    robot.onChange();  // in the colours of the theme
+    scene.applyTheme();
+    robot.onChange();  // redraws curves and cables in the theme's colours
   };
   byId('theme').addEventListener('click', () => theme(document.documentElement.dataset.theme !== 'dark'));
   dark.addEventListener('change', () => theme(dark.matches));
-  listenToKeys(scene, acts);
-  if (robot.steps.length === 1 && !robot.map) robot.showStep(0);  // all that there is to be seen
+  listenToKeys(scene, actions);
+  if (robot.steps.length === 1 && !robot.map) robot.showStep(0);  // the only shape on the page
   else robot.rest();
   live?.connect();
 }

@@ -15,7 +15,7 @@ export interface MapTables {
   boxes: number[][][]; outputs: PackedSums; modes: PackedSums;
 }
 
-/** The tables of a map, as in pages and modules of `softkin map export --js`; shapes of a page are of the surface. */
+/** The tables of a map in pages and in modules of `softkin map export --js`; in a page, shapes are of the surface. */
 export interface MapDocument {
   name: string; inputs: MapInput[]; outputs: MapOutput[]; markers: string[]; checked: MapChecked; tables: MapTables;
   shapeTables?: {mean: string; units: number[]; modes: string} | null;
@@ -25,7 +25,7 @@ type Sums = Omit<PackedSums, 'coefficients'> & {coefficients: Float64Array};
 interface Place { piece: number; cell: number }
 export interface Forward { outputs: number[]; jacobian: number[][] }
 
-/** Chebyshev polynomials up to a degree, and their slopes, n U_(n-1). */
+/** Returns the Chebyshev polynomials up to a degree and their derivatives, n U_(n-1). */
 function chebyshev(x: number, highest: number): {values: number[]; slopes: number[]} {
   const values = [1, x], slopes = [0, 1];
   for (let n = 2, before = 1, second = 2 * x; n <= highest; ++n) {
@@ -36,8 +36,8 @@ function chebyshev(x: number, highest: number): {values: number[]; slopes: numbe
   return {values, slopes};
 }
 
-/** Sums of a cell at x, from -1 to 1; slopes: by each x, or null. */
-function addUp(sums: Sums, cell: number, x: number[], values: number[], slopes: number[][] | null): void {
+/** Evaluates the polynomials of a cell at x, from -1 to 1. slopes: receives the derivatives by each x, or null. */
+function evaluateSums(sums: Sums, cell: number, x: number[], values: number[], slopes: number[][] | null): void {
   const n = x.length, last = n - 1, {size, runs, coefficients} = sums;
   const of = x.map((value, j) => chebyshev(value, sums.highest[cell * n + j]));
   const weights = new Array<number>(last);
@@ -54,33 +54,33 @@ function addUp(sums: Sums, cell: number, x: number[], values: number[], slopes: 
     }
     row -= count * size;
     for (let q = 0; q < size; ++q) {
-      let sum = 0, sloped = 0;
+      let sum = 0, derivative = 0;
       for (let k = count; k-- > 0;) {
         const coefficient = coefficients[row + k * size + q];
         sum += of[last].values[k] * coefficient;
-        sloped += of[last].slopes[k] * coefficient;
+        derivative += of[last].slopes[k] * coefficient;
       }
       values[q] += weight * sum;
       if (!slopes) continue;
       for (let i = 0; i < last; ++i) slopes[i][q] += weights[i] * sum;
-      slopes[last][q] += weight * sloped;
+      slopes[last][q] += weight * derivative;
     }
   }
 }
 
-/** Where a robot goes, in closed form. Commands outside the ranges or the map: null. */
+/** The kinematics of a robot as piecewise polynomials. Its methods return null for commands outside the map. */
 export class KinematicMap {
   readonly inputs: MapInput[];
   readonly outputs: MapOutput[];
   readonly markers: string[];
   readonly checked: MapChecked;
-  readonly vertices: number;  // of its shape
+  readonly vertices: number;  // number of vertices of its shape
   private readonly tables: MapTables;
   private readonly outputSums: Sums;
   private readonly modeSums: Sums;
   private readonly mean: Float32Array;
   private readonly units: number[];
-  private readonly modes: Int16Array;  // one after the other
+  private readonly modes: Int16Array;  // stored one after the other
 
   constructor(map: MapDocument) {
     ({inputs: this.inputs, outputs: this.outputs, markers: this.markers, checked: this.checked, tables: this.tables} =
@@ -92,10 +92,10 @@ export class KinematicMap {
     this.units = map.shapeTables?.units ?? [];
     this.modes = map.shapeTables ? int16(map.shapeTables.modes) : new Int16Array();
     if (this.modes.length < this.mean.length * this.units.length)
-      throw new RangeError('the map lacks modes of the shape');
+      throw new RangeError('the map has too few modes of the shape');
   }
 
-  /** The numbers from -1 to 1 over the box of a cell. */
+  /** Scales the commands to -1 to 1 over the box of a cell. */
   private scaled(place: Place, commands: ArrayLike<number>): number[] {
     return this.tables.variables[place.piece].map((input, j) => {
       const [low, high] = this.tables.boxes[place.cell][j];
@@ -110,40 +110,44 @@ export class KinematicMap {
     return node[0];
   }
 
-  /** All cables are taut at first: one that would push goes slack, one that is longer than it may be is taken up; the
-      one that is most wrong first. circles, or no piece: less than the accuracy is not wrong. */
-  private wrongCable(taut: number, circles: boolean, commands: ArrayLike<number>, values: number[]): number {
-    let wrong = -1, pushes = false, worst = 0;
+  /** Returns the cable that violates its constraint most, or -1: an active cable whose tension is negative (these come
+      first), or a slack cable that is longer than its command. Violations within the map's accuracy do not count while
+      the active set is cycling, or where the map has no piece for the changed active set. */
+  private mostViolatedCable(active: number, isCycling: boolean, commands: ArrayLike<number>, values: number[]): number {
+    let cable = -1, isNegative = false, worst = 0;
     this.tables.cables.forEach(({input, command, tension, ratio}, c) => {
-      const holds = ((taut >> c) & 1) === 1;
-      const excess = holds ? -values[tension] : values[ratio] - (input < 0 ? command : commands[input]) * (1 + 1e-12);
-      const lenient = circles || this.tables.pieces[taut ^ (1 << c)] < 0;
-      const by = excess - (lenient ? this.outputs[holds ? tension : ratio].accuracy : 0);
-      if (!(by > 0) || (pushes && !holds) || (pushes === holds && by <= worst)) return;
-      [wrong, worst, pushes] = [c, by, holds];
+      const isActive = ((active >> c) & 1) === 1;
+      const violation = isActive ? -values[tension]
+        : values[ratio] - (input < 0 ? command : commands[input]) * (1 + 1e-12);
+      const isLenient = isCycling || this.tables.pieces[active ^ (1 << c)] < 0;
+      const by = violation - (isLenient ? this.outputs[isActive ? tension : ratio].accuracy : 0);
+      if (!(by > 0) || (isNegative && !isActive) || (isNegative === isActive && by <= worst)) return;
+      [cable, worst, isNegative] = [c, by, isActive];
     });
-    return wrong;
+    return cable;
   }
 
+  /** Finds the piece and cell of the commands by an active-set iteration that starts with all cables active, and
+      evaluates its outputs. */
   private find(commands: ArrayLike<number>, values: number[], slopes: number[][] | null): Place | null {
     const {inputs, tables} = this;
     if (commands.length !== inputs.length || !inputs.every((_, i) => typeof commands[i] === 'number'))
       throw new TypeError(`the map takes ${inputs.length} numbers`);
     if (!inputs.every(({low, high}, i) => commands[i] >= low && commands[i] <= high)) return null;
-    let taut = (1 << tables.cables.length) - 1;
+    let active = (1 << tables.cables.length) - 1;
     for (let change = 0; change <= 4 * tables.cables.length; ++change) {
-      const place: Place = {piece: tables.pieces[taut], cell: -1};
+      const place: Place = {piece: tables.pieces[active], cell: -1};
       if (place.piece >= 0) place.cell = this.cellOf(place.piece, commands);
       if (place.cell < 0) return null;
-      addUp(this.outputSums, place.cell, this.scaled(place, commands), values, slopes);
-      const wrong = this.wrongCable(taut, change >= 2 * tables.cables.length, commands, values);
-      if (wrong < 0) return place;
-      taut ^= 1 << wrong;
+      evaluateSums(this.outputSums, place.cell, this.scaled(place, commands), values, slopes);
+      const cable = this.mostViolatedCable(active, change >= 2 * tables.cables.length, commands, values);
+      if (cable < 0) return place;
+      active ^= 1 << cable;
     }
     return null;
   }
 
-  /** Outputs, and by how much each changes per command: jacobian[output][input]. */
+  /** Returns the outputs and their derivatives by the commands: jacobian[output][input]. */
   fk(commands: ArrayLike<number>): Forward | null {
     const {inputs, outputs, tables} = this;
     const values = new Array<number>(outputs.length).fill(0);
@@ -158,21 +162,22 @@ export class KinematicMap {
     return {outputs: values, jacobian};
   }
 
-  /** x, y, z of each vertex [mm]. */
+  /** Returns x, y, z of each vertex [mm]. */
   shape(commands: ArrayLike<number>): Float32Array | null {
     const place = this.find(commands, new Array<number>(this.outputs.length).fill(0), null);
     if (!place || !this.vertices) return null;
-    const amplitudes = new Array<number>(this.modeSums.size).fill(0), at = Float32Array.from(this.mean);
-    addUp(this.modeSums, place.cell, this.scaled(place, commands), amplitudes, null);
+    const amplitudes = new Array<number>(this.modeSums.size).fill(0), positions = Float32Array.from(this.mean);
+    evaluateSums(this.modeSums, place.cell, this.scaled(place, commands), amplitudes, null);
     amplitudes.forEach((amplitude, m) => {
-      const scale = this.units[m] * amplitude, first = m * at.length;
-      for (let k = 0; k < at.length; ++k) at[k] += scale * this.modes[first + k];
+      const scale = this.units[m] * amplitude, first = m * positions.length;
+      for (let k = 0; k < positions.length; ++k) positions[k] += scale * this.modes[first + k];
     });
-    return at;
+    return positions;
   }
 
-  /** Commands at which outputs come nearest to goals, near those from which it starts (left out: the middles of the
-      ranges); where they do not get there, others are tried. Null: it starts outside the map. */
+  /** Inverse kinematics: returns commands at which outputs come nearest to goals, near the start (by default the
+      middles of the ranges); where that does not reach the goals, other initial guesses are tried. Null where the
+      start is outside the map. */
   lead(goals: Goal[], start?: ArrayLike<number>, options: IkOptions = {}): IkResult | null {
     return inverse(this, goals, start, options);
   }

@@ -1,18 +1,18 @@
-/** What tests read of the page: latencies [ms], each from an event of the user to the picture that answers it (the
-    running program's where there is one, else the map's); frames, shapes that were drawn. */
+/** Measurements for tests of the page. latencies: times from an event of the user to the picture that answers it [ms],
+    with the shape of the running softkin where there is one, else of the map; frames: the number of drawn shapes. */
 declare global {
   interface Window { softkinPage?: {readonly latencies: readonly number[]; readonly frames: number} }
 }
 
-const most = 10000;
+const maxLatencies = 10000;
 
-/** The event that is being handled; outside of one, now [ms]. */
+/** Returns the time of the event that is being handled, or else the present time [ms]. */
 export const eventTime = (): number => window.event?.timeStamp ?? performance.now();
 
-/** Measures how long answers take. */
+/** Measures the latencies. */
 export class Meter {
   private readonly latencies: number[] = [];
-  private readonly asked = new Map<number, number>();
+  private readonly requests = new Map<number, number>();
   private answered: number[] = [];
   private frames = 0;
 
@@ -23,16 +23,17 @@ export class Meter {
     Object.defineProperty(window, 'softkinPage', {value: page});
   }
 
-  ask(id: number, since: number): void { this.asked.set(id, since); }
+  /** Notes a request with the time of its event. */
+  request(id: number, since: number): void { this.requests.set(id, since); }
 
-  /** Shown by the picture that is drawn next, since that time. */
+  /** Notes that the next drawn picture answers an event of that time. */
   show(since: number): void { this.answered = [since]; }
 
-  /** Answered by the picture that is drawn next. */
+  /** Notes that the next drawn picture answers a request. */
   answer(id: number): void {
-    const since = this.asked.get(id);
+    const since = this.requests.get(id);
     if (since !== undefined) this.answered.push(since);
-    for (const each of this.asked.keys()) if (each <= id) this.asked.delete(each);
+    for (const each of this.requests.keys()) if (each <= id) this.requests.delete(each);
   }
 
   drawn(): void {
@@ -40,7 +41,7 @@ export class Meter {
     if (!this.answered.length) return;
     ++this.frames;
     this.latencies.push(...this.answered.map((since) => now - since));
-    this.latencies.splice(0, Math.max(0, this.latencies.length - most));
+    this.latencies.splice(0, Math.max(0, this.latencies.length - maxLatencies));
     this.answered = [];
   }
 }

@@ -2,7 +2,7 @@ import type {Robot} from './robot';
 import {byId, digits, element, mm, plain} from './text';
 import {loadWords, measureWords} from './words';
 
-/** Where the markers are; returns what brings it up to date. */
+/** Shows the positions of the markers; returns the function that updates them. */
 export function makeTable(robot: Robot): () => void {
   const {markers} = robot.document, box = byId('table');
   const cells = markers.map(() => [0, 1, 2, 3].map(() => element('td')));
@@ -14,7 +14,7 @@ export function makeTable(robot: Robot): () => void {
   });
 }
 
-/** Loads, lengths, areas and volumes of the actuators; returns what brings them up to date. */
+/** Shows loads, lengths, areas and volumes of the actuators; returns the function that updates them. */
 export function makeOutputs(robot: Robot): () => void {
   const {actuators} = robot.document, box = byId('outputs');
   const rows = actuators.flatMap((actuator, a) => {
@@ -39,8 +39,8 @@ const headOf = (...words: string[]): HTMLElement =>
 
 const cell = (text: string): HTMLElement => element('td', {}, text);
 
-/** Command, version, and how far the map may be off. */
-export function tellOrigin(robot: Robot): void {
+/** Shows the command, the version and the errors of the map. */
+export function showOrigin(robot: Robot): void {
   const {command, softkin, formulation} = robot.document, box = byId('origin'), {map, steps} = robot;
   box.replaceChildren(element('p', {}, `Computed by softkin ${softkin}, a finite-element program for soft robots ` +
     `(${formulation} formulation), by the command`), element('code', {}, command));
@@ -60,24 +60,24 @@ export function tellOrigin(robot: Robot): void {
   if (checked.points === 0) return;
   const rows = outputs.map(({name, unit, largestError, meanError}) => element('tr', {}, cell(plain(name)),
     cell(`${digits(largestError, 2)} ${unit}`), cell(`${digits(meanError, 2)} ${unit}`)));
-  const {shapeLargestErrorMm: most, shapeMeanErrorMm: mean} = checked;
-  if (most !== undefined)
-    rows.push(element('tr', {}, cell('every vertex'), cell(`${digits(most, 2)} mm`), cell(`${digits(mean, 2)} mm`)));
+  const {shapeLargestErrorMm: largest, shapeMeanErrorMm: mean} = checked;
+  if (largest !== undefined)
+    rows.push(element('tr', {}, cell('every vertex'), cell(`${digits(largest, 2)} mm`), cell(`${digits(mean, 2)} mm`)));
   box.append(element('table', {}, headOf('Output', 'largest error', 'mean error'), element('tbody', {}, ...rows)));
 }
 
-/** One line on what is shown; bad: it is not what was asked for. */
+/** Describes the shown shape in one line. bad: it is not the requested equilibrium. */
 export function stateWords(robot: Robot): {text: string; bad: boolean} {
-  const {told, from, step} = robot.pose;
+  const {report, from, step} = robot.pose;
   if (robot.link?.busy) {
     const now = from === 'map' && !robot.outside ? 'From the map' : 'The previous shape';
     return {text: `${now}; softkin is computing …`, bad: false};
   }
   if (robot.outside) return {text: 'Outside the map: the previous shape is shown.', bad: true};
-  const {commands, document: {actuators}} = robot, rests = actuators.every(({rest}, i) => commands[i] === rest);
-  if (!told && from === 'rest') return {text: 'Reference shape, without loads', bad: false};
-  if (!told) return {text: rests ? 'Equilibrium at the rest commands, from the map' : 'From the map', bad: false};
-  const {status, iterations, seconds, remark} = told, bad = status !== 'converged';
+  const {commands, document: {actuators}} = robot, isAtRest = actuators.every(({rest}, i) => commands[i] === rest);
+  if (!report && from === 'rest') return {text: 'Reference shape, without loads', bad: false};
+  if (!report) return {text: isAtRest ? 'Equilibrium at the rest commands, from the map' : 'From the map', bad: false};
+  const {status, iterations, seconds, remark} = report, bad = status !== 'converged';
   const read = robot.values.filter((value) => value !== null).length;
   const how = robot.estimate ? `Estimated from ${read} reading${read === 1 ? '' : 's'}` : 'Computed';
   const text = `${from === 'step' ? `Step ${step + 1}` : how}: ${plain(status)}, ${iterations} iterations, ` +

@@ -2,19 +2,19 @@ import type {PathFile} from './csv';
 import type {Track} from './player';
 import type {Place, Robot} from './robot';
 
-/** So long it seeks commands before the page may draw [ms]. */
+/** Time for inverse kinematics before the page can draw again [ms]. */
 const sliceMs = 20;
 
-/** Rows of a file, played through the map or the running program. */
+/** The rows of a file, played with the map or with the running softkin. */
 export class FileTrack implements Track {
   readonly name: string;
   readonly count: number;
-  /** Of each waypoint, the largest distance of a marker [mm]; NaN: not known yet. Empty: the file has commands. */
+  /** For each waypoint the largest distance of a marker [mm], NaN while unknown; empty for a file of commands. */
   readonly errors: Float64Array;
   private readonly commands: (number[] | null)[];
   private timer = 0;
 
-  /** onFound: some more waypoints have been sought. */
+  /** onFound: called when commands for more waypoints have been found. */
   constructor(private readonly robot: Robot, readonly file: PathFile, readonly fileName: string,
               private readonly onFound: () => void) {
     this.name = `rows of ${fileName}`;
@@ -23,18 +23,18 @@ export class FileTrack implements Track {
     this.errors = new Float64Array(file.kind === 'waypoints' ? this.count : 0).fill(NaN);
   }
 
-  /** Seeks what leads to the waypoints. */
-  start(): void { if (this.file.kind === 'waypoints' && this.robot.map) this.seekFrom(0, this.robot.commands); }
+  /** Starts to compute the commands for the waypoints. */
+  start(): void { if (this.file.kind === 'waypoints' && this.robot.map) this.solveFrom(0, this.robot.commands); }
 
   get at(): number { return this.robot.row; }
 
   time(i: number): number | null { return this.file.times?.[i] ?? null; }
 
-  /** Why this page cannot play the file; empty: it can. */
+  /** Returns why this page cannot play the file; empty where it can. */
   static refusal(robot: Robot, file: PathFile | null = null): string {
     const {link, map, document: {live}} = robot;
-    if (robot.tells) return 'This page estimates forces: type the readings, or stream them.';
-    if (!map && !live) return 'This page has no map (softkin fk --map), so it cannot move the robot.';
+    if (robot.isEstimating) return 'This page estimates forces: type the readings, or stream them.';
+    if (!map && !live) return 'This page contains no map (softkin fk --map), so it cannot move the robot.';
     if (live && !link?.state.control) return 'Take control first: this window only watches.';
     if (!file || file.kind === 'commands' || map) return '';
     return file.rows.some((row) => row.length > 1 || row[0].at.includes(null))
@@ -43,17 +43,17 @@ export class FileTrack implements Track {
 
   end(): void { clearTimeout(this.timer); }
 
-  private seekFrom(first: number, start: number[]): void {
+  private solveFrom(first: number, start: number[]): void {
     const {rows} = this.file, until = performance.now() + sliceMs;
     let i = first, from = start;
     for (; i < rows.length && performance.now() < until; ++i) {
-      const found = this.robot.seek(rows[i] as Place[], from);
+      const found = this.robot.findCommands(rows[i] as Place[], from);
       this.commands[i] = from = found?.commands ?? from;
-      const markers = this.robot.ask(from)?.markers;
+      const markers = this.robot.evaluateMap(from)?.markers;
       if (markers && !this.robot.link) this.errors[i] = this.errorOf(i, markers);
     }
     this.onFound();
-    if (i < rows.length) this.timer = window.setTimeout(() => this.seekFrom(i, from));
+    if (i < rows.length) this.timer = window.setTimeout(() => this.solveFrom(i, from));
   }
 
   private places(i: number): Place[] { return this.file.kind === 'waypoints' ? this.file.rows[i] : []; }
@@ -69,7 +69,7 @@ export class FileTrack implements Track {
     else if (place && robot.link) robot.reach(place.marker, place.at.map((value) => value ?? 0), i);
   }
 
-  /** After the robot has moved: how far its markers are from the row's. */
+  /** Updates the error of the shown row and the target after the robot has moved. */
   update(): void {
     const {robot} = this, {row, pose} = robot, [place] = row < 0 || row >= this.count ? [] : this.places(row);
     if (!place) return;
@@ -79,8 +79,8 @@ export class FileTrack implements Track {
     robot.target = {marker: place.marker, at, errorMm, reached: false, why: robot.target?.why ?? ''};
   }
 
-  /** Of the first marker, for the picture; a coordinate that does not count is that at rest. */
-  way(): number[][] {
+  /** Returns the desired path of the first marker; a free coordinate is that of the reference shape. */
+  desiredPath(): number[][] {
     const {file, robot} = this;
     if (file.kind === 'commands') return [];
     return file.rows.map(([{marker, at}]) =>

@@ -9,7 +9,7 @@ import {byId, digits, element, mm} from './text';
 
 const width = 340, height = 120, left = 40, right = 10, top = 20, bottom = 22;
 
-/** Distances from the waypoints over the rows. */
+/** Plots the distances from the waypoints over the rows. */
 function plot(svg: SVGElement, track: FileTrack): void {
   const errors = [...track.errors].map((error, i) => [i, error]).filter(([, error]) => !Number.isNaN(error));
   const high = Math.max(1e-3, ...errors.map(([, error]) => error)), base = height - bottom;
@@ -32,46 +32,46 @@ function wordsOf(track: FileTrack): string {
   if (file.kind === 'commands') return `${fileName}: ${count} rows of commands.`;
   const known = [...errors].filter((error) => !Number.isNaN(error));
   if (!known.length) return `${fileName}: ${count} waypoints. Play them below the picture.`;
-  const most = Math.max(...known), row = errors.indexOf(most);
+  const largest = Math.max(...known), row = errors.indexOf(largest);
   const mean = known.reduce((sum, error) => sum + error, 0) / known.length;
   return `${fileName}: ${known.length} of ${count} waypoints solved. Farthest from its waypoint: row ${row + 1} ` +
-    `(line ${file.lines[row]}), ${mm(most)} mm; on average ${mm(mean)} mm.`;
+    `(line ${file.lines[row]}), ${mm(largest)} mm; on average ${mm(mean)} mm.`;
 }
 
-/** A file of commands or waypoints, opened or dropped, is played; returns what brings its curve up to date. */
+/** Plays a file of commands or waypoints that is opened or dropped; returns the function that updates its curve. */
 export function makePathPanel(robot: Robot, scene: RobotScene, player: Player): () => void {
   const box = byId('path'), {actuators, markers} = robot.document;
-  const able = !robot.tells && (robot.map !== null || robot.document.live !== null);
+  const able = !robot.isEstimating && (robot.map !== null || robot.document.live !== null);
   let track: FileTrack | null = null, drawnAt = -2;
   const choose = element('input', {type: 'file', accept: '.csv,.yaml,.yml,text/csv', class: 'away', tabindex: -1,
                                    'aria-hidden': 'true'});
   const open = element('button', {type: 'button'}, 'Open a file …');
   const close = element('button', {type: 'button'}, 'Close the file');
-  const told = element('p', {role: 'status'}), wrong = element('p', {role: 'alert', class: 'bad message'});
+  const summary = element('p', {role: 'status'}), wrong = element('p', {role: 'alert', class: 'bad message'});
   const svg = drawn('svg', {viewBox: `0 0 ${width} ${height}`, role: 'img',
                             'aria-label': 'Distance from the waypoints'});
   close.hidden = true;
   svg.setAttribute('hidden', '');
-  box.append(element('div', {class: 'buttons'}, open, close), choose, told, svg, wrong);
+  box.append(element('div', {class: 'buttons'}, open, close), choose, summary, svg, wrong);
   byId('path-section').hidden = !able;
-  byId('explain-path').textContent = 'Drop a CSV file on this page. Columns named by actuators hold commands (' +
+  byId('explain-path').textContent = 'Drop a CSV file on this page. Columns named by actuators contain commands (' +
     `${actuators.slice(0, 3).map(({name}) => name).join(', ')}${actuators.length > 3 ? ', …' : ''}); ` +
-    `x_mm, y_mm, z_mm hold waypoints${markers.length > 1 ? ` (${markers[0].name}_x_mm, …)` : ''}; t_s is the time. ` +
-    'A state that was saved here (YAML) is shown again.';
+    `x_mm, y_mm, z_mm contain waypoints${markers.length > 1 ? ` (${markers[0].name}_x_mm, …)` : ''}; ` +
+    't_s is the time. A state that was saved here (YAML) is shown again.';
   const update = (always: boolean) => {
     if (!track || (!always && track.at === drawnAt && !robot.link)) return;
     drawnAt = track.at;
-    told.textContent = wordsOf(track);
+    summary.textContent = wordsOf(track);
     if (track.errors.length) plot(svg, track);
   };
-  const putAway = () => {
+  const closeFile = () => {
     track?.end();
     track = null;
     robot.row = -1;
-    told.textContent = '';
+    summary.textContent = '';
     close.hidden = true;
     svg.setAttribute('hidden', '');
-    scene.setWanted([]);
+    scene.setDesiredPath([]);
     player.setTrack(new StepTrack(robot));
   };
   const showState = (text: string) => {
@@ -87,12 +87,12 @@ export function makePathPanel(robot: Robot, scene: RobotScene, player: Player): 
       if (/\.ya?ml$/i.test(file.name)) return showState(await file.text());
       const path = readPath(await file.text(), actuators, markers), refusal = FileTrack.refusal(robot, path);
       if (refusal) throw new PathError(refusal);
-      putAway();
+      closeFile();
       const next = track = new FileTrack(robot, path, file.name, () => { if (track === next) update(true); });
       track.start();
       close.hidden = false;
       svg.toggleAttribute('hidden', path.kind === 'commands');
-      scene.setWanted(track.way());
+      scene.setDesiredPath(track.desiredPath());
       player.setTrack(track);
       update(true);
       player.toggle();
@@ -103,7 +103,7 @@ export function makePathPanel(robot: Robot, scene: RobotScene, player: Player): 
     }
   };
   open.addEventListener('click', () => choose.click());
-  close.addEventListener('click', putAway);
+  close.addEventListener('click', closeFile);
   choose.addEventListener('change', () => {
     const [file] = choose.files ?? [];
     choose.value = '';

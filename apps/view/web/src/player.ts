@@ -1,14 +1,14 @@
 import type {Robot} from './robot';
 import {byId, element} from './text';
 
-/** What is played: the steps of the run, or the rows of a file. at: the one that is shown, or -1. */
+/** A sequence of shapes to play: the steps of the run, or the rows of a file. at: the index of the shown one, or -1. */
 export interface Track {
   readonly name: string; readonly count: number; readonly at: number;
   time(i: number): number | null;
   show(i: number): void;
 }
 
-/** The steps that softkin computed. */
+/** The computed steps. */
 export class StepTrack implements Track {
   readonly name = 'computed steps';
 
@@ -25,21 +25,21 @@ export class StepTrack implements Track {
 
 export interface Player {
   update(): void; toggle(): void; stop(): void; setTrack(track: Track): void;
-  /** Plays from the first on; ended is called once, where it ends or is stopped. */
+  /** Plays from the first shape; ended is called once, at the end or when the user stops. */
   fromStart(ended: () => void): void;
 }
 
-/** A track with times that takes longer is played faster at first [s]. */
+/** A track of a longer duration is at first played faster than its times [s]. */
 const longestS = 60;
 const usualSpeeds = [0.25, 1, 4];
 
-/** 1, 2 or 5 times a power of ten, as large or larger. */
+/** Rounds up to 1, 2 or 5 times a power of ten. */
 function roundUp(value: number): number {
   const ten = 10 ** Math.floor(Math.log10(value));
   return [1, 2, 5, 10].map((n) => n * ten).find((n) => n >= value) ?? value;
 }
 
-/** How many times faster than its times a track may be played, and is at first; none: it has no times. */
+/** Returns the speeds that a track offers, relative to its times, and the first one; none where it has no times. */
 export function speedsOf(track: Pick<Track, 'count' | 'time'>): {speeds: number[]; first: number} {
   const begin = track.time(0), end = track.time(track.count - 1);
   if (begin === null || end === null || !(end > begin)) return {speeds: [], first: 1};
@@ -47,14 +47,14 @@ export function speedsOf(track: Pick<Track, 'count' | 'time'>): {speeds: number[
   return {speeds: usualSpeeds.includes(first) ? usualSpeeds : [...usualSpeeds, first], first};
 }
 
-/** How long one is shown [ms]: in proportion to its time, else so that all take some seconds. */
+/** Returns how long a shape is shown [ms]: in proportion to its time, or else so that all take some seconds. */
 export function pauseMs(track: Pick<Track, 'count' | 'time'>, i: number, speed: number): number {
   const now = track.time(i), next = track.time(i + 1);
   if (now !== null && next !== null) return 1000 * (next - now) / speed;
   return Math.min(Math.max(12000 / track.count, 60), 700);
 }
 
-/** "t = 1.25 s". */
+/** Formats a time: "t = 1.25 s". */
 export const timeWords = (time: number): string => `t = ${Number(time.toPrecision(6))} s`.replace('-', '−');
 
 export function makePlayer(robot: Robot): Player {
@@ -66,28 +66,28 @@ export function makePlayer(robot: Robot): Player {
     clearTimeout(timer);
     timer = 0;
     play.textContent = 'Play';
-    const tell = ended;
+    const callback = ended;
     ended = null;
-    tell?.();
+    callback?.();
   };
-  const until = (time: number) => {
+  const scheduleAt = (time: number) => {
     due = time;
-    timer = window.setTimeout(goOn, due - performance.now());
+    timer = window.setTimeout(advance, due - performance.now());
   };
   const pause = () => pauseMs(track, track.at, Number(speed.value) || 1);
-  const goOn = () => {
-    if (robot.link?.busy) return until(performance.now() + 15);  // each is answered before the next
+  const advance = () => {
+    if (robot.link?.busy) return scheduleAt(performance.now() + 15);  // waits for the answer before the next shape
     if (track.at < 0 || track.at >= last()) return stop();
     track.show(track.at + 1);
-    if (timer) until(due + pause());  // what drawing took is made up for
+    if (timer) scheduleAt(due + pause());  // relative to the due time, so that drawing does not add up
   };
   const begin = (first: number) => {
     robot.remember();
     play.textContent = 'Pause';
-    until(performance.now());
+    scheduleAt(performance.now());
     track.show(first);
     clearTimeout(timer);
-    until(performance.now() + pause());
+    scheduleAt(performance.now() + pause());
   };
   const toggle = () => {
     if (track.count < 1 || play.disabled) return;
@@ -104,7 +104,7 @@ export function makePlayer(robot: Robot): Player {
   speed.addEventListener('change', () => {
     if (!timer) return;
     clearTimeout(timer);
-    until(performance.now() + pause());
+    scheduleAt(performance.now() + pause());
   });
   slider.addEventListener('change', () => { moving = false; });
   slider.addEventListener('input', () => {
@@ -118,9 +118,9 @@ export function makePlayer(robot: Robot): Player {
     play.disabled = slider.disabled = !(track instanceof StepTrack) && !robot.able;
     if (timer && (at < 0 || play.disabled)) stop();
     if (at >= 0) slider.value = String(at);
-    const told = at < 0 ? `${count} ${name}` : `${at + 1} of ${count}`;
-    byId('step-text').textContent = time === null ? told : `${told}, ${timeWords(time)}`;
-    slider.setAttribute('aria-valuetext', byId('step-text').textContent ?? told);
+    const text = at < 0 ? `${count} ${name}` : `${at + 1} of ${count}`;
+    byId('step-text').textContent = time === null ? text : `${text}, ${timeWords(time)}`;
+    slider.setAttribute('aria-valuetext', byId('step-text').textContent ?? text);
   };
   const setTrack = (next: Track) => {
     stop();
@@ -136,7 +136,7 @@ export function makePlayer(robot: Robot): Player {
   return {update, toggle, stop, setTrack, fromStart};
 }
 
-/** Nothing where the track has no times. */
+/** Fills the list of speeds; hides it where the track has no times. */
 function offerSpeeds(box: HTMLSelectElement, track: Track): void {
   const {speeds, first} = speedsOf(track);
   box.replaceChildren(...speeds.map((speed) => element('option', {value: speed}, `${speed} ×`)));

@@ -1,18 +1,18 @@
 import type {Actuator} from './document';
 import {
   type Estimate, type EstimateDocument, fitText, forceText, placeText, plusMinus, type ReadingColumn,
-  type ToldNumber,
+  type EstimatedNumber,
 } from './estimate';
 import type {Robot} from './robot';
 import {byId, digits, element, plain} from './text';
 import {commandWords} from './words';
 
-/** Of a number that is shown in a field. */
-const shown = (value: number | null): string => value === null ? '' : String(Number(value.toPrecision(8)));
-/** As softkin takes them. */
+/** Formats a reading for its field. */
+const fieldText = (value: number | null): string => value === null ? '' : String(Number(value.toPrecision(8)));
+/** The largest magnitude that softkin accepts. */
 const largest = 1e9;
 
-/** Why what was typed is no reading; empty: it is one, or nothing. */
+/** Returns why a typed text is not a reading; empty for a valid reading or an empty field. */
 export function whyNoReading(text: string, {name}: ReadingColumn): string {
   const value = Number(text);
   if (text.trim() === '') return '';
@@ -20,14 +20,14 @@ export function whyNoReading(text: string, {name}: ReadingColumn): string {
   return Math.abs(value) <= largest ? '' : `${plain(name)}: a number up to ${largest} is needed.`;
 }
 
-/** Columns that belong together, in order. */
+/** Returns the columns of each group, in order. */
 export function groupsOf(columns: ReadingColumn[]): Map<string, number[]> {
   const groups = new Map<string, number[]>();
   columns.forEach(({group}, c) => groups.set(group, [...(groups.get(group) ?? []), c]));
   return groups;
 }
 
-/** What was commanded and read, as a table of softkin estimate with one row. */
+/** Formats commands and readings as a table of softkin estimate with one row. */
 export function readingsCsv({document, commands, values}: Robot): string {
   const of: EstimateDocument | undefined = document.live?.estimate, columns = of?.columns ?? [];
   const given = document.actuators.map(({name}, a) => ({column: name, value: commands[a]}))
@@ -39,7 +39,7 @@ export function readingsCsv({document, commands, values}: Robot): string {
 
 function makeFields(robot: Robot, columns: ReadingColumn[], box: HTMLElement): () => void {
   const wrong = element('p', {class: 'bad message', role: 'alert'});
-  let wrongAt = robot.values;  // what is said holds until others are read
+  let wrongAt = robot.values;  // the message is valid until the readings change
   const fields = columns.map((column, c) => {
     const {group, axis, unit} = column;
     const field = element('input', {type: 'number', step: 'any', placeholder: '–',
@@ -49,14 +49,15 @@ function makeFields(robot: Robot, columns: ReadingColumn[], box: HTMLElement): (
       field.setAttribute('aria-invalid', String(wrong.textContent !== ''));
       wrongAt = robot.values;
       if (wrong.textContent) return;
-      robot.read(robot.values.map((value, k) => k !== c ? value : field.value === '' ? null : Number(field.value)));
+      const reading = field.value === '' ? null : Number(field.value);
+      robot.setReadings(robot.values.map((value, k) => k === c ? reading : value));
     });
     return field;
   });
   const names: [string, HTMLElement][] = [];
   const rows = [...groupsOf(columns)].map(([group, of]) => {
     const {name: column, axis, unit, deviation} = columns[of[0]];
-    // the unit stands at the end of the row
+    // without the unit, which is at the end of the row
     const short = axis === '' ? column.replace(/_[^_]+$/, '') : group.replace(/^marker /, '');
     const name = element('td', {}, plain(short));
     names.push([group, name]);
@@ -69,7 +70,7 @@ function makeFields(robot: Robot, columns: ReadingColumn[], box: HTMLElement): (
   });
   const head = [element('td'), ...['x', 'y', 'z', 'deviation'].map((word) => element('th', {scope: 'col'}, word))];
   const clear = element('button', {type: 'button'}, 'Clear the readings');
-  clear.addEventListener('click', () => robot.read(columns.map(() => null)));
+  clear.addEventListener('click', () => robot.setReadings(columns.map(() => null)));
   box.append(element('table', {}, element('thead', {}, element('tr', {}, ...head)), element('tbody', {}, ...rows)),
              wrong, element('div', {class: 'buttons'}, clear));
   return () => {
@@ -79,7 +80,7 @@ function makeFields(robot: Robot, columns: ReadingColumn[], box: HTMLElement): (
     }
     fields.forEach((field, c) => {
       field.disabled = !robot.able;
-      if (document.activeElement !== field) field.value = shown(robot.values[c]);
+      if (document.activeElement !== field) field.value = fieldText(robot.values[c]);
     });
     clear.disabled = !robot.able || robot.values.every((value) => value === null);
     for (const [group, name] of names) name.classList.toggle('bad', robot.estimate?.left_out?.includes(group) ?? false);
@@ -89,23 +90,23 @@ function makeFields(robot: Robot, columns: ReadingColumn[], box: HTMLElement): (
 const sentence = (words: string): string =>
   `${words.replace(/^[tl](?=he |eft )/, (first) => first.toUpperCase()).replaceAll('+-', '±')}.`;
 
-/** What the arrow, the cone and the ellipse mean. */
+/** Explains the arrow, the cone and the ellipse. */
 const meaning = (mmPerNewton: number, places: boolean): string =>
-  `Arrow: the force, from where it acts; ${digits(mmPerNewton, 2)} mm are 1 N. Cone: its rim is the ellipse that ` +
-  'holds the arrow\'s tip, across the arrow, with a probability of 90 %: 2.15 standard deviations (2-D factor), or ' +
-  '1.64 where only one component across it is estimated. ' +
+  `Arrow: the force, from its point of application; ${digits(mmPerNewton, 2)} mm are 1 N. Cone: its rim is the ` +
+  'ellipse that contains the arrow\'s tip, across the arrow, with a probability of 90 %: ' +
+  '2.15 standard deviations (2-D factor), or 1.64 where only one component across it is estimated. ' +
   (places ? 'Ellipse at its foot: the force acts inside it, on the surface, with a probability of 90 % ' +
    '(2.15 standard deviations). ' : '') +
   'This assumes normally distributed errors.';
 
-/** Of a ratio in words: "× rest length". */
-export const unitOf = ({name, unit}: ToldNumber, actuators: Actuator[]): string =>
+/** Returns the unit of an estimated number; that of a ratio is in words: "× rest length". */
+export const unitOf = ({name, unit}: EstimatedNumber, actuators: Actuator[]): string =>
   unit || actuators.filter((actuator) => actuator.name === name).map(commandWords).join('');
 
-function tell(estimate: Estimate, actuators: Actuator[], box: HTMLElement, mmPerNewton: number): void {
+function showEstimate(estimate: Estimate, actuators: Actuator[], box: HTMLElement, mmPerNewton: number): void {
   const {numbers = [], places = [], forces = [], words = [], status, remark} = estimate;
-  const rows = numbers.map((told) => element('tr', {}, element('td', {}, plain(told.name)),
-    element('td', {}, plusMinus(told.value, told.deviation, unitOf(told, actuators)))));
+  const rows = numbers.map((number) => element('tr', {}, element('td', {}, plain(number.name)),
+    element('td', {}, plusMinus(number.value, number.deviation, unitOf(number, actuators)))));
   box.replaceChildren(
     ...forces.map((force) => element('p', {class: 'force'}, forceText(force))),
     ...places.map((place) => element('p', {},
@@ -118,12 +119,12 @@ function tell(estimate: Estimate, actuators: Actuator[], box: HTMLElement, mmPer
     ...(forces.length ? [element('p', {class: 'explain'}, meaning(mmPerNewton, places.length > 0))] : []));
 }
 
-/** Fields for what was read, and what is told of it; returns what brings them up to date. */
+/** Shows fields for the readings, and the estimate; returns the function that updates them. */
 export function makeReadings(robot: Robot, mmPerNewton: () => number): () => void {
   const of = robot.document.live?.estimate, box = byId('told');
   if (!of) return () => {};
   byId('readings-section').hidden = byId('told-section').hidden = false;
-  byId('explain-readings').textContent = 'Type the readings; leave a field empty where there is none. ' +
+  byId('explain-readings').textContent = 'Type the readings; leave a field empty where there is no reading. ' +
     'Each change gives a new estimate.';
   const fields = makeFields(robot, of.columns, byId('readings'));
   let last: Estimate | null | undefined;
@@ -131,7 +132,7 @@ export function makeReadings(robot: Robot, mmPerNewton: () => number): () => voi
     fields();
     if (last === robot.estimate) return;
     last = robot.estimate;
-    if (last) tell(last, robot.document.actuators, box, mmPerNewton());
+    if (last) showEstimate(last, robot.document.actuators, box, mmPerNewton());
     else box.replaceChildren(element('p', {class: 'explain'}, 'There are no readings yet.'));
   };
 }

@@ -5,27 +5,27 @@ import {download} from './save';
 import {byId, digits, withUnit} from './text';
 import {drives} from './words';
 
-/** What browsers write, the one that most programs read first: H.264, if the browser has it, else what it has. */
+/** Video formats in the order of preference: most programs read H.264; not every browser writes it. */
 const kinds = [{type: 'video/mp4;codecs=avc1.640033', ending: 'mp4'}, {type: 'video/webm', ending: 'webm'},
                {type: 'video/mp4', ending: 'mp4'}];
-const framesPerSecond = 30, restMs = 700;  // how long the last shape stays
+const framesPerSecond = 30, lastMs = 700;  // how long the video shows the last shape
 
 const kindOf = () => typeof MediaRecorder === 'undefined' || !HTMLCanvasElement.prototype.captureStream ? undefined
   : kinds.find(({type}) => MediaRecorder.isTypeSupported(type));
 
-/** "air = 1.4, tendon = 3 N". */
+/** Formats the commands: "air = 1.4, tendon = 3 N". */
 function commandsOf(robot: Robot): string {
   return robot.document.actuators.flatMap((actuator, i) => drives(actuator)
     ? [`${actuator.name} = ${withUnit(digits(robot.pose.commands[i]), actuator.unit)}`] : []).join(', ');
 }
 
-/** The picture with what it shows written below it, frame after frame. */
+/** Frames of a video: the picture with the commands and the step written at its bottom. */
 class Frames {
   readonly canvas = document.createElement('canvas');
   private readonly context = this.canvas.getContext('2d');
 
   constructor(private readonly picture: HTMLCanvasElement, private readonly robot: Robot) {
-    this.canvas.width = picture.width - picture.width % 2;  // as videos have them
+    this.canvas.width = picture.width - picture.width % 2;  // video codecs need even sizes
     this.canvas.height = picture.height - picture.height % 2;
   }
 
@@ -40,12 +40,12 @@ class Frames {
   }
 }
 
-/** A button that plays from the first step on and saves that as a video; returns what takes each drawn picture. */
+/** A button that plays from the first step and saves a video; returns the function that records each drawn picture. */
 export function makeRecorder(picture: HTMLCanvasElement, robot: Robot, player: Player): () => void {
   const button = byId<HTMLButtonElement>('record'), kind = kindOf();
   let frames: Frames | null = null, recorder: MediaRecorder | null = null;
   button.hidden = !kind;
-  const end = () => setTimeout(() => recorder?.stop(), restMs);
+  const end = () => setTimeout(() => recorder?.stop(), lastMs);
   const begin = ({type, ending}: {type: string; ending: string}) => {
     const made = frames = new Frames(picture, robot), parts: Blob[] = [];
     made.draw();

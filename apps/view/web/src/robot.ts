@@ -1,49 +1,50 @@
-import type {RobotDocument, Step, Told} from './document';
+import type {RobotDocument, SolverReport, Step} from './document';
 import type {Estimate} from './estimate';
 import type {Frame} from './frame';
 import type {Goal} from './inverse';
-import type {Ask} from './live';
+import type {LiveRequest} from './live';
 import {KinematicMap, type MapDocument} from './map';
 import {measured} from './words';
 
-/** What is shown: a step of the run (step: its number, else -1), an answer of the map or of the running program. */
+/** The shown state: a step of the run (step: its number, else -1), or a result of the map or of the running softkin.
+    report: of the solver; null for a result of the map and for the reference shape. */
 export interface Pose {
   commands: number[]; loads: (number | null)[]; measures: (number | null)[]; markers: number[][];
   positions: Float32Array; fields: Record<string, Float32Array>; step: number;
-  from: 'rest' | 'step' | 'map' | 'live'; told: Told | null;
+  from: 'rest' | 'step' | 'map' | 'live'; report: SolverReport | null;
 }
-/** errorMm: null while it is sought; why: of the running program, else empty. */
+/** errorMm: null during the search; why: the explanation of the running softkin, else empty. */
 export interface Target { marker: number; at: number[]; errorMm: number | null; reached: boolean; why: string }
-/** A place for a marker; coordinates that do not count are null. */
+/** A desired position of a marker; free coordinates are null. */
 export interface Place { marker: number; at: (number | null)[] }
-/** The running program, as the robot sees it. */
-export interface Link { readonly state: {control: boolean}; readonly busy: boolean; send(ask: Ask): number }
+/** The connection to the running softkin. */
+export interface Link { readonly state: {control: boolean}; readonly busy: boolean; send(request: LiveRequest): number }
 interface Memory { commands: number[]; step: number; values: (number | null)[] }
 
-/** The robot of a document, its commands, and what was before. */
+/** The robot of a document, with its commands and their history. */
 export class Robot {
   map: KinematicMap | null = null;
   readonly steps: Step[];
   pose: Pose;
-  /** What the user asks for; the pose follows. */
+  /** The commands that the user requested; the pose follows. */
   commands: number[];
   target: Target | null = null;
-  /** Commands of the map are outside what it covers. */
+  /** The commands are outside the map. */
   outside = false;
-  /** The marker that numbers and arrows are of. */
+  /** The marker that has the arrows and the typed target. */
   selected = 0;
-  /** Of a file that is played: the row shown; -1: none. */
+  /** The shown row of a played file; -1: none. */
   row = -1;
   link: Link | null = null;
-  /** What was read, of the columns of which something is told; null: not read. */
+  /** The readings, one for each column of the estimate; null: no reading. */
   values: (number | null)[];
-  /** What they told; null: nothing yet. */
+  /** The estimate from the readings; null: none yet. */
   estimate: Estimate | null = null;
   onChange: () => void = () => {};
   private past: Memory[] = [];
-  private loadOutputs: number[] = [];     // of each actuator, or -1
-  private measureOutputs: number[] = [];  // the same
-  private order: number[] = [];  // of each input of the map: its actuator
+  private loadOutputs: number[] = [];     // the map's output of each actuator's load, or -1
+  private measureOutputs: number[] = [];  // the same for its measure
+  private order: number[] = [];           // the actuator of each input of the map
   private markerOutputs: number[] = [];
 
   constructor(readonly document: RobotDocument) {
@@ -54,12 +55,12 @@ export class Robot {
     this.values = document.live?.estimate?.columns.map(() => null) ?? [];
     const unknown = actuators.map(() => null);
     this.pose = {commands: this.commands, loads: unknown, measures: unknown, markers: markers.map((m) => m.at),
-                 positions: rest, fields: {}, step: -1, from: 'rest', told: null};
+                 positions: rest, fields: {}, step: -1, from: 'rest', report: null};
     const first = document.live ? document.steps[0] : undefined;
-    if (first) this.pose = {...first, step: -1, from: 'live', told: first};
+    if (first) this.pose = {...first, step: -1, from: 'live', report: first};
   }
 
-  /** Shapes of a map without modes of this surface can't be drawn: it is not taken. */
+  /** Uses a map, unless its inputs or its shape do not belong to this robot. */
   takeMap(document: MapDocument | null): void {
     const {actuators, markers, rest} = this.document, map = document && new KinematicMap(document);
     const known = map?.inputs.map(({name}) => actuators.findIndex((actuator) => actuator.name === name)) ?? [];
@@ -74,18 +75,23 @@ export class Robot {
     this.measureOutputs = actuators.map(({name, measure_unit: unit}) => unit === '' ? -1 : output(`${name}_ratio`));
   }
 
-  /** As the page opens; the map has the equilibrium at rest under the loads of the scene. */
+  /** Shows the first state of the page: with a map, the equilibrium at the rest commands under the scene's loads. */
   rest(): void {
-    const at = this.document.actuators.map((a) => Math.min(Math.max(a.rest, a.low), a.high));
-    if (!this.link && this.map && this.ask(at)) this.command(at);
+    const commands = this.restCommands();
+    if (!this.link && this.map && this.evaluateMap(commands)) this.command(commands);
     else this.onChange();
   }
 
-  /** Someone can move it here. */
+  /** Returns the rest commands, moved into the ranges. */
+  private restCommands(): number[] {
+    return this.document.actuators.map((a) => Math.min(Math.max(a.rest, a.low), a.high));
+  }
+
+  /** Returns whether the user can move the robot on this page. */
   get able(): boolean { return this.link ? this.link.state.control : this.map !== null && !this.document.live; }
 
-  /** What the map says, without showing it. */
-  ask(commands: number[]): Omit<Pose, 'positions'> | null {
+  /** Evaluates the map without showing the result. */
+  evaluateMap(commands: number[]): Omit<Pose, 'positions'> | null {
     const found = this.map?.fk(this.order.map((a) => commands[a]));
     if (!found || !this.map) return null;
     const {outputs} = found;
@@ -94,10 +100,10 @@ export class Robot {
     const values = (of: number[]) => of.map((q) => q < 0 ? null : outputs[q]);
     const loads = values(this.loadOutputs).map((load, a) => load ?? this.commandedLoad(a, commands));
     return {commands, markers, loads, measures: values(this.measureOutputs), fields: {}, step: -1, from: 'map',
-            told: null};
+            report: null};
   }
 
-  /** A tension or pressure that is commanded is none of the map's outputs. */
+  /** Returns a commanded tension or pressure, which is not among the map's outputs; else null. */
   private commandedLoad(actuator: number, commands: number[]): number | null {
     const {unit, load_unit: load} = this.document.actuators[actuator];
     return unit !== '' && unit === load ? commands[actuator] : null;
@@ -129,30 +135,30 @@ export class Robot {
     this.target = null;
     this.row = row;
     const {values} = this;
-    if (this.able && this.tells) this.link?.send({type: 'readings', commands: this.inRanges(commands), values});
+    if (this.able && this.isEstimating) this.link?.send({type: 'readings', commands: this.inRanges(commands), values});
     else if (this.able) this.link?.send({type: 'command', commands});
     this.move(commands);
   }
 
-  /** What pushes it is told from readings. */
-  get tells(): boolean { return Boolean(this.document.live?.estimate); }
+  /** Returns whether the page estimates forces from readings. */
+  get isEstimating(): boolean { return Boolean(this.document.live?.estimate); }
 
-  /** All that was read, told anew. */
-  read(values: (number | null)[]): void {
+  /** Replaces the readings and requests a new estimate. */
+  setReadings(values: (number | null)[]): void {
     this.remember();
     this.values = values;
     this.command(this.commands);
   }
 
-  /** Commands that are told may be a rounding outside of theirs. */
+  /** Clamps the commands: estimated ones can be outside their ranges by rounding. */
   private inRanges(commands: number[]): number[] {
     return this.document.actuators.map(({low, high}, a) => Math.min(Math.max(commands[a], low), high));
   }
 
-  /** Shows what the map says. */
+  /** Shows the shape of the map at the commands. */
   private move(commands: number[]): void {
     this.commands = commands;
-    const found = this.ask(commands), positions = this.shapeAt(commands);
+    const found = this.evaluateMap(commands), positions = this.shapeAt(commands);
     this.outside = this.map !== null && (!found || !positions);
     if (found && positions) this.pose = {...found, positions};
     else if (!this.link) this.pose = {...this.pose, commands, step: -1};
@@ -163,7 +169,7 @@ export class Robot {
     if (this.link && !this.able) return;
     this.remember();
     this.values = this.values.map(() => null);
-    if (this.able) this.command(this.document.actuators.map((a) => Math.min(Math.max(a.rest, a.low), a.high)));
+    if (this.able) this.command(this.restCommands());
     else if (this.steps.length) this.showStep(0);
   }
 
@@ -174,15 +180,15 @@ export class Robot {
     this.row = -1;
     this.commands = of.commands;
     this.pose = {commands: of.commands, loads: of.loads, measures: of.measures, markers: of.markers,
-                 positions: of.positions, fields: of.fields, step, from: 'step', told: of};
+                 positions: of.positions, fields: of.fields, step, from: 'step', report: of};
     this.onChange();
   }
 
-  /** The actuators follow a marker that is dragged. */
+  /** Moves a marker to a target by inverse kinematics. */
   reach(marker: number, at: number[], row = -1): void {
     if (!this.able) return;
     this.row = row;
-    const found = this.seek([{marker, at}]);
+    const found = this.findCommands([{marker, at}]);
     if (!found && !this.link) return;
     const errorMm = found?.errorMm ?? null, reached = found?.reached ?? false;
     this.target = {marker, at, errorMm: this.link ? null : errorMm, reached: !this.link && reached, why: ''};
@@ -190,8 +196,9 @@ export class Robot {
     this.move(found?.commands ?? this.commands);
   }
 
-  /** Commands of the map, near those from which it starts, that bring markers nearest to their places. */
-  seek(places: Place[], from = this.commands): {commands: number[]; errorMm: number; reached: boolean} | null {
+  /** Returns the commands near `from` that bring the markers nearest to their places, by the map; null where there are
+      none. */
+  findCommands(places: Place[], from = this.commands): {commands: number[]; errorMm: number; reached: boolean} | null {
     const {map} = this;
     if (!map || places.some(({marker}) => this.markerOutputs[marker] < 0)) return null;
     const now = this.order.map((a) => from[a]);
@@ -205,32 +212,32 @@ export class Robot {
     return {commands, errorMm: found.errorMm, reached: found.reached};
   }
 
-  /** The running program has answered: newest, what was asked last; mine, something that was asked here. */
-  answered(frame: Frame, mine: boolean, newest: boolean): void {
+  /** Shows a shape from the running softkin. newest: it answers the newest request; mine: a request of this window. */
+  receive(frame: Frame, mine: boolean, newest: boolean): void {
     const last = newest || this.link?.busy !== true;
     if (!last && !(mine && !this.map)) return;
     const {commands, loads, measures, markers, positions, fields, target} = frame;
-    this.pose = {commands, loads, measures, markers, positions, fields, step: -1, from: 'live', told: frame};
+    this.pose = {commands, loads, measures, markers, positions, fields, step: -1, from: 'live', report: frame};
     if (last) {
       this.commands = commands;
       this.outside = false;
       this.estimate = frame.estimate ?? null;
-      if (!mine) this.showRead();
+      if (!mine) this.showReadings();
       this.target = target && {marker: target.marker, at: target.at, errorMm: target.error_mm,
                                reached: target.reached, why: target.why};
     }
     this.onChange();
   }
 
-  /** What another window or a stream read, from what was told of it. */
-  private showRead(): void {
+  /** Shows the readings of another window or of a stream, which the estimate contains. */
+  private showReadings(): void {
     const {columns} = this.document.live?.estimate ?? {columns: []}, read = this.estimate?.readings;
     if (read) this.values = columns.map(({name}) => read.find(({column}) => column === name)?.read ?? null);
   }
 
-  /** A rigid body goes where the robot pushes it: its center is no marker to be led somewhere. */
+  /** Returns whether the user can drag a marker; the center of a rigid body moves only by contact with the robot. */
   canReach(marker: number): boolean {
-    if (this.document.markers[marker]?.body || this.tells) return false;
+    if (this.document.markers[marker]?.body || this.isEstimating) return false;
     return this.link ? this.able : this.able && this.markerOutputs[marker] >= 0;
   }
 }

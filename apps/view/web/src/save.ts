@@ -20,7 +20,7 @@ function shapeFile(robot: Robot): string {
                 scalars: {displacement_magnitude: displacement(positions, rest), ...fields}});
 }
 
-/** Buttons that save what is shown; returns what brings the line up to date. */
+/** Buttons that save the shown state; returns the function that updates the command line. */
 export function makeSave(robot: Robot): () => void {
   const box = byId('save'), line = element('textarea', {readonly: '', rows: 3, 'aria-label': 'Command for a terminal',
                                                         spellcheck: 'false'});
@@ -29,29 +29,29 @@ export function makeSave(robot: Robot): () => void {
     made.addEventListener('click', act);
     return made;
   };
-  const name = robotName(robot.document), told = element('span', {role: 'status', class: 'explain'});
+  const name = robotName(robot.document), message = element('span', {role: 'status', class: 'explain'});
   const copy = async () => {
     line.select();
     try {
       await navigator.clipboard.writeText(line.value);
-      told.textContent = 'Copied.';
+      message.textContent = 'Copied.';
     } catch {
-      told.textContent = 'Press Ctrl+C: the command is selected.';
+      message.textContent = 'Press Ctrl+C: the command is selected.';
     }
   };
   box.append(
     element('p', {class: 'explain'}, 'Save the shown state:'),
     element('div', {class: 'buttons'},
-      robot.tells
+      robot.isEstimating
         ? button('Readings (CSV)', () => download('readings.csv', new Blob([readingsCsv(robot)], {type: 'text/csv'})))
         : button('State (YAML)', () => download(`${name}.state.yaml`, new Blob([yamlOf(robot)], {type: 'text/yaml'}))),
       button('Shape (VTU)', () => download(`${name}.vtu`, new Blob([shapeFile(robot)], {type: 'application/xml'})))),
     element('p', {class: 'explain'}, 'The command that computes it again:'), line,
-    element('div', {class: 'buttons'}, button('Copy the command', () => void copy()), told));
+    element('div', {class: 'buttons'}, button('Copy the command', () => void copy()), message));
   return () => {
     const text = lineOf(robot.document, robot.pose.commands);
     if (line.value === text) return;
     line.value = text;
-    told.textContent = '';
+    message.textContent = '';
   };
 }

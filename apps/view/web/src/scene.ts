@@ -7,7 +7,7 @@ import {OrbitControls} from 'three/examples/jsm/controls/OrbitControls.js';
 import {Arrow} from './arrow';
 import {colourAt, paint, type Scale} from './colours';
 import type {RobotDocument} from './document';
-import type {ToldForce} from './estimate';
+import type {EstimatedForce} from './estimate';
 import {largestField} from './field';
 import {Forces} from './forces';
 import {Handles} from './handles';
@@ -23,25 +23,26 @@ type Ball = Mesh<SphereGeometry, MeshBasicMaterial>;
 const threadOf = (): Thread =>
   new Line(new BufferGeometry(), new LineBasicMaterial({depthTest: false, transparent: true}));
 
-const wayFrom = new Vector3(-0.55, -1, 0.45);
+const viewDirection = new Vector3(-0.55, -1, 0.45);
 
-/** Where the processor draws, smooth edges cost several times the rest. */
-function drawnByProcessor(): boolean {
-  const gl = document.createElement('canvas').getContext('webgl2'), told = gl?.getExtension('WEBGL_debug_renderer_info');
-  const name = String(gl?.getParameter(told ? told.UNMASKED_RENDERER_WEBGL : gl.RENDERER) ?? '');
+/** Returns whether the processor draws, for which antialiasing would cost several times the rest of the picture. */
+function isSoftwareRenderer(): boolean {
+  const gl = document.createElement('canvas').getContext('webgl2');
+  const info = gl?.getExtension('WEBGL_debug_renderer_info');
+  const name = String(gl?.getParameter(info ? info.UNMASKED_RENDERER_WEBGL : gl.RENDERER) ?? '');
   gl?.getExtension('WEBGL_lose_context')?.loseContext();
   return /swiftshader|llvmpipe|softpipe|software|basic render/i.test(name);
 }
 
-/** The robot in 3-D; draws when something changed. */
+/** The robot in 3-D; it is drawn again after a change. */
 export class RobotScene {
   readonly camera = new PerspectiveCamera(35, 1, 0.1, 1e5);
   readonly controls: OrbitControls;
   readonly gridMm: number;
   readonly handles = new Handles((at) => this.project(at));
-  /** null: the robot is in no uniform field. */
+  /** The arrow of the uniform magnetic fields; null where there are none. */
   readonly field: Arrow | null;
-  /** That were told. */
+  /** The estimated forces. */
   readonly forces: Forces;
   private readonly renderer: WebGLRenderer;
   private readonly scene = new Scene();
@@ -59,19 +60,19 @@ export class RobotScene {
   private readonly fibres: CarriedLine[];
   private readonly target: Ball;
   private readonly gap = threadOf();
-  private readonly wanted = threadOf();  // way of waypoints
+  private readonly desiredPath = threadOf();  // through the waypoints
   private readonly grid: GridHelper;
   private readonly size: number;
   private readonly box = new Box3();
   private tensions: (number | null)[] = [];
-  private waiting = false;
-  private eyeIsChosen = false;  // by hand
-  private eyeIsHeld = false;    // while something is dragged
+  private isScheduled = false;
+  private isCameraKept = false;    // after the user moved it
+  private isCameraLocked = false;  // during a drag
   private isInSight = true;
   onDrawn: () => void = () => {};
 
   constructor(private readonly canvas: HTMLCanvasElement, robot: RobotDocument, shapes: Float32Array[]) {
-    this.renderer = new WebGLRenderer({canvas, antialias: !drawnByProcessor()});
+    this.renderer = new WebGLRenderer({canvas, antialias: !isSoftwareRenderer()});
     for (const shape of [robot.rest, ...shapes, ...(robot.workspace ? [robot.workspace.points] : [])])
       this.box.union(new Box3().setFromArray(shape as unknown as number[]));
     this.size = this.box.getSize(new Vector3()).length() || 1;
@@ -91,7 +92,7 @@ export class RobotScene {
     this.traces = robot.markers.map(threadOf);
     this.cables = robot.cables.map(({points}) => new CarriedLine(points, 3.5));
     this.fibres = (robot.fibres ?? []).map(({points}) => new CarriedLine(points, 1));
-    for (const part of [...this.traces, this.gap, this.wanted, ...this.balls, this.target]) {
+    for (const part of [...this.traces, this.gap, this.desiredPath, ...this.balls, this.target]) {
       part.frustumCulled = false;
       part.renderOrder = 4;
     }
@@ -100,43 +101,44 @@ export class RobotScene {
       ring.scale.setScalar(1.4);
       ring.renderOrder = 6;
     }
-    this.gap.visible = this.target.visible = this.wanted.visible = false;
+    this.gap.visible = this.target.visible = this.desiredPath.visible = false;
     ({grid: this.grid, cellMm: this.gridMm} =
       makeGrid(this.size, this.box.getCenter(new Vector3()), this.box.min.z));
-    this.field = this.fieldBeside(largestField(robot.actuators));
+    this.field = this.makeFieldArrow(largestField(robot.actuators));
     this.forces = new Forces(this.size);
     const sun = new DirectionalLight(0xffffff, 2.2);
     sun.position.set(-0.4, -1, 1.4);
     this.camera.add(sun);
     this.scene.add(this.ambient, this.camera, this.grid, this.body, this.ghost, ...this.around,
                    ...this.traces, ...[...this.cables, ...this.fibres].flatMap(({rim, core}) => [rim, core]),
-                   ...this.balls, this.target, this.gap, this.wanted, this.handles.group, this.forces.group);
+                   ...this.balls, this.target, this.gap, this.desiredPath, this.handles.group, this.forces.group);
     if (this.cloud) this.scene.add(this.cloud);
     if (this.field) this.scene.add(this.field.group);
     this.controls = new OrbitControls(this.camera);
     this.controls.addEventListener('change', () => this.draw());
-    this.controls.addEventListener('start', () => this.keepEye());
+    this.controls.addEventListener('start', () => this.keepCamera());
     this.camera.up.set(0, 0, 1);
     new ResizeObserver(() => this.resize()).observe(canvas);
     this.resize();
-    this.lookFrom(wayFrom.clone());
-    this.dress();
+    this.lookFrom(viewDirection.clone());
+    this.applyTheme();
   }
 
-  /** Left of the robot, as long in the largest field as a quarter of the robot. most: along x, y and z [mT] */
-  private fieldBeside(most: number[] | null): Arrow | null {
-    if (!most) return null;
-    const mmPerUnit = 0.25 * this.size / Math.hypot(...most);
-    const reach = new Vector3().fromArray(most).multiplyScalar(mmPerUnit);
+  /** Creates the arrow left of the robot; in the largest field [mT] it is a quarter of the robot long. */
+  private makeFieldArrow(largest: number[] | null): Arrow | null {
+    if (!largest) return null;
+    const mmPerUnit = 0.25 * this.size / Math.hypot(...largest);
+    const reach = new Vector3().fromArray(largest).multiplyScalar(mmPerUnit);
     const foot = this.box.getCenter(new Vector3()).setX(this.box.min.x - reach.x - 0.08 * this.size);
     this.box.expandByPoint(foot.clone().sub(reach)).expandByPoint(foot.clone().add(reach));
     return new Arrow(foot, mmPerUnit);
   }
 
-  /** Colours of the theme. */
-  dress(): void {
+  /** Sets all colours to those of the theme. */
+  applyTheme(): void {
     this.scene.background = ofTheme('--stage');
-    this.ambient.intensity = document.documentElement.dataset.theme === 'dark' ? 2.2 : 1.3;  // shaded sides are seen
+    // bright enough for shaded sides to be visible
+    this.ambient.intensity = document.documentElement.dataset.theme === 'dark' ? 2.2 : 1.3;
     for (const {rim} of this.cables) rim.material.color = ofTheme('--cable');
     for (const {rim, core} of this.fibres) {
       rim.material.color = ofTheme('--paper');
@@ -147,10 +149,10 @@ export class RobotScene {
     for (const ring of this.rings) ring.material.color = ofTheme('--paper');
     for (const line of this.traces) line.material.color = ofTheme('--trace');
     if (this.cloud && !this.cloud.material.vertexColors) this.cloud.material.color = ofTheme('--accent');
-    this.field?.dress(ofTheme('--field'));
-    this.forces.dress(ofTheme('--force'));
+    this.field?.setColour(ofTheme('--field'));
+    this.forces.setColour(ofTheme('--force'));
     this.gap.material.color = ofTheme('--bad');
-    this.wanted.material.color = ofTheme('--accent');
+    this.desiredPath.material.color = ofTheme('--accent');
     const grid = this.grid.material;
     this.grid.geometry.deleteAttribute('color');
     grid.vertexColors = false;
@@ -169,10 +171,10 @@ export class RobotScene {
     this.draw();
   }
 
-  /** The camera follows the pointer; who listens before comes first. */
+  /** Connects the camera to the pointer; listeners that were added before are called first. */
   listen(): void { this.controls.connect(this.canvas); }
 
-  /** All of the robot is seen, also where the picture is narrow. */
+  /** Moves the camera so that the whole robot is visible from a direction, also on a narrow picture. */
   lookFrom(direction: Vector3): void {
     const middle = this.box.getCenter(new Vector3()), half = Math.tan(this.camera.fov * Math.PI / 360);
     const size = this.box.getSize(new Vector3()).length();
@@ -185,33 +187,33 @@ export class RobotScene {
     this.controls.update();
   }
 
-  /** Farther away where the robot leaves what was thought of, but for an eye that was chosen by hand. */
+  /** Moves the camera away where the robot leaves the visible box, unless the user has moved the camera. */
   private keepInSight(positions: Float32Array): void {
     const shape = new Box3().setFromArray(positions as unknown as number[]);
     if (this.box.containsBox(shape)) return;
     this.box.union(shape.expandByScalar(0.1 * this.size));
     this.isInSight = false;
-    this.goBack();
+    this.moveCameraBack();
   }
 
-  private goBack(): void {
-    if (this.eyeIsChosen || this.eyeIsHeld || this.isInSight) return;
+  private moveCameraBack(): void {
+    if (this.isCameraKept || this.isCameraLocked || this.isInSight) return;
     this.isInSight = true;
-    this.lookFrom(wayFrom.clone());
+    this.lookFrom(viewDirection.clone());
   }
 
-  /** The eye stays where it is, whatever the robot does. */
-  keepEye(): void { this.eyeIsChosen = true; }
+  /** Keeps the camera where it is, whatever the robot does. */
+  keepCamera(): void { this.isCameraKept = true; }
 
-  /** As that, until it is let go. */
-  holdEye(held: boolean): void {
-    this.eyeIsHeld = held;
-    this.goBack();
+  /** Locks the camera during a drag. */
+  lockCamera(locked: boolean): void {
+    this.isCameraLocked = locked;
+    this.moveCameraBack();
   }
 
-  /** By angles of the keyboard [rad], and nearer by a factor. */
+  /** Turns the camera by angles [rad] and moves it nearer by a factor, for the keyboard. */
   turn(right: number, up: number, nearer: number): void {
-    this.keepEye();
+    this.keepCamera();
     const off = this.camera.position.clone().sub(this.controls.target), flat = Math.hypot(off.x, off.y);
     const length = off.length() / nearer, azimuth = Math.atan2(off.y, off.x) + right;
     const height = Math.min(Math.max(Math.atan2(off.z, flat) + up, -1.5), 1.5);
@@ -230,7 +232,7 @@ export class RobotScene {
     this.draw();
   }
 
-  /** null: by region. */
+  /** Colours the body by values; null: by region. */
   setColours(values: ArrayLike<number> | null, scale: Scale | null): void {
     const coloured = values !== null && scale !== null;
     if (coloured) {
@@ -245,38 +247,38 @@ export class RobotScene {
     this.draw();
   }
 
-  /** Of each cable, from 0 to 1; null: unknown. */
-  setTensions(shares: (number | null)[]): void {
-    this.tensions = shares;
+  /** Colours the cables by their tensions, as fractions of the largest one; null: unknown. */
+  setTensions(fractions: (number | null)[]): void {
+    this.tensions = fractions;
     this.cables.forEach(({core}, c) => {
-      const share = shares[c] ?? null;
-      if (share === null) core.material.color = ofTheme('--cable');
-      else core.material.color.set(`rgb(${colourAt(share, false).map(Math.round).join()})`);
+      const fraction = fractions[c] ?? null;
+      if (fraction === null) core.material.color = ofTheme('--cable');
+      else core.material.color.set(`rgb(${colourAt(fraction, false).map(Math.round).join()})`);
     });
     this.draw();
   }
 
-  setTrace(marker: number, points: number[][]): void { this.lead(this.traces[marker], points); }
+  setTrace(marker: number, points: number[][]): void { this.setLine(this.traces[marker], points); }
 
-  /** The way on which a marker should go. */
-  setWanted(points: number[][]): void {
-    this.wanted.visible = points.length > 0;
-    this.lead(this.wanted, points);
+  /** Shows the desired path of a marker. */
+  setDesiredPath(points: number[][]): void {
+    this.desiredPath.visible = points.length > 0;
+    this.setLine(this.desiredPath, points);
   }
 
-  private lead(line: Thread, points: number[][]): void {
+  private setLine(line: Thread, points: number[][]): void {
     line.geometry.dispose();
     line.geometry = new BufferGeometry().setFromPoints(points.map((at) => new Vector3().fromArray(at)));
     this.draw();
   }
 
-  /** [mT] */
+  /** Shows the flux density of the uniform fields [mT]. */
   setField(field: number[]): void {
     this.field?.set(field);
     this.draw();
   }
 
-  setForces(forces: ToldForce[]): void {
+  setForces(forces: EstimatedForce[]): void {
     this.forces.set(forces);
     this.draw();
   }
@@ -308,30 +310,33 @@ export class RobotScene {
     this.draw();
   }
 
-  /** On the canvas [px]. */
+  /** Projects a point onto the canvas [px]. */
   project(at: number[]): {x: number; y: number} {
     const p = new Vector3().fromArray(at).project(this.camera);
     return {x: (p.x + 1) / 2 * this.canvas.clientWidth, y: (1 - p.y) / 2 * this.canvas.clientHeight};
   }
 
-  /** From the eye to a place, of unit length. */
-  wayTo(at: number[]): number[] { return new Vector3().fromArray(at).sub(this.camera.position).normalize().toArray(); }
-
-  /** Where the pointer is on a plane through a point, else on that of the screen. */
-  under(x: number, y: number, through: number[], across?: number[]): number[] {
-    const at = new Vector3().fromArray(through), normal = this.camera.getWorldDirection(new Vector3());
-    if (across) normal.fromArray(across);
-    const ray = new Vector3(2 * x / this.canvas.clientWidth - 1, 1 - 2 * y / this.canvas.clientHeight, 0.5)
-      .unproject(this.camera).sub(this.camera.position).normalize();
-    const far = at.sub(this.camera.position).dot(normal) / ray.dot(normal);
-    return this.camera.position.clone().addScaledVector(ray, far).toArray();
+  /** Returns the direction from the camera to a point, of unit length. */
+  directionTo(at: number[]): number[] {
+    return new Vector3().fromArray(at).sub(this.camera.position).normalize().toArray();
   }
 
+  /** Projects a pixel onto the plane through a point with a normal, by default the plane of the screen. */
+  under(x: number, y: number, through: number[], planeNormal?: number[]): number[] {
+    const point = new Vector3().fromArray(through), normal = this.camera.getWorldDirection(new Vector3());
+    if (planeNormal) normal.fromArray(planeNormal);
+    const ray = new Vector3(2 * x / this.canvas.clientWidth - 1, 1 - 2 * y / this.canvas.clientHeight, 0.5)
+      .unproject(this.camera).sub(this.camera.position).normalize();
+    const distance = point.sub(this.camera.position).dot(normal) / ray.dot(normal);
+    return this.camera.position.clone().addScaledVector(ray, distance).toArray();
+  }
+
+  /** Requests a new picture; several requests before the next frame give one picture. */
   draw(): void {
-    if (this.waiting) return;
-    this.waiting = true;
+    if (this.isScheduled) return;
+    this.isScheduled = true;
     requestAnimationFrame(() => {
-      this.waiting = false;
+      this.isScheduled = false;
       this.drawNow();
     });
   }

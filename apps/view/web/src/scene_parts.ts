@@ -18,11 +18,12 @@ function geometryOf(positions: BufferAttribute, triangles: Uint32Array): BufferG
   return geometry;
 }
 
-/** The robot's surface, one material for each region; the last is of triangles without one. */
+/** Builds the robot's surface with one material for each region; the last one is for triangles without region. */
 export function makeBody(robot: RobotDocument, positions: BufferAttribute,
                          colours: BufferAttribute): Mesh<BufferGeometry, MeshLambertMaterial[]> {
   const {triangles, region, regions} = robot;
-  const count = Math.max(regions.length, region.reduce((most, r) => r === noRegion ? most : Math.max(most, r + 1), 1));
+  const used = region.reduce((largest, r) => r === noRegion ? largest : Math.max(largest, r + 1), 1);
+  const count = Math.max(regions.length, used);
   const numbers = Array.from(region, (r) => r === noRegion ? count : r);
   const order = Array.from(region.keys()).sort((a, b) => numbers[a] - numbers[b] || a - b);
   const index = new Uint32Array(triangles.length);
@@ -41,11 +42,11 @@ export function makeBody(robot: RobotDocument, positions: BufferAttribute,
   return body;
 }
 
-/** Of the material of that number. */
+/** Returns the colour of a material of the body. */
 export const bodyColour = (number: number, count: number): string =>
   number < count - 1 ? regionColour(number) : '#999999';
 
-/** The robot at rest, behind the body where both are. */
+/** Builds the reference shape, drawn behind the body where both overlap. */
 export function makeGhost(robot: RobotDocument): Mesh<BufferGeometry, MeshBasicMaterial> {
   const ghost = new Mesh(geometryOf(new BufferAttribute(robot.rest, 3), robot.triangles),
     new MeshBasicMaterial({transparent: true, opacity: 0.16, depthWrite: false, polygonOffset: true,
@@ -59,7 +60,7 @@ const stone = () => new MeshLambertMaterial({color: 0x8d8d8d, flatShading: true,
 export const makeObstacle = ({positions, triangles}: Obstacle): Mesh =>
   new Mesh(geometryOf(new BufferAttribute(positions, 3), triangles), stone());
 
-/** Rigid bodies, which move with the vertices. */
+/** Builds the rigid bodies, which move with the vertices. */
 export function makeBodies(robot: RobotDocument, positions: BufferAttribute): Mesh {
   const bodies = new Mesh(geometryOf(positions, robot.bodies), stone());
   bodies.frustumCulled = false;
@@ -67,7 +68,7 @@ export function makeBodies(robot: RobotDocument, positions: BufferAttribute): Me
   return bodies;
 }
 
-/** Cells of 1, 2 or 5 times a power of ten, below the robot. */
+/** Builds the grid below the robot, with cells of 1, 2 or 5 times a power of ten. */
 export function makeGrid(size: number, middle: Vector3, lowest: number): {grid: GridHelper; cellMm: number} {
   const step = 10 ** Math.floor(Math.log10(size / 3));
   const cellMm = [1, 2, 5].map((n) => n * step).reverse().find((n) => size / n >= 6) ?? step;
@@ -78,7 +79,7 @@ export function makeGrid(size: number, middle: Vector3, lowest: number): {grid: 
   return {grid, cellMm};
 }
 
-/** Where a marker can be, as points of a few pixels. */
+/** Builds the workspace of a marker, as points of a few pixels. */
 export function makeCloud({points, colour}: Workspace): Points<BufferGeometry, PointsMaterial> {
   const geometry = new BufferGeometry();
   geometry.setAttribute('position', new BufferAttribute(points, 3));
@@ -92,22 +93,22 @@ export function makeCloud({points, colour}: Workspace): Points<BufferGeometry, P
   return cloud;
 }
 
-function lineOf(width: number, order: number): Line2 {
+function makeLine(width: number, order: number): Line2 {
   const line = new Line2(new LineGeometry(), new LineMaterial({linewidth: width, depthTest: false, transparent: true}));
   line.frustumCulled = false;
   line.renderOrder = order;
   return line;
 }
 
-/** A line some pixels wide through points that the mesh carries along, with a rim that sets it off from what is behind:
-    a cable, or, thinner, a thread. */
+/** A line of some pixels through points that move with the mesh, with a rim that separates it from the background: a
+    cable or, thinner, a fibre. */
 export class CarriedLine {
   readonly rim: Line2;
   readonly core: Line2;
 
   constructor(private readonly points: CablePoint[], width: number) {
-    this.rim = lineOf(width + 2.5, 2);
-    this.core = lineOf(width, 3);
+    this.rim = makeLine(width + 2.5, 2);
+    this.core = makeLine(width, 3);
   }
 
   follow(positions: Float32Array): void {

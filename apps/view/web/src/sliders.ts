@@ -3,19 +3,19 @@ import type {Robot} from './robot';
 import {digits, element, plain, withUnit} from './text';
 import {commandWords, drives, kindWords, loadWords} from './words';
 
-/** Less is what a solver or a map leaves [kPa, N]. */
+/** Loads below this are residuals of the solver or of the map and are shown as 0 [kPa, N]. */
 const noLoad = 1e-4;
 
-/** Of a number that is typed: no more digits than people read, yet as fine as the slider. */
+/** Formats a number for a field: few digits, yet as fine as the slider. */
 const typed = (value: number): string => Number.isFinite(value) ? String(Number(value.toPrecision(6))) : '';
 
 interface Row {
   actuator: Actuator; slider: HTMLInputElement; field: HTMLInputElement; load: HTMLElement; wrong: HTMLElement;
-  wrongAt: number;  // the command when a number was not taken
+  wrongAt: number;  // the command at which a typed number was refused
 }
 
-/** Why a number that was typed is not taken; empty: it is. */
-export function whyNotTaken(text: string, {name, low, high, unit, control}: Actuator): string {
+/** Returns why a typed number is refused; empty where it is accepted. */
+export function whyRefused(text: string, {name, low, high, unit, control}: Actuator): string {
   if (text.trim() === '' || !Number.isFinite(Number(text))) return `${plain(name)}: type a number.`;
   const value = Number(text);
   if (value >= low && value <= high) return '';
@@ -24,7 +24,7 @@ export function whyNotTaken(text: string, {name, low, high, unit, control}: Actu
     `${withUnit(`${typed(low)} to ${typed(high)}`, words)}. The command is unchanged.`;
 }
 
-function makeRow(actuator: Actuator, i: number, isTold: boolean): Row & {whole: HTMLElement} {
+function makeRow(actuator: Actuator, i: number, isEstimated: boolean): Row & {whole: HTMLElement} {
   const {low, high} = actuator, id = `actuator-${i}`, name = plain(actuator.name), unit = commandWords(actuator);
   const step = high > low ? (high - low) / 1000 : 'any';
   const slider = element('input', {type: 'range', id, min: low, max: high, step});
@@ -33,7 +33,7 @@ function makeRow(actuator: Actuator, i: number, isTold: boolean): Row & {whole: 
   const load = element('span', {class: 'load'}), wrong = element('p', {class: 'bad message', role: 'alert'});
   const whole = element('div', {class: 'slider'},
     element('div', {class: 'row'}, element('label', {for: id}, name),
-            element('span', {class: 'kind'}, kindWords[actuator.kind] + (isTold ? ', estimated' : '')), load),
+            element('span', {class: 'kind'}, kindWords[actuator.kind] + (isEstimated ? ', estimated' : '')), load),
     slider,
     element('div', {class: 'ends'}, element('span', {}, digits(low, 3)), element('span', {class: 'typed'}, field, unit),
             element('span', {}, digits(high, 3))),
@@ -41,18 +41,18 @@ function makeRow(actuator: Actuator, i: number, isTold: boolean): Row & {whole: 
   return {actuator, slider, field, load, wrong, wrongAt: NaN, whole};
 }
 
-/** One slider for each actuator; returns what brings them up to date. */
+/** Shows a slider for each actuator; returns the function that updates them. */
 export function makeSliders(box: HTMLElement, robot: Robot): () => void {
   const around = element('details', {}, element('summary', {}, 'Commands of obstacles, bodies and supports'));
-  const told = robot.document.live?.estimate?.told ?? [];
+  const estimated = robot.document.live?.estimate?.told ?? [];
   const rows = robot.document.actuators.map((actuator, i) => {
-    const row = makeRow(actuator, i, told.includes(i)), {slider, field, wrong, whole} = row;
-    const tell = (why: string) => {
-      wrong.textContent = why;
-      field.setAttribute('aria-invalid', String(why !== ''));
+    const row = makeRow(actuator, i, estimated.includes(i)), {slider, field, wrong, whole} = row;
+    const showError = (message: string) => {
+      wrong.textContent = message;
+      field.setAttribute('aria-invalid', String(message !== ''));
       row.wrongAt = robot.commands[i];
     };
-    let moving = false;  // one drag is undone as a whole
+    let moving = false;  // so that one drag is undone as a whole
     const command = (value: number) => {
       const commands = robot.commands.slice();
       commands[i] = Math.min(Math.max(value, actuator.low), actuator.high);
@@ -60,29 +60,29 @@ export function makeSliders(box: HTMLElement, robot: Robot): () => void {
     };
     slider.addEventListener('change', () => { moving = false; });
     slider.addEventListener('input', () => {
-      tell('');
+      showError('');
       if (!moving) robot.remember();
       moving = true;
       command(Number(slider.value));
     });
     field.addEventListener('change', () => {
-      tell(whyNotTaken(field.value, actuator));
+      showError(whyRefused(field.value, actuator));
       if (wrong.textContent) return;
       robot.remember();
       command(Number(field.value));
       field.value = typed(robot.commands[i]);
     });
     field.addEventListener('blur', () => { field.value = typed(robot.commands[i]); });
-    slider.hidden = actuator.kind === 'force';  // its range says nothing
+    slider.hidden = actuator.kind === 'force';  // the range of a force is no useful slider
     (drives(actuator) ? box : around).append(whole);
     return row;
   });
   if (around.childElementCount > 1) box.append(around);
   return () => rows.forEach(({actuator, slider, field, load, wrong, wrongAt}, i) => {
     const command = robot.commands[i], force = robot.pose.loads[i];
-    const isTold = told.includes(i);
+    const isEstimated = estimated.includes(i);
     if (wrong.textContent && command !== wrongAt) wrong.textContent = '';
-    slider.disabled = field.disabled = !robot.able || actuator.low === actuator.high || isTold;
+    slider.disabled = field.disabled = !robot.able || actuator.low === actuator.high || isEstimated;
     slider.value = String(command);
     slider.setAttribute('aria-valuetext', `${digits(command)} ${commandWords(actuator)}`);
     if (document.activeElement !== field) field.value = typed(command);

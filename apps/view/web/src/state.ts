@@ -3,10 +3,10 @@ import {inRange, PathError} from './csv';
 import {type Actuator, robotName} from './document';
 import type {Robot} from './robot';
 
-/** A string of YAML; JSON's are such. */
+/** Quotes a string for YAML; a string of JSON is valid YAML. */
 const quotedYaml = (text: string): string => JSON.stringify(text);
 
-/** What the robot is told and where that leads it. */
+/** Formats the commands and the positions of the markers as YAML. */
 export function yamlOf(robot: Robot): string {
   const {document, pose, target} = robot, {actuators, markers} = document, {commands} = pose;
   const places = (at: number[]) => `[${at.map((value) => Number(value.toFixed(6))).join(', ')}]`;
@@ -23,14 +23,14 @@ export function yamlOf(robot: Robot): string {
   ].join('\n') + '\n';
 }
 
-/** The commands of a state that was saved; actuators that it does not name rest. Throws PathError. */
+/** Reads the commands of a saved state; other actuators have their rest commands. Throws PathError. */
 export function readState(text: string, actuators: Actuator[]): number[] {
   const commands = actuators.map(({rest, low, high}) => Math.min(Math.max(rest, low), high));
-  let inside = false, found = 0;
+  let isInCommands = false, found = 0;
   text.split(/\r\n|\n|\r/).forEach((line, n) => {
     const pair = /^\s+("(?:[^"\\]|\\.)*"|[^\s:#"]+)\s*:\s*(\S+)/.exec(line);
-    if (/^\S/.test(line) && !line.startsWith('#')) inside = /^commands:/.test(line);
-    if (!inside || !pair) return;
+    if (/^\S/.test(line) && !line.startsWith('#')) isInCommands = /^commands:/.test(line);
+    if (!isInCommands || !pair) return;
     const name = pair[1].startsWith('"') ? String(JSON.parse(pair[1])) : pair[1], value = Number(pair[2]);
     const a = actuators.findIndex((actuator) => actuator.name === name);
     if (a < 0) throw new PathError(`Line ${n + 1}: there is no actuator ${name}: the state is of another robot.`);

@@ -2,26 +2,26 @@ import type {Robot} from './robot';
 import {byId, digits, element, mm, plain} from './text';
 import {drives} from './words';
 
-/** As near is there, for a hand that drags [mm]. */
-const nearMm = 0.05;
+/** The largest error of a target that counts as reached after a drag [mm]. */
+const toleranceMm = 0.05;
 
 function atLimits(robot: Robot): string {
   const names = robot.document.actuators.flatMap(({name, low, high}, i) => {
-    const command = robot.commands[i], near = 1e-6 * (high - low);
-    if (command <= low + near) return [`${plain(name)} at its lowest`];
-    return command >= high - near ? [`${plain(name)} at its highest`] : [];
+    const command = robot.commands[i], tolerance = 1e-6 * (high - low);
+    if (command <= low + tolerance) return [`${plain(name)} at its lowest`];
+    return command >= high - tolerance ? [`${plain(name)} at its highest`] : [];
   });
   return names.length ? ` Limits met: ${names.join(', ')}.` : '';
 }
 
-/** Why a target is not reached. */
+/** Explains why a target is not reached. */
 function whyNot(robot: Robot): string {
   const count = robot.document.actuators.filter(drives).length, limits = atLimits(robot);
   if (robot.target?.why) return ` ${robot.target.why}`;
   if (limits) return limits;
   if (count >= 3) return ' No small change of the commands brings it nearer.';
-  const [s, way] = count > 1 ? ['s', 'surface'] : ['', 'curve'];
-  return ` With ${count} actuator${s} it can only move on a ${way}.`;
+  const [s, range] = count > 1 ? ['s', 'surface'] : ['', 'curve'];
+  return ` With ${count} actuator${s} it can only move on a ${range}.`;
 }
 
 export function targetWords(robot: Robot): {text: string; bad: boolean} {
@@ -30,17 +30,17 @@ export function targetWords(robot: Robot): {text: string; bad: boolean} {
   const name = plain(document.markers[target.marker].name), {errorMm} = target;
   if (errorMm === null) return {text: `softkin is searching for commands that bring ${name} there …`, bad: false};
   if (target.why.startsWith('not reached')) return {text: `${name} ${target.why}.`, bad: true};
-  if (!target.reached && errorMm > nearMm)
+  if (!target.reached && errorMm > toleranceMm)
     return {text: `Out of reach: ${name} is ${mm(errorMm)} mm from its target.${whyNot(robot)}`, bad: true};
-  const far = errorMm < 1e-3 ? 'less than 0.001' : digits(errorMm, 2);
-  return {text: `Reached: ${name} is ${far} mm from its target.`, bad: false};
+  const distance = errorMm < 1e-3 ? 'less than 0.001' : digits(errorMm, 2);
+  return {text: `Reached: ${name} is ${distance} mm from its target.`, bad: false};
 }
 
-/** The target typed as numbers; returns what brings it up to date. */
+/** Shows the target as numbers that can be typed; returns the function that updates them. */
 export function makeTarget(robot: Robot): () => void {
   const {markers, live} = robot.document, box = byId('target'), error = byId('error');
   const able = markers.map((_, i) => i).filter((i) =>
-    live !== null ? !markers[i].body && !robot.tells : robot.canReach(i));
+    live !== null ? !markers[i].body && !robot.isEstimating : robot.canReach(i));
   if (!able.length) return () => {};
   robot.selected = able[0];
   byId('target-section').hidden = false;

@@ -1,4 +1,4 @@
-/** Significant digits without powers of ten in the middle of life. */
+/** Formats a number with significant digits, without a power of ten for usual magnitudes. */
 export function digits(value: number | null | undefined, count = 4): string {
   if (value === null || value === undefined || !Number.isFinite(value)) return '–';
   if (Math.abs(value) < 1e-9) return '0';
@@ -7,7 +7,7 @@ export function digits(value: number | null | undefined, count = 4): string {
   return value.toFixed(Math.max(0, count - 1 - size)).replace('-', '−');
 }
 
-/** A place in mm. */
+/** Formats a coordinate in mm. */
 export const mm = (value: number): string => (Math.abs(value) < 0.005 ? 0 : value).toFixed(2).replace('-', '−');
 
 export const withUnit = (value: string, unit: string): string => unit ? `${value} ${unit}` : value;
@@ -25,6 +25,6 @@ export function element<K extends keyof HTMLElementTagNameMap>(
 
 export function byId<T extends HTMLElement>(id: string): T {
   const found = document.getElementById(id);
-  if (!found) throw new Error(`the page lacks ${id}`);
+  if (!found) throw new Error(`the page has no element ${id}`);
   return found as T;
 }

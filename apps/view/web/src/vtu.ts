@@ -1,6 +1,6 @@
 import {noRegion} from './document';
 
-/** A surface and its numbers at vertices; region: of each triangle. */
+/** A surface with values at its vertices; region: the region number of each triangle. */
 export interface Surface {
   positions: Float32Array; triangles: Uint32Array; region: Uint16Array; vectors: Record<string, Float32Array>;
   scalars: Record<string, Float32Array>;
@@ -9,7 +9,7 @@ export interface Surface {
 const escaped = (text: string): string =>
   text.replaceAll('&', '&amp;').replaceAll('<', '&lt;').replaceAll('"', '&quot;');
 
-/** Nine digits give a number of single precision again. */
+/** Formats a number with nine digits, which determine a number of single precision. */
 const short = (value: number): string => Number.isFinite(value) ? String(Number(value.toPrecision(9))) : 'nan';
 
 function array(type: string, name: string, components: number, values: string[]): string {
@@ -21,7 +21,7 @@ function array(type: string, name: string, components: number, values: string[])
 const reals = (name: string, components: number, values: Float32Array): string =>
   array('Float32', name, components, Array.from(values, short));
 
-/** As an UnstructuredGrid of VTK, for ParaView: vertices that no triangle has are left out. */
+/** Formats a surface as a VTK UnstructuredGrid, for ParaView; vertices without triangle are left out. */
 export function vtuOf({positions, triangles, region, vectors, scalars}: Surface): string {
   const used = [...new Set(triangles)].sort((a, b) => a - b), number = new Map(used.map((v, i) => [v, i]));
   const some = (values: Float32Array, size: number) =>

@@ -5,10 +5,10 @@ export const kindWords: Record<Kind, string> = {
   motion: 'obstacle motion', force: 'force', hold: 'held body', turn: 'rotated support',
 };
 
-/** Not done to what is around the robot, such as a force on a body that it holds. */
+/** Returns whether an actuator belongs to the robot, and not to its surroundings, such as a force on a gripped body. */
 export const drives = ({kind}: Actuator): boolean => !['motion', 'force', 'hold', 'turn'].includes(kind);
 
-/** What is commanded, as a unit: "× rest length", "kPa". */
+/** Returns the unit of a command: "× rest length", "kPa". */
 export function commandWords({unit, control}: Pick<Actuator, 'unit' | 'control'>): string {
   if (control === 'stretch') return '× rest length';
   return unit || (/^(length|area|volume)$/.test(control) ? `× rest ${control}` : '');
@@ -17,12 +17,12 @@ export function commandWords({unit, control}: Pick<Actuator, 'unit' | 'control'>
 /** The unit of a length, area or volume as a ratio. */
 export const measured = '× rest';
 
-/** What an actuator has besides its load. */
+/** Returns the name of an actuator's measure: length, area or volume. */
 export function measureWords({kind}: Pick<Actuator, 'kind'>): string {
   return {cable: 'length', dea: 'area'}[kind as string] ?? 'volume';
 }
 
 export function loadWords({kind, load_unit: unit}: Actuator): string {
-  if (unit === measured || unit === 'mL') return measureWords({kind});  // mL: of a chamber that is flat at rest
+  if (unit === measured || unit === 'mL') return measureWords({kind});  // mL: volume of a chamber that is flat at rest
   return {cable: 'tension', dea: 'voltage'}[kind as string] ?? 'pressure';
 }

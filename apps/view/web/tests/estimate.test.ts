@@ -1,13 +1,13 @@
 import assert from 'node:assert/strict';
 import {test} from 'node:test';
-import {fitText, forceText, halfOpening, placeText, plusMinus, type ToldForce} from '../src/estimate';
+import {fitText, forceText, halfOpening, placeText, plusMinus, type EstimatedForce} from '../src/estimate';
 import {roundBelow} from '../src/forces';
 import {lineOf} from '../src/command_line';
 import type {Actuator, RobotDocument} from '../src/document';
 import {groupsOf, readingsCsv, unitOf, whyNoReading} from '../src/readings';
 import type {Robot} from '../src/robot';
 
-const force: ToldForce = {name: 'touch', at_mm: [1, 2, 3], force_N: [0, 3, -4], deviation_N: 0.25,
+const force: EstimatedForce = {name: 'touch', at_mm: [1, 2, 3], force_N: [0, 3, -4], deviation_N: 0.25,
                           across_N: [[5, 0, 0], [0, 0.8, 0.6]], place_mm: null};
 
 test('numbers have as many decimals as their deviations tell', () => {

@@ -32,14 +32,14 @@ template <class Lanes>
 
 /// As EightLanes, of one.
 struct One {
-  double low[3], high[3], least_move[3], most_move[3];
+  double low[3], high[3], min_move[3], max_move[3];
 };
 
 One lane_of(const EightLanes& boxes, int lane) {
   One one;
   for (int k = 0; k < 3; ++k) {
     one.low[k] = boxes.low[k][lane], one.high[k] = boxes.high[k][lane];
-    one.least_move[k] = boxes.least_move[k][lane], one.most_move[k] = boxes.most_move[k][lane];
+    one.min_move[k] = boxes.min_move[k][lane], one.max_move[k] = boxes.max_move[k][lane];
   }
   return one;
 }
@@ -52,12 +52,12 @@ One joint(const EightLanes& boxes) {
   for (int lane = 1; lane < 8; ++lane)
     for (int k = 0; k < 3; ++k) {
       lower(one.low[k], boxes.low[k][lane]), raise(one.high[k], boxes.high[k][lane]);
-      lower(one.least_move[k], boxes.least_move[k][lane]), raise(one.most_move[k], boxes.most_move[k][lane]);
+      lower(one.min_move[k], boxes.min_move[k][lane]), raise(one.max_move[k], boxes.max_move[k][lane]);
     }
   return one;
 }
 
-/// Bit l: something of lane l may meet something of the box on the way.
+/// Bit l: something of lane l may meet something of the box during the motion.
 unsigned may_meet(const EightLanes& boxes, const One& box) {
   constexpr int each = lanes_of<double>;
   unsigned bits = 0;
@@ -65,9 +65,9 @@ unsigned may_meet(const EightLanes& boxes, const One& box) {
     decltype(Vector<double>{} < Vector<double>{}) meets;
     for (int k = 0; k < 3; ++k) {
       const auto at = [&](const double(&values)[3][8]) { return load(&values[k][first]); };
-      // moves of the box against the lanes, and where it is on the way, seen from them
-      const Vector<double> none{}, back = box.least_move[k] - at(boxes.most_move),
-                                   forth = box.most_move[k] - at(boxes.least_move);
+      // moves of the box relative to the lanes, and the range of its relative positions during the motion
+      const Vector<double> none{}, back = box.min_move[k] - at(boxes.max_move),
+                                   forth = box.max_move[k] - at(boxes.min_move);
       const Vector<double> from = box.low[k] + (back < 0 ? back : none), to = box.high[k] + (forth > 0 ? forth : none);
       const auto here = (at(boxes.low) <= to) & (at(boxes.high) >= from);
       meets = k == 0 ? here : meets & here;
@@ -79,7 +79,7 @@ unsigned may_meet(const EightLanes& boxes, const One& box) {
 
 /// Bit l: what is in lane l has a vertex of what is in a lane of others, of which each has so many.
 template <int of_eight, int of_other>
-unsigned that_share(const EightNodes& eight, const EightNodes& others, int lane) {
+unsigned that_fraction(const EightNodes& eight, const EightNodes& others, int lane) {
   constexpr int bytes = vector_bytes < 32 ? vector_bytes : 32, each = bytes / static_cast<int>(sizeof(Index));
   typedef Index Some __attribute__((vector_size(bytes)));
   unsigned bits = 0;
@@ -104,7 +104,7 @@ void meet_group(const Askers& askers, const One (&each)[8], const TreeLevels& tr
   for (unsigned some = may_meet(askers.boxes, around); some != 0; some &= some - 1) {
     const int lane = __builtin_ctz(some);
     unsigned bits = may_meet(boxes, each[lane]);
-    if constexpr (of_asker > 0) bits &= ~that_share<of_other, of_asker>(tree.nodes[group], *askers.nodes, lane);
+    if constexpr (of_asker > 0) bits &= ~that_fraction<of_other, of_asker>(tree.nodes[group], *askers.nodes, lane);
     if (group == askers.own) bits &= ~0u << (lane + 1);
     if (bits != 0) met(context, group, lane, bits);
   }

@@ -7,7 +7,7 @@ namespace softkin::contact {
 /// Where eight things or groups of them are, and how their points move: each in a box. Lanes without any overlap with
 /// nothing: their boxes are inside out.
 struct alignas(64) EightLanes {
-  double low[3][8], high[3][8], least_move[3][8], most_move[3][8];
+  double low[3][8], high[3][8], min_move[3][8], max_move[3][8];
 };
 
 /// The vertices that eight things have, by their place in them; -1: none.
@@ -40,8 +40,8 @@ struct Askers {
 using Met = void (*)(void* context, Index group, int lane, unsigned bits);
 
 SOFTKIN_KERNELS(
-    /// Calls met(context, ...) for all that may be met on the way, as moves against each other tell, but for what has a
-    /// vertex in common; always in the same order. <0, 0>: vertices are not looked at, nodes may be null.
+    /// Calls met(context, ...) for all pairs whose boxes may meet during the motion, by their relative moves, except
+    /// for pairs with a common vertex; always in the same order. <0, 0>: vertices are not compared, nodes may be null.
     template <int of_asker, int of_other>
     void meet(const Askers& askers, const TreeLevels& tree, Met met, void* context);)
 

@@ -10,7 +10,7 @@ using FluxPoint = FluxPointOf<Pack>;
 constexpr double pi = 3.14159265358979323846;
 
 /// A number that depends on q = r^2 and z, from a loop's centre and along its axis: with its first derivatives, and its
-/// second ones where they are asked for.
+/// second ones where they are requested.
 template <bool Second>
 struct Local {
   Pack value, q, z;

@@ -12,7 +12,7 @@ struct LoopOfCurrent {
   double scale;  // mu_0 / (4 pi) times the current in all its turns [mT mm]
 };
 
-// energy/loop_field.hpp says what it does.
+// energy/loop_field.hpp documents it.
 SOFTKIN_KERNELS(void add_loop(const LoopOfCurrent& loop, const energy::Pack3& place, bool second,
                               energy::FluxPoint& out, energy::PackMask& known);)
 

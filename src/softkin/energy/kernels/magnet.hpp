@@ -5,7 +5,7 @@
 
 namespace softkin::energy {
 
-// energy/magnet.hpp says what they do.
+// energy/magnet.hpp documents them.
 SOFTKIN_KERNELS(template <int K, int Q>
                 void magnet_force(const energy::MagnetBlock<K, Q>& block, const energy::FluxBlock<Q>& flux,
                                   const energy::Shape<K>& current, energy::Shape<K>& gradient, energy::Pack& energy);

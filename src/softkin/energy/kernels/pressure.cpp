@@ -7,7 +7,7 @@ namespace {
 
 /// Barycentric coordinate of a corner at a quadrature point of energy::elastic_rest.
 template <int Q>
-double corner_share(int q, int corner) {
+double corner_fraction(int q, int corner) {
   if constexpr (Q == 1) return 0.25;
   return q == corner ? (5 + 3 * std::sqrt(5.0)) / 20 : (5 - std::sqrt(5.0)) / 20;
 }
@@ -15,7 +15,7 @@ double corner_share(int q, int corner) {
 template <int Q>
 Pack pressure_at(const CornerPressure& pressure, int q) {
   Pack sum{};
-  for (int i = 0; i < 4; ++i) sum += corner_share<Q>(q, i) * pressure.at[i];
+  for (int i = 0; i < 4; ++i) sum += corner_fraction<Q>(q, i) * pressure.at[i];
   return sum;
 }
 
@@ -67,7 +67,7 @@ void add_pressure_force(const energy::ElasticBlock<K, Q>& elements, const energy
     const Pack weight = volume * p;
     for (int a = 0; a < K; ++a) out.gradient[a] = out.gradient[a] + weight * (turned * block.slope[q][a]);
     const Pack swelling = volume * (dot(f.row[0], turned.row[0]) - 1 - eased);
-    for (int i = 0; i < 4; ++i) missed.at[i] += corner_share<Q>(q, i) * swelling;
+    for (int i = 0; i < 4; ++i) missed.at[i] += corner_fraction<Q>(q, i) * swelling;
   }
   if constexpr (Q == 1) add_unseen(block.volume[0], pressure, out.energy, missed);
 }
@@ -97,11 +97,11 @@ void add_pressure_stiffness(const energy::ElasticBlock<K, Q>& elements, const en
     const Pack33 turned = cofactor(f);
     for (int a = 0; a < K; ++a) {
       const Pack3 swelling = volume * (turned * slope[a]);
-      for (int i = 0; i < 4; ++i) coupled.node[i][a] = coupled.node[i][a] + pack(corner_share<Q>(q, i)) * swelling;
+      for (int i = 0; i < 4; ++i) coupled.node[i][a] = coupled.node[i][a] + pack(corner_fraction<Q>(q, i)) * swelling;
     }
     for (int i = 0, ij = 0; i < 4; ++i)
       for (int j = 0; j <= i; ++j, ++ij)
-        coupled.own[ij] -= corner_share<Q>(q, i) * corner_share<Q>(q, j) * volume * pressure.softness;
+        coupled.own[ij] -= corner_fraction<Q>(q, i) * corner_fraction<Q>(q, j) * volume * pressure.softness;
     if (projected) continue;
     const Pack weight = volume * pressure_at<Q>(pressure, q);
     for (int a = 0, ab = 0; a < K; ++a, ++ab)  // but the diagonal, where it is 0

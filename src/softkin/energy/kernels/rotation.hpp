@@ -5,7 +5,7 @@
 
 namespace softkin::energy {
 
-// energy/rotation.hpp says what they do.
+// energy/rotation.hpp documents them.
 SOFTKIN_KERNELS(void to_matrix_of_blocks(const energy::PackRotation& rotation, double* kept);
                 void best_rotation_of_blocks(const energy::Pack33& correlation, energy::PackRotation& rotation);)
 

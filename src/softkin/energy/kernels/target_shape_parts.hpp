@@ -3,7 +3,7 @@
 #include <softkin/energy/kernels/rotation_wide.hpp>
 #include <softkin/energy/kernels/target_shape.hpp>
 
-/// Formulas that the pulls of the target-shape formulation share with their derivatives.
+/// Formulas for the internal forces of the target-shape formulation and for their derivatives.
 namespace softkin::energy::SOFTKIN_TARGET {
 
 template <int K>
@@ -77,23 +77,23 @@ inline void growth_slope(const ActuationBlock<6>&, const Pack& ratio, Pack& grow
   thinned = -1 / (ratio * ratio);
 }
 
-/// Below this share of its volume an element's soft target turns into the rigid one; below the least one its scale no
-/// longer grows.
-inline constexpr double whole_from = 1.0 / 8, least_scaled = 1e-6;
+/// Below this fraction of its volume an element's soft target turns into the rigid one; below the minimum its scale
+/// does not grow any further.
+inline constexpr double whole_from = 1.0 / 8, min_scaled = 1e-6;
 
 /// How much of the soft target is Eq. (4), times its scale r; the rest of it is the rigid target.
 inline void soft_target(const Pack& volume_ratio, Pack& scaled, Pack& rigid) {
-  const Pack share = max(pack(0), min(pack(1), (1 / whole_from) * volume_ratio));
-  scaled = share / cbrt(max(volume_ratio, pack(least_scaled)));
-  rigid = 1 - share;
+  const Pack fraction = max(pack(0), min(pack(1), (1 / whole_from) * volume_ratio));
+  scaled = fraction / cbrt(max(volume_ratio, pack(min_scaled)));
+  rigid = 1 - fraction;
 }
 
 /// The derivatives of soft_target by the volume ratio.
 inline void soft_target_slope(const Pack& volume_ratio, Pack& scaled, Pack& rigid) {
-  const Pack bounded = max(volume_ratio, pack(least_scaled));
+  const Pack bounded = max(volume_ratio, pack(min_scaled));
   const Pack root = cbrt(bounded), zero = pack(0);
   const PackMask whole = volume_ratio >= whole_from, inverted = volume_ratio <= 0;
-  const Pack turning = select(volume_ratio < least_scaled, pack(1), pack(2.0 / 3)) / (whole_from * root);
+  const Pack turning = select(volume_ratio < min_scaled, pack(1), pack(2.0 / 3)) / (whole_from * root);
   scaled = select(whole, -1 / (3 * root * bounded), select(inverted, zero, turning));
   rigid = select(whole | inverted, zero, pack(-1 / whole_from));
 }

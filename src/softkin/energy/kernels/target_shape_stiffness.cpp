@@ -37,12 +37,12 @@ Pack33 turn_stiffness(const Shape<K>& current, const Shape<K>& target) {
 }
 
 /// a and b of the pull w (a R T + b X), and their derivatives by the volume ratio.
-struct BodyShares {
+struct BodyFractions {
   Pack of_rest, of_current, of_rest_slope, of_current_slope;
 };
 
 template <int K>
-BodyShares shares(const BodyBlock<K>& block, const Shape<K>& current) {
+BodyFractions fractions(const BodyBlock<K>& block, const Shape<K>& current) {
   if (!block.blended) return {pack(1), pack(-1), pack(0), pack(0)};
   const Pack ratio = volume(current) / block.volume, soft = 1 - block.shape_ratio;
   Pack scaled, rigid, scaled_slope, rigid_slope;
@@ -172,7 +172,7 @@ void turned_move(const Pack& weight, const Shape<K>& current, const Shape<K>& ta
 }
 
 /// The least eigenvalue of the turn stiffness, in the metric of the target, that keeps the exact matrix finite.
-constexpr double least_turn = 1e-6;
+constexpr double min_turn = 1e-6;
 
 }  // namespace
 
@@ -192,7 +192,7 @@ void pull_change_of_body(const energy::BodyBlock<K>& block_kept, const energy::S
   const PackRotation& rotation = wide(rotation_kept);
   const Shape<K>& change = wide(change_kept);
   Shape<K>& out = wide(out_kept);
-  const BodyShares share = shares(block, current);
+  const BodyFractions fraction = fractions(block, current);
   Shape<K> target, moved;
   turned<K>(rotation, block.rest, target);
   for (int i = 0; i < K; ++i) moved[i] = change[i];
@@ -204,9 +204,9 @@ void pull_change_of_body(const energy::BodyBlock<K>& block_kept, const energy::S
     volume_slope(current, slope);
     growth = inner<K>(slope, moved) / block.volume;
   }
-  const Pack along_rest = growth * share.of_rest_slope, along_current = growth * share.of_current_slope;
+  const Pack along_rest = growth * fraction.of_rest_slope, along_current = growth * fraction.of_current_slope;
   for (int i = 0; i < K; ++i)
-    out[i] = block.weight * (share.of_rest * cross(turn, target[i]) + share.of_current * moved[i] +
+    out[i] = block.weight * (fraction.of_rest * cross(turn, target[i]) + fraction.of_current * moved[i] +
                              along_rest * target[i] + along_current * current[i]);
 }
 
@@ -309,20 +309,20 @@ void stiffness_of_body(const energy::BodyBlock<K>& block_kept, const energy::Sha
     assemble<K>(block.weight, pack(1), target, compliance, pack(0), mode, out);
     return;
   }
-  const BodyShares share = shares(block, current);
-  const Pack straight = max(-share.of_current, pack(0));
+  const BodyFractions fraction = fractions(block, current);
+  const Pack straight = max(-fraction.of_current, pack(0));
   volume_slope(current, mode);
   Shape<K> answer;  // minus the pull's derivative by the volume ratio
   for (int i = 0; i < K; ++i)
-    answer[i] = pack(-1) * (share.of_rest_slope * target[i] + share.of_current_slope * current[i]);
+    answer[i] = pack(-1) * (fraction.of_rest_slope * target[i] + fraction.of_current_slope * current[i]);
   const Pack slopes = inner<K>(mode, mode);
   const Pack trace = max(inner<K>(answer, mode) / block.volume, pack(0));
   const Pack square = select(slopes > 0, trace / slopes, pack(0));
   // lanes that are not blended are exact unless projected
   const PackMask bounded = block.shape_ratio < (projected ? 2 : 1);
-  const Pack least = select(bounded, share.of_rest / max(straight, pack(1e-12)), pack(least_turn));
+  const Pack least = select(bounded, fraction.of_rest / max(straight, pack(1e-12)), pack(min_turn));
   const Pack33 compliance =
-      share.of_rest * turn_response(stiffness, turn_stiffness<K>(target, target), max(least, pack(least_turn)));
+      fraction.of_rest * turn_response(stiffness, turn_stiffness<K>(target, target), max(least, pack(min_turn)));
   assemble<K>(block.weight, straight, target, compliance, square, mode, out);
 }
 

@@ -91,10 +91,10 @@ Pack33 turn_response(const Pack33& stiffness, const Pack33& metric, const Pack& 
     Pack* entries[3] = {&vectors[k].x, &vectors[k].y, &vectors[k].z};
     for (int i = 0; i < 3; ++i)
       *entries[i] = lower[0][i] * turned[0][k] + lower[1][i] * turned[1][k] + lower[2][i] * turned[2][k];
-    const Pack share = select(usable, 1 / max(scaled[k][k], least), pack(0));
-    out.row[0] = out.row[0] + (share * vectors[k].x) * vectors[k];
-    out.row[1] = out.row[1] + (share * vectors[k].y) * vectors[k];
-    out.row[2] = out.row[2] + (share * vectors[k].z) * vectors[k];
+    const Pack fraction = select(usable, 1 / max(scaled[k][k], least), pack(0));
+    out.row[0] = out.row[0] + (fraction * vectors[k].x) * vectors[k];
+    out.row[1] = out.row[1] + (fraction * vectors[k].y) * vectors[k];
+    out.row[2] = out.row[2] + (fraction * vectors[k].z) * vectors[k];
   }
   return out;
 }

@@ -5,7 +5,7 @@
 
 namespace softkin::energy {
 
-// energy/turn_response.hpp says what they do.
+// energy/turn_response.hpp documents them.
 SOFTKIN_KERNELS(void turn_response_of_blocks(const energy::Pack33& stiffness, double* kept);
                 void turn_response_of_blocks(const energy::Pack33& stiffness, const energy::Pack33& metric,
                                              const energy::Pack& least, double* kept);)

@@ -92,7 +92,7 @@ Symmetric remembered(const ViscousBlock& viscous, int q, int branch) {
   const double* begun = viscous.begun + begun_entries * lanes * (viscous.branches * q + branch);
   std::memcpy(b.flowed.at, begun, sizeof(b.flowed.at));
   std::memcpy(&b.before_root, begun + 6 * lanes, sizeof(b.before_root));
-  b.ended = viscous.shares[branch].ended;
+  b.ended = viscous.fractions[branch].ended;
   add(b.flowed, b.ended, s.barred);
   const Symmetric cofactors = cofactor(b.flowed);
   const Pack size = determinant(b.flowed, cofactors);
@@ -103,8 +103,8 @@ Symmetric remembered(const ViscousBlock& viscous, int q, int branch) {
   return b;
 }
 
-/// 3 (root - root at no strain's share) / ended - 3, without the cancellation of a short step: det M less what it is
-/// without ended bar C, over ended, is cof M : bar C - ended M : cof bar C + ended^2.
+/// 3 (root - before_root) / ended - 3, without the cancellation of a short step: det M minus its value without
+/// ended bar C, over ended, is cof M : bar C - ended M : cof bar C + ended^2.
 Pack stored(const Branch& b, const Strain& s, const Symmetric& barred_cofactors) {
   const Pack square = b.root * b.root;
   const Pack above = square * inner(b.inverse, s.barred) - b.ended * (inner(b.flowed, barred_cofactors) - b.ended);
@@ -288,8 +288,8 @@ void begin_step(const energy::ViscousBlock& branches, double* begun) {
   for (int q = 0; q < Q; ++q) {
     const Symmetric strain = remembered(viscous, q, -1);
     for (int i = 0; i < viscous.branches; ++i, begun += begun_entries * lanes) {
-      Symmetric before = scaled(viscous.shares[i].remembered, remembered(viscous, q, i));
-      add(before, viscous.shares[i].begun, strain);
+      Symmetric before = scaled(viscous.fractions[i].remembered, remembered(viscous, q, i));
+      add(before, viscous.fractions[i].begun, strain);
       const Pack root = cbrt(determinant(before, cofactor(before)));
       std::memcpy(begun, before.at, sizeof(before.at));
       std::memcpy(begun + 6 * lanes, &root, sizeof(root));
@@ -373,14 +373,14 @@ Overstress overstress(const Symmetric& barred, const Symmetric& inverse) {
 
 /// Integral of |s|^2 over a step, over its relaxation time, for s = a + b exp(-time), from s at begin and end. rate:
 /// the step over the relaxation time
-Pack integral(const Overstress& begin, const Overstress& end, const Pack& rate, const BranchShares& shares) {
+Pack integral(const Overstress& begin, const Overstress& end, const Pack& rate, const BranchFractions& fractions) {
   // their angle, from the Frobenius norms, which are theirs where strains have the same axes
   const Pack sizes = inner(begin.at, begin.at) * inner(end.at, end.at);
   const Pack both =
       select(sizes > 0, inner(begin.at, end.at) * sqrt(begin.size * end.size / max(sizes, pack(1e-300))), Pack{});
   // |s|^2 = |a|^2 + 2 a b e^-t + |b|^2 e^-2t with a = (end - e^-x begin) / (1 - e^-x), b = (begin - end) / (1 - e^-x)
-  const Pack& e = shares.remembered;
-  const Pack gone = select(rate < 0.5, rate * (shares.remembered + shares.begun), 1 - e);
+  const Pack& e = fractions.remembered;
+  const Pack gone = select(rate < 0.5, rate * (fractions.remembered + fractions.begun), 1 - e);
   const Pack per = 1 / max(gone * gone, pack(1e-300));
   const Pack aa = per * (end.size - 2 * e * both + e * e * begin.size);
   const Pack bb = per * (begin.size - 2 * both + end.size);
@@ -413,7 +413,7 @@ void flow(const energy::ElasticBlock<K, Q>& elements, const energy::ViscousBlock
       keep(scaled(b.inverse_root, b.flowed));
       const Overstress begin = overstress(remembered(viscous, q, -1), cofactor(remembered(viscous, q, i)));
       lost += 0.5 * block.volume[q] * viscous.modulus[i] *
-              integral(begin, overstress(s.barred, b.inverse), rate[i], viscous.shares[i]);
+              integral(begin, overstress(s.barred, b.inverse), rate[i], viscous.fractions[i]);
     }
   }
   SOFTKIN_TARGET::keep(lost, kept);

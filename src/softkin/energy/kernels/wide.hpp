@@ -21,7 +21,7 @@ template <int K>
 using ElasticForce = ElasticForceOf<Pack, K>;
 template <int K>
 using ElasticStiffness = ElasticStiffnessOf<Pack, K>;
-using BranchShares = BranchSharesOf<Pack>;
+using BranchFractions = BranchFractionsOf<Pack>;
 using ViscousBlock = ViscousBlockOf<Pack>;
 using CornerPressure = CornerPressureOf<Pack>;
 using PressureMiss = PressureMissOf<Pack>;

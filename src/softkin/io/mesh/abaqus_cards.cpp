@@ -11,7 +11,7 @@ namespace softkin {
 
 namespace {
 
-/// Walks an Abaqus input file keyword by keyword; knows of comments, letter case, blanks, continued keyword lines and
+/// Walks an Abaqus input file keyword by keyword; handles comments, letter case, blanks, continued keyword lines and
 /// included files.
 class AbaqusDeck {
  public:
@@ -210,7 +210,7 @@ class CardReader {
     if (!set.empty()) add_set(set, AbaqusSetKind::elements, std::move(numbers), line);
   }
 
-  /// What follows the name of a shape is its formulation (H, R, M, ...), which is no business of a mesh.
+  /// The rest of the name after the shape is its formulation (H, R, M, ...), which is irrelevant to a mesh.
   ElementType type_of(const std::string& type) const {
     for (const ElementType& known : element_types) {
       if (!type.starts_with(known.name)) continue;
@@ -348,7 +348,7 @@ class CardReader {
       deck_.fail("unknown instance '" + deck_.value("INSTANCE") + "'");
   }
 
-  /// Consecutive numbers share an item.
+  /// Consecutive numbers are merged into one item.
   void append_number(std::vector<AbaqusItem>& items, std::int64_t id) const {
     if (!items.empty() && items.back().last + 1 == id) {
       items.back().last = id;

@@ -100,7 +100,8 @@ class CellStore {
   std::vector<Index> slots_;  // open addressing, at most half full: half the time of a std::unordered_map
 };
 
-/// Collects what a .msh file holds and makes a Mesh of it. What cannot be is a failure of the source, where it stands.
+/// Collects the content of a .msh file and makes a Mesh of it. Reports invalid content as a failure of the source, with
+/// its position.
 class Builder {
  public:
   explicit Builder(const Source& in) : in_(in) {}

@@ -10,7 +10,7 @@
 
 namespace softkin::gmsh {
 
-/// Element types of the MSH format that softkin knows.
+/// Element types of the MSH format that softkin supports.
 enum class CellType : int {
   line = 1,
   triangle = 2,
@@ -30,7 +30,7 @@ struct CellShape {
 /// By the number of the type; no nodes: not a CellType.
 inline constexpr CellShape kShapes[16] = {{},     {1, 2}, {2, 3}, {2, 4},  {3, 4}, {}, {3, 6}, {},
                                           {1, 3}, {2, 6}, {},     {3, 10}, {},     {}, {},     {0, 1}};
-inline constexpr std::size_t kMostNodes = 10;
+inline constexpr std::size_t kMaxNodes = 10;
 
 [[nodiscard]] constexpr CellShape shape_of(CellType type) {
   return kShapes[static_cast<int>(type)];
@@ -42,7 +42,7 @@ inline constexpr std::size_t kMostNodes = 10;
   return nodes;
 }
 
-/// Does a name hold what cannot stand between double quotes on one line?
+/// Does a name contain characters that cannot stand between double quotes on one line?
 [[nodiscard]] bool is_unquotable(std::string_view name);
 
 inline constexpr std::int64_t kMaxIndex = std::numeric_limits<Index>::max();
@@ -68,7 +68,7 @@ class Source {
   /// Values of a record; in binary an int has 4 bytes, a size 8 and a real 8.
   std::int64_t int_value(const char* what, std::int64_t low, std::int64_t high);
   std::int64_t size_value(const char* what, std::int64_t low, std::int64_t high);
-  /// An int that is a CellType, or the failure that says why that type is refused.
+  /// An int that is a CellType, or the failure with the reason why that type is refused.
   CellType cell_type(const char* what);
   double real(const char* what);
   void skip_reals(int count, const char* what);

@@ -104,7 +104,7 @@ class Reader {
   void read_element(std::int64_t element, CellType type, std::int64_t tags) {
     const auto physical = static_cast<int>(read_tags(tags));
     const CellShape shape = shape_of(type);
-    std::array<Index, kMostNodes> vertices{};
+    std::array<Index, kMaxNodes> vertices{};
     for (int i = 0; i < shape.nodes; ++i) vertices[i] = builder_.vertex(element, in_.int_value(kNode, 1, kMaxInt));
     in_.end_record();
     const std::span<const Index> nodes(vertices.data(), shape.nodes);
@@ -226,7 +226,7 @@ class Reader {
       in_.fail("elements of type " + std::to_string(static_cast<int>(type)) + " in an entity of dimension " +
                std::to_string(dimension));
     const std::int64_t count = read_block_size("number of elements in the block");
-    std::array<Index, kMostNodes> vertices{};
+    std::array<Index, kMaxNodes> vertices{};
     const std::span<const Index> nodes(vertices.data(), shape.nodes);
     for (std::int64_t i = 0; i < count; ++i) {
       const std::int64_t element = in_.size_value(kElement, 0, kMaxSize);

@@ -269,7 +269,7 @@ void write_counts(Sink& out, std::uint64_t blocks, std::uint64_t items) {
   out.end_record();
 }
 
-// All in one block, on the first volume: softkin knows no geometry that they could lie on.
+// All in one block, on the first volume: softkin has no geometry that they could lie on.
 void write_nodes(Sink& out, const Points& vertices) {
   const auto count = static_cast<std::uint64_t>(vertices.rows());
   out.open_section("Nodes");

@@ -18,7 +18,7 @@ namespace softkin {
 
 /// Writes .msh (Gmsh 4.1 binary, physical groups kept), .vtu (volume regions as cell data; a cell in several keeps the
 /// first) or .stl (boundary, normals outwards whatever the elements' orientation; a face of order 2 as four facets).
-/// throws  InvalidInput on another extension, on tetrahedra of two orders or of order 2 beside prisms, or where the
+/// throws  InvalidInput on another extension, on tetrahedra of two orders or of order 2 with prisms, or where the
 ///         file cannot be written
 void write_mesh(const std::filesystem::path& path, const Mesh& mesh);
 
@@ -33,13 +33,13 @@ void write_mesh(const std::filesystem::path& path, const Mesh& mesh);
 /// Gmsh .msh 2.2 or 4.1, ASCII or binary in either byte order.
 ///
 /// Physical groups become regions: first those of $PhysicalNames in its order, also where they are empty, then the
-/// unnamed ones as "physical_DIM_TAG". Where groups of several dimensions share a name, the highest dimension keeps it
-/// and the others become "NAME_DIMd" ("base_2d"). A group of lines becomes its vertices; of triangles of
-/// order 2 the corners are kept.
+/// unnamed ones as "physical_DIM_TAG". Where groups of several dimensions have the same name, the highest dimension
+/// keeps it and the others become "NAME_DIMd" ("base_2d"). A group of lines becomes its vertices; of triangles of order
+/// 2 the corners are kept.
 /// Vertices and elements keep the order of the file. Elements with the same vertices (MSH 2.2 repeats an element for
 /// every group it is in) are stored once, in the orientation of the first. Triangles and quads in no group are dropped.
 /// Refused are elements other than points, lines, triangles and tetrahedra of order 1 or 2, quads and prisms of order
-/// 1, tetrahedra of two orders, or of order 2 beside prisms, partitioned 4.1 meshes, and files without volume elements
+/// 1, tetrahedra of two orders, or of order 2 with prisms, partitioned 4.1 meshes, and files without volume elements
 /// or triangles. Where there is no volume element all triangles are kept.
 [[nodiscard]] Mesh read_gmsh(const std::filesystem::path& path);
 /// The same of a file that is in memory; file is for messages.
@@ -59,7 +59,7 @@ void write_gmsh(const std::filesystem::path& path, const Mesh& mesh, bool binary
 /// may be missing.
 [[nodiscard]] Mesh read_medit(const std::filesystem::path& path);
 
-/// TetGen .node + .ele (path names either; the other stands beside it) and, where present, .face. Numbering from 0 or
+/// TetGen .node + .ele (path names either; the other is next to it) and, where present, .face. Numbering from 0 or
 /// 1. The (last) element attribute becomes regions "attribute_N", face markers "marker_N". -o2 (10 nodes
 /// an element) as TetGen 1.5 and 1.6 order them.
 [[nodiscard]] Mesh read_tetgen(const std::filesystem::path& path);
@@ -84,14 +84,14 @@ struct Sidecar {
 };
 [[nodiscard]] Sidecar read_sidecar(const std::filesystem::path& path);  // throws as read_mesh
 
-/// A surface of triangles from a file of STL, OBJ, PLY or OFF (surface_files.hpp), which its content tells, and where
-/// that does not the extension. Lengths as they are in the file.
+/// A surface of triangles from a file of STL, OBJ, PLY or OFF (surface_files.hpp). The format is detected from the
+/// content or, where that does not suffice, from the extension. Lengths as they are in the file.
 ///
 /// throws  InvalidInput naming file and line (or byte); of a file of another form what it is
 [[nodiscard]] TriangleSurface read_surface(const std::filesystem::path& path);
 
 /// ASCII (one or several solids) or binary STL; vertices with equal coordinates are welded. Also refused: no facets, a
-/// facet without area, a number that is not finite (normals included), a file that goes on after the last facet.
+/// facet without area, a number that is not finite (normals included), a file that continues after the last facet.
 [[nodiscard]] TriangleSurface read_stl(const std::filesystem::path& path);
 
 /// Binary STL, in single precision.

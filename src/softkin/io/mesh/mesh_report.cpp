@@ -49,7 +49,7 @@ MeshVerdict verdict_of(const Mesh& mesh, const std::string& file) {
           warnings_of(mesh)};
 }
 
-/// Adds what compile() says of the scene, and the empty spaces of its body, or of the mesh where it is refused.
+/// Adds the verdict of compile() on the scene, and the empty spaces of its body, or of the mesh where it is refused.
 void judge_scene(const RobotSpec& spec, MeshVerdict& verdict) {
   try {
     Model model = compile(spec);

@@ -30,11 +30,11 @@ struct MeshInfo {
 };
 
 /// file    a mesh, or a scene, whose mesh it is then, or its meshes as one
-/// unit    of a mesh; a scene knows its own
+/// unit    of a mesh; a scene has its own
 /// throws  InvalidInput; also where coordinates are so large that volumes would overflow
 [[nodiscard]] MeshInfo mesh_info(const std::string& file, const std::string& unit);
 
-/// What compile() says of a scene.
+/// The verdict of compile() on a scene.
 struct SceneVerdict {
   std::vector<std::string> warnings, notes;
   std::optional<std::string> error;
@@ -52,7 +52,7 @@ struct MeshVerdict {
   std::optional<SceneVerdict> scene;
   std::vector<std::string> warnings{};  // a sentence each
   std::string no_volume{};              // what to do where a mesh alone has no volume element; "": it has, or a scene
-                                        // tells what it is
+                                        // defines it
 
   [[nodiscard]] bool usable() const;
   /// Does the scene compile in spite of the mesh's errors?

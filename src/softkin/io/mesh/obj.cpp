@@ -42,7 +42,7 @@ class ObjReader {
     std::size_t line, begin, end;  // of its corners
   };
 
-  /// A line that ends in a backslash goes on with the next one; the statements after it keep their lines.
+  /// A line that ends in a backslash continues on the next one; the statements after it keep their lines.
   static std::string joined_lines(const std::string& content) {
     std::string joined;
     joined.reserve(content.size());

@@ -45,7 +45,7 @@ std::uint32_t announced_facets(const std::string& content) {
   return Scanner("", std::string_view(content).substr(80)).binary<std::uint32_t>("", kSwap);
 }
 
-/// The word "solid" does not tell: binary files may begin with it too. Their size does; and text holds no zero byte.
+/// The word "solid" does not decide: binary files may begin with it too. Their size does; and text holds no zero byte.
 bool is_binary(const std::string& content) {
   if (content.size() >= kHeaderBytes && content.size() == kHeaderBytes + kFacetBytes * announced_facets(content))
     return true;

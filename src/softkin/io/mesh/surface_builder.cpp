@@ -12,7 +12,7 @@ namespace {
 using Vec2 = Eigen::Vector2d;
 
 constexpr double max_off_plane = 0.05;    // of a polygon's vertex, over its size
-constexpr double least_part = 1e-12;      // of a polygon's area that a triangle of it has
+constexpr double min_part = 1e-12;        // of a polygon's area that a triangle of it has
 constexpr std::size_t max_corners = 500;  // of a polygon that is not convex
 
 Vec3 vector_of(const SurfaceCorner& corner) {
@@ -34,7 +34,7 @@ class Polygon {
   [[nodiscard]] std::vector<Corners> fan() const {
     std::vector<Corners> triangles;
     for (std::size_t i = 1; i + 1 < points_.size(); ++i) {
-      if (!(area(0, i, i + 1) > least_part * area_)) return {};
+      if (!(area(0, i, i + 1) > min_part * area_)) return {};
       triangles.push_back({0, i, i + 1});
     }
     return triangles;
@@ -52,7 +52,7 @@ class Polygon {
       for (std::size_t i = 0; i < left.size(); ++i) {
         const Corners ear = at(left, i);
         const double own = area(ear[0], ear[1], ear[2]);
-        const bool fits = own > least_part * area_ && rest - own > least_part * area_ && !holds_another(left, ear);
+        const bool fits = own > min_part * area_ && rest - own > min_part * area_ && !holds_another(left, ear);
         if (fits && roundness(ear) > roundest) {
           roundest = roundness(ear);
           best = i;
@@ -64,7 +64,7 @@ class Polygon {
       rest -= area(ear[0], ear[1], ear[2]);
       left.erase(left.begin() + static_cast<std::ptrdiff_t>(best));
     }
-    if (!(area(left[0], left[1], left[2]) > least_part * area_)) return {};
+    if (!(area(left[0], left[1], left[2]) > min_part * area_)) return {};
     triangles.push_back({left[0], left[1], left[2]});
     return triangles;
   }

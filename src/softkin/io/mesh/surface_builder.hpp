@@ -14,7 +14,7 @@ using SurfaceCorner = std::array<double, 3>;
 using FacetCorners = std::array<SurfaceCorner, 3>;
 
 /// Twice the area, as a vector over the square of the longest edge; zero where the corners are on a line as far as
-/// double precision can tell.
+/// double precision can resolve.
 [[nodiscard]] Vec3 facet_normal(const Vec3& a, const Vec3& b, const Vec3& c);
 
 /// Makes a surface of facets: corners of equal coordinates become one vertex.

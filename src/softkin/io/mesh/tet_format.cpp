@@ -50,7 +50,7 @@ void read_flags(const Scanner& scanner, const std::vector<std::string_view>& cel
   }
 }
 
-/// Names of a file beside NAME.tet: NAME_chamber.txt; beside ROBOT_body.tet also ROBOT_chamber.txt, as the paper's
+/// Names of a file next to NAME.tet: NAME_chamber.txt; next to ROBOT_body.tet also ROBOT_chamber.txt, as the paper's
 /// authors publish theirs.
 std::vector<std::string> names_beside(const fs::path& path, const std::string& suffix) {
   constexpr std::string_view body = "_body";

@@ -91,7 +91,7 @@ void read_edge_nodes(TetgenFile& file, Index first, Mesh& mesh) {
     const Vec3 middle = (at(corners[edge[0]]) + at(corners[edge[1]])) / 2;
     return (at(node) - middle).norm();
   };
-  // other versions wrote another order, which the file does not tell
+  // other versions wrote another order, which the file does not specify
   for (std::size_t i = 0; i < 6; ++i)
     for (const auto& edge : tetrahedron_edges)
       if (2 * distance(nodes[i], edge) < distance(nodes[i], tetrahedron_edges[i]))
@@ -121,7 +121,7 @@ void read_tetrahedra(const fs::path& path, Index first, Mesh& mesh) {
 }
 
 /// The boundary marker of the face whose vertices were read last. Before it -o2 writes the three nodes on the face's
-/// edges, after it -nn the two elements at the face; the header tells of neither.
+/// edges, after it -nn the two elements at the face; the header announces neither.
 std::optional<Index> read_marker(TetgenFile& file, bool marked, bool quadratic) {
   std::vector<Index> numbers;
   while (file.scanner.line_has_more() && numbers.size() < 6) numbers.push_back(file.label("number of a face"));

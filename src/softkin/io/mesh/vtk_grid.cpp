@@ -14,7 +14,7 @@ namespace softkin {
 
 namespace {
 
-constexpr std::size_t kMostValues = 1000;
+constexpr std::size_t kMaxValues = 1000;
 
 struct CellKind {
   int type;  // of VTK
@@ -88,7 +88,7 @@ bool has_few_values(const CellLabels& labels) {
   std::set<std::int64_t> values;
   for (const std::int64_t value : labels.values) {
     values.insert(value);
-    if (values.size() > kMostValues) return false;
+    if (values.size() > kMaxValues) return false;
   }
   return true;
 }

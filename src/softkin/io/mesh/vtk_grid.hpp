@@ -46,7 +46,7 @@ struct CellLabels {
   Origin origin;
 };
 
-/// An unstructured grid as the VTK formats hold it; vertices and types are checked by who fills it.
+/// An unstructured grid as the VTK formats hold it; vertices and types are checked by the code that fills it.
 struct CellGrid {
   Points points;
   std::vector<std::uint8_t> types;     // VTK cell types for which cell_refusal() is empty

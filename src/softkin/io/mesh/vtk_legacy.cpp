@@ -12,8 +12,8 @@ namespace softkin {
 
 namespace {
 
-constexpr std::int64_t kMostIndices = std::numeric_limits<Index>::max();
-constexpr std::int64_t kMostComponents = 1 << 20;
+constexpr std::int64_t kMaxIndices = std::numeric_limits<Index>::max();
+constexpr std::int64_t kMaxComponents = 1 << 20;
 
 /// VTK writes blanks and other special characters of a name as %XX.
 std::string decoded_name(std::string_view text) {
@@ -118,7 +118,7 @@ class LegacyReader {
     if (known == std::end(fixed) && !texture && !colors) return false;
     const std::string name = decoded_name(scanner_.token("the name of an array"));
     const std::int64_t components =
-        texture || colors ? scanner_.integer("number of components", 1, kMostComponents) : known->second;
+        texture || colors ? scanner_.integer("number of components", 1, kMaxComponents) : known->second;
     const ArrayType type = colors ? ArrayType{} : type_token();
     scanner_.end_line();
     read_array(name, type, components, tuples_, false);
@@ -127,7 +127,7 @@ class LegacyReader {
 
   void read_points() {
     if (grid_.points.rows() > 0) scanner_.fail("POINTS stands twice in the file");
-    const std::int64_t count = scanner_.integer("number of points", 1, kMostIndices);
+    const std::int64_t count = scanner_.integer("number of points", 1, kMaxIndices);
     const ArrayType type = type_token();
     if (type.bits || type.strings) scanner_.fail("points must be numbers");
     begin_data();
@@ -143,7 +143,7 @@ class LegacyReader {
     if (has_cells_) scanner_.fail("CELLS stands twice in the file");
     if (grid_.points.rows() == 0) scanner_.fail("CELLS stands before POINTS");
     has_cells_ = true;
-    const std::int64_t count = scanner_.integer("number of cells", 1, kMostIndices);
+    const std::int64_t count = scanner_.integer("number of cells", 1, kMaxIndices);
     const std::int64_t size = scanner_.integer("size of CELLS", 1, std::numeric_limits<std::int64_t>::max());
     scanner_.end_line();
     if (offset_cells_)
@@ -199,7 +199,7 @@ class LegacyReader {
   void read_cell_types() {
     if (!has_cells_) scanner_.fail("CELL_TYPES stands before CELLS");
     if (!grid_.types.empty()) scanner_.fail("CELL_TYPES stands twice in the file");
-    const std::int64_t count = scanner_.integer("number of cell types", 1, kMostIndices);
+    const std::int64_t count = scanner_.integer("number of cell types", 1, kMaxIndices);
     if (std::cmp_not_equal(count, cell_count()))
       scanner_.fail("there are " + std::to_string(count) + " cell types for " + std::to_string(cell_count()) +
                     " cells");
@@ -216,7 +216,7 @@ class LegacyReader {
     const std::string name = decoded_name(scanner_.token("the name of an array"));
     const ArrayType type = type_token();
     const std::int64_t components =
-        scanner_.line_has_more() ? scanner_.integer("number of components", 1, kMostComponents) : 1;
+        scanner_.line_has_more() ? scanner_.integer("number of components", 1, kMaxComponents) : 1;
     scanner_.end_line();
     if (upper_case(scanner_.token("LOOKUP_TABLE")) != "LOOKUP_TABLE")
       scanner_.fail("expected LOOKUP_TABLE after SCALARS");
@@ -227,7 +227,7 @@ class LegacyReader {
 
   void read_field() {
     scanner_.token("the name of a field");
-    const std::int64_t arrays = scanner_.integer("number of arrays", 0, kMostIndices);
+    const std::int64_t arrays = scanner_.integer("number of arrays", 0, kMaxIndices);
     scanner_.end_line();
     for (std::int64_t i = 0; i < arrays; ++i) {
       std::string name = decoded_name(scanner_.token("the name of an array"));
@@ -236,8 +236,8 @@ class LegacyReader {
         name = decoded_name(scanner_.token("the name of an array"));
       }
       if (name == "NULL_ARRAY") continue;
-      const std::int64_t components = scanner_.integer("number of components", 0, kMostComponents);
-      const std::int64_t tuples = scanner_.integer("number of tuples", 0, kMostIndices);
+      const std::int64_t components = scanner_.integer("number of components", 0, kMaxComponents);
+      const std::int64_t tuples = scanner_.integer("number of tuples", 0, kMaxIndices);
       if (in_attributes_ && tuples != tuples_)
         scanner_.fail("array '" + name + "' has " + std::to_string(tuples) + " tuples instead of " +
                       std::to_string(tuples_));
@@ -249,14 +249,14 @@ class LegacyReader {
 
   void read_lookup_table() {
     scanner_.token("the name of a lookup table");
-    const std::int64_t size = scanner_.integer("size of a lookup table", 0, kMostIndices);
+    const std::int64_t size = scanner_.integer("size of a lookup table", 0, kMaxIndices);
     scanner_.end_line();
     read_array("", ArrayType{}, 4, size, false);
   }
 
   void begin_attributes(std::size_t tuples, bool of_cells) {
     if (of_cells && !has_cells_) scanner_.fail("CELL_DATA stands before CELLS");
-    tuples_ = scanner_.integer(of_cells ? "number of CELL_DATA" : "number of POINT_DATA", 0, kMostIndices);
+    tuples_ = scanner_.integer(of_cells ? "number of CELL_DATA" : "number of POINT_DATA", 0, kMaxIndices);
     if (std::cmp_not_equal(tuples_, tuples))
       scanner_.fail((of_cells ? "CELL_DATA is for " : "POINT_DATA is for ") + std::to_string(tuples_) +
                     ", but the file has " + std::to_string(tuples) + (of_cells ? " cells" : " points"));
@@ -303,7 +303,7 @@ class LegacyReader {
   void skip_string() {
     if (scanner_.remaining() == 0) scanner_.fail("file ends before a string");
     if (!binary_) return scanner_.skip_line();
-    // the first two bits tell how many bytes the length has: 11 one, 10 two, 01 four, 00 eight
+    // the first two bits give the number of bytes of the length: 11 one, 10 two, 01 four, 00 eight
     const auto first = scanner_.binary<unsigned char>("a string");
     std::uint64_t length = first & 0x3F;
     const int more = first >> 6 == 3 ? 0 : first >> 6 == 2 ? 1 : first >> 6 == 1 ? 3 : 7;

@@ -13,7 +13,7 @@ namespace softkin {
 namespace {
 
 // deflate cannot shrink data by more than this
-constexpr std::uint64_t kMostCompression = 1032;
+constexpr std::uint64_t kMaxCompression = 1032;
 
 bool is_xml_blank(char c) {
   return c == ' ' || c == '\t' || c == '\r' || c == '\n';
@@ -162,7 +162,7 @@ Blocks read_blocks(VtuBytes& bytes, const VtuEncoding& encoding, std::optional<s
   const std::uint64_t partial = read_word(bytes, encoding);
   if (count > bytes.bound() / (encoding.long_header ? 8 : 4))
     bytes.fail("announces " + std::to_string(count) + " compressed blocks, more than the file can hold");
-  const std::uint64_t most = bytes.bound() * kMostCompression;
+  const std::uint64_t most = bytes.bound() * kMaxCompression;
   const std::uint64_t whole = count > 0 && partial > 0 ? count - 1 : count;
   if (partial > most || (whole > 0 && size > most / whole))
     bytes.fail("announces blocks of " + std::to_string(size) + " bytes, more than the compressed data can hold");
@@ -178,7 +178,7 @@ Blocks read_blocks(VtuBytes& bytes, const VtuEncoding& encoding, std::optional<s
       bytes.fail("announces compressed blocks that are longer than the rest of the data");
     blocks.compressed.push_back(compressed);
   }
-  if (blocks.total > sum * kMostCompression)
+  if (blocks.total > sum * kMaxCompression)
     bytes.fail("announces " + std::to_string(blocks.total) + " bytes, more than " + std::to_string(sum) +
                " compressed bytes can hold");
   return blocks;

@@ -9,7 +9,7 @@
 
 namespace softkin {
 
-/// How a .vtu file holds its binary arrays, as its VTKFile element says.
+/// The encoding of binary arrays in a .vtu file, by its VTKFile element.
 struct VtuEncoding {
   bool swap = false;             // not in this machine's byte order
   bool long_header = false;      // header_type UInt64, not UInt32

@@ -13,7 +13,7 @@ namespace {
 constexpr std::string_view kBlanks = " \t\r\n";
 /// Coordinates pack to a half, connectivity to a tenth: who unpacks to more than this many times the file wants to fill
 /// the memory. Nothing small does.
-constexpr std::uint64_t kMostUnpacked = 100, kSmall = 1 << 26;
+constexpr std::uint64_t kMaxUnpacked = 100, kSmall = 1 << 26;
 
 /// Where <AppendedData> begins, outside comments, or npos.
 std::size_t find_appended_tag(std::string_view content) {
@@ -231,7 +231,7 @@ std::string VtuDocument::decoded(pugi::xml_node array, std::optional<std::uint64
 }
 
 std::string VtuDocument::unpacked(const VtuPlace& place, std::optional<std::uint64_t> expected) const {
-  const std::uint64_t most = std::max<std::uint64_t>(kSmall, kMostUnpacked * content_.size());
+  const std::uint64_t most = std::max<std::uint64_t>(kSmall, kMaxUnpacked * content_.size());
   std::string data = read_vtu_data(content_, place, encoding_, expected, most - std::min(most, unpacked_));
   unpacked_ += data.size();
   return data;

@@ -150,8 +150,8 @@ void for_each_stroke(char character, const Draw& draw) {
 double distance_to(const Canvas::Stroke& stroke, const Canvas::Place& p) {
   const Canvas::Place along = stroke.to - stroke.from;
   const double squared = along.squaredNorm();
-  const double share = squared > 0 ? std::clamp((p - stroke.from).dot(along) / squared, 0.0, 1.0) : 0.0;
-  return (p - stroke.from - share * along).norm();
+  const double fraction = squared > 0 ? std::clamp((p - stroke.from).dot(along) / squared, 0.0, 1.0) : 0.0;
+  return (p - stroke.from - fraction * along).norm();
 }
 
 }  // namespace
@@ -170,10 +170,10 @@ double round_length(double limit) {
   return power;
 }
 
-void Canvas::cover(int x, int y, const Rgb& color, double share) {
-  if (share <= 0 || x < 0 || y < 0 || x >= image_.width || y >= image_.height) return;
+void Canvas::cover(int x, int y, const Rgb& color, double fraction) {
+  if (fraction <= 0 || x < 0 || y < 0 || x >= image_.width || y >= image_.height) return;
   std::uint8_t* pixel = image_.pixel(x, y);
-  for (int k = 0; k < 3; ++k) pixel[k] = to_byte(pixel[k] / 255.0 * (1 - share) + color[k] * share);
+  for (int k = 0; k < 3; ++k) pixel[k] = to_byte(pixel[k] / 255.0 * (1 - fraction) + color[k] * fraction);
 }
 
 void Canvas::fill(const Place& low, const Place& high, const Rgb& color) {

@@ -40,7 +40,7 @@ class Canvas {
   [[nodiscard]] static std::string fitted(const std::string& text, double cell, double width);
 
  private:
-  void cover(int x, int y, const Rgb& color, double share);
+  void cover(int x, int y, const Rgb& color, double fraction);
 
   RgbImage& image_;
 };

@@ -15,11 +15,11 @@ namespace softkin {
 
 namespace {
 
-constexpr int fewest_pixels = 64, most_pixels = 8192;  // width and height [pixel]
-constexpr double filled = 0.9;                         // share of the drawing area that the layers fill
-constexpr double no_distance = 0.005;                  // share of the layers' size that is as good as no distance
-constexpr double deepest = 1e12;                       // [pixel]
-constexpr double shadow = 0.42, highlight = 0.18;      // how much the light darkens and brightens
+constexpr int fewest_pixels = 64, max_pixels = 8192;  // width and height [pixel]
+constexpr double filled = 0.9;                        // fraction of the drawing area that the layers fill
+constexpr double no_distance = 0.005;                 // fraction of the layers' size that counts as no distance
+constexpr double deepest = 1e12;                      // [pixel]
+constexpr double shadow = 0.42, highlight = 0.18;     // how much the light darkens and brightens
 
 using Place = Canvas::Place;
 
@@ -31,9 +31,9 @@ class Checker {
 
   void check(const PictureOptions& options) const {
     for (const auto& [name, pixels] : {std::pair("width", options.width), std::pair("height", options.height)}) {
-      if (pixels >= fewest_pixels && pixels <= most_pixels) continue;
+      if (pixels >= fewest_pixels && pixels <= max_pixels) continue;
       refuse("picture " + std::string(name) + " " + std::to_string(pixels) + " is outside [" +
-             std::to_string(fewest_pixels) + ", " + std::to_string(most_pixels) + "] pixels");
+             std::to_string(fewest_pixels) + ", " + std::to_string(max_pixels) + "] pixels");
     }
   }
 
@@ -163,9 +163,10 @@ std::vector<ScreenTriangle> on_screen(const PictureLayer& layer, const Screen& s
     drawn.color = layer.color;
     drawn.edges = layer.edges;
     if (!layer.values.empty()) {
-      drawn.shares.emplace();
+      drawn.fractions.emplace();
       const double half = values.half_length();
-      for (int k = 0; k < 3; ++k) (*drawn.shares)[k] = half > 0 ? (layer.values[t[k]] / 2 - values.low / 2) / half : 0;
+      for (int k = 0; k < 3; ++k)
+        (*drawn.fractions)[k] = half > 0 ? (layer.values[t[k]] / 2 - values.low / 2) / half : 0;
     }
     triangles.push_back(drawn);
   }
@@ -199,7 +200,7 @@ void draw_mark(const PictureMark& mark, const Screen& screen, double cell, Canva
   canvas.strokes(strokes, thickness, mark.color);
 }
 
-/// Labels beside the marks, so that none covers another one, a mark, or leaves the picture, where there is room.
+/// Labels next to the marks, so that none covers another one, a mark, or leaves the picture, where there is room.
 void draw_labels(const std::vector<PictureMark>& marks, const Screen& screen, const Area& picture, double cell,
                  Canvas& canvas) {
   const double half = mark_arm * cell, height = (glyph_rows + 2) * cell;

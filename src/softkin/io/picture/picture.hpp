@@ -24,7 +24,7 @@ struct PictureMark {
   enum class Sign { dot, cross };
 
   Points points;      // [mm], at least one
-  std::string label;  // beside its last point
+  std::string label;  // next to its last point
   std::array<double, 3> color{0, 0, 0};
   Sign sign = Sign::dot;
 };
@@ -39,7 +39,7 @@ struct PictureOptions {
 
 /// Renders an orthographic view without any window system and writes a PNG: shading, colour bar, scale bar in mm.
 ///
-/// Values of all layers share one colour map from their smallest to their largest; a surface that faces the eye has the
+/// The values of all layers have one colour map, from the smallest to the largest; a surface that faces the eye has the
 /// map's very colour, the light comes from the upper left. The triangles fill 90 % of the area left to them; pictures
 /// below 320 x 240 have no title, bars or axes and are all area. Text outside ASCII appears as empty boxes. A
 /// see-through surface hides where it is not nearer than the solid one by 0.5 % of the layers' size: there both are the

@@ -22,7 +22,7 @@ constexpr double bar_width = 9, tick_gap = 5, tick_length = 2.5, label_gap = 8, 
 constexpr double axis_length = 15, letter_distance = 6.5;
 constexpr double title_step = 14;  // from line to line of the title
 
-/// Texts of the ticks: as many digits as tell them apart.
+/// Texts of the ticks: with as many digits as are needed to distinguish them.
 std::string tick_text(double value, double low, double high) {
   const double size = std::max(std::abs(low), std::abs(high));
   const double range = low < high ? std::min(high - low, size) : size;
@@ -80,7 +80,7 @@ void PictureLegend::draw_title(Canvas& canvas) const {
   }
 }
 
-/// At round numbers; of values that are all alike one, and at both ends where no round numbers tell them apart.
+/// At round numbers; one tick for equal values, and one at both ends where no round numbers distinguish them.
 std::vector<PictureLegend::Tick> PictureLegend::ticks() const {
   const auto& [low, high] = values_;
   if (!(low < high)) return {{0, tick_text(low, low, high)}};

@@ -11,7 +11,7 @@ constexpr int samples_per_axis = 2;  // per pixel and axis
 constexpr int band_rows = 32;        // pixels; bounds the memory of the samples
 constexpr double grid = 256;         // corners lie on 1 / grid of a sample: edge functions are then exact, seams closed
 constexpr double edge_half_width = 0.55;  // samples
-constexpr double edge_strength = 0.5;     // share of black
+constexpr double edge_strength = 0.5;     // fraction of black
 constexpr double dense = 5, sparse = 16;  // heights of a triangle [samples] between which its edges fade in
 
 using Color = std::array<float, 3>;
@@ -100,17 +100,17 @@ class TrianglePainter {
   void fade_in_edges(const Side* sides, double area) {
     if (!triangle_.edges) return;
     const double height = area / std::max({sides[0].length, sides[1].length, sides[2].length});
-    edge_share_ = edge_strength * std::clamp((height - dense) / (sparse - dense), 0.0, 1.0);
+    edge_fraction_ = edge_strength * std::clamp((height - dense) / (sparse - dense), 0.0, 1.0);
   }
 
   [[nodiscard]] Color color(const double* w, double inverse, double distance) const {
     Rgb color = triangle_.color;
-    if (triangle_.shares) {
-      const auto& s = *triangle_.shares;
+    if (triangle_.fractions) {
+      const auto& s = *triangle_.fractions;
       color = mapped_color((w[0] * s[0] + w[1] * s[swapped_ ? 2 : 1] + w[2] * s[swapped_ ? 1 : 2]) * inverse);
     }
     const double light = triangle_.light;
-    const double edge = edge_share_ * std::clamp(edge_half_width + 0.5 - distance, 0.0, 1.0);
+    const double edge = edge_fraction_ * std::clamp(edge_half_width + 0.5 - distance, 0.0, 1.0);
     for (double& channel : color) {
       channel += light > 0 ? light * (1 - channel) : light * channel;
       channel *= 1 - edge;
@@ -121,7 +121,7 @@ class TrianglePainter {
   const ScreenTriangle& triangle_;
   Band& band_;
   bool swapped_ = false;
-  double edge_share_ = 0;
+  double edge_fraction_ = 0;
 };
 
 void paint_layer(const ScreenLayer& layer, Band& band) {

@@ -10,10 +10,10 @@ namespace softkin {
 
 /// A triangle on the screen.
 struct ScreenTriangle {
-  std::array<Vec3, 3> corners;                  // x to the right, y down, z towards the eye [pixel]
-  std::optional<std::array<double, 3>> shares;  // places on the colour map at the corners [0, 1]; none: color
+  std::array<Vec3, 3> corners;                     // x to the right, y down, z towards the eye [pixel]
+  std::optional<std::array<double, 3>> fractions;  // places on the colour map at the corners [0, 1]; none: color
   Rgb color{};
-  double light = 0;  // > 0: share of white mixed in, < 0: share of black
+  double light = 0;  // > 0: fraction of white mixed in, < 0: fraction of black
   bool edges = false;
 };
 

@@ -20,8 +20,8 @@ Rgb knot(int i) {
 
 }  // namespace
 
-Rgb mapped_color(double share) {
-  const double place = std::clamp(share, 0.0, 1.0) * intervals;
+Rgb mapped_color(double fraction) {
+  const double place = std::clamp(fraction, 0.0, 1.0) * intervals;
   const int left = std::min(static_cast<int>(place), intervals - 1);
   return mixed(knot(left), knot(left + 1), place - left);
 }

@@ -11,9 +11,9 @@ namespace softkin {
 /// A colour: red, green, blue in [0, 1] (sRGB).
 using Rgb = std::array<double, 3>;
 
-[[nodiscard]] inline Rgb mixed(const Rgb& from, const Rgb& to, double share) {
-  return {from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1]),
-          from[2] + share * (to[2] - from[2])};
+[[nodiscard]] inline Rgb mixed(const Rgb& from, const Rgb& to, double fraction) {
+  return {from[0] + fraction * (to[0] - from[0]), from[1] + fraction * (to[1] - from[1]),
+          from[2] + fraction * (to[2] - from[2])};
 }
 
 /// Pixels row by row from the top left, three bytes each (sRGB).
@@ -34,9 +34,9 @@ struct RgbImage {
 
 /// A perceptually uniform colour map that colour-blind readers can read too: dark violet at 0 to yellow at 1.
 ///
-/// share   in [0, 1]; clamped
+/// fraction  in [0, 1]; clamped
 /// source  viridis of N. Smith and S. van der Walt (matplotlib, 2015, CC0): nine of its colours, linear between them
-[[nodiscard]] Rgb mapped_color(double share);
+[[nodiscard]] Rgb mapped_color(double fraction);
 
 /// The image as the content of a PNG file (8 bits a channel, sRGB).
 [[nodiscard]] std::string encode_png(const RgbImage& image);

@@ -25,7 +25,7 @@ struct StepAxis {
   bool command = false;  // the axis is a command
 };
 
-/// The times where every step has one; else the only command that changes, where it ascends or descends all the way;
+/// The times where every step has one; else the only command that changes, where it ascends or descends throughout;
 /// else the step's number.
 [[nodiscard]] StepAxis step_axis(const std::vector<std::optional<double>>& times,
                                  const std::vector<StepCurve>& commands);
@@ -34,7 +34,7 @@ struct StepAxis {
 [[nodiscard]] std::vector<PlotPanel> curve_panels(const StepAxis& along, const std::vector<StepCurve>& curves,
                                                   const std::string& what);
 
-/// A way through space.
+/// A curve in space.
 struct SpaceCurve {
   std::string name;
   std::vector<Vec3> points;                                     // [mm]

@@ -102,9 +102,9 @@ AxisTicks decade_ticks(const AxisRange& range, int most) {
 }
 
 double AxisScale::at(double value) const {
-  const double share = logarithmic ? std::log(value / range.low) / std::log(range.high / range.low)
-                                   : (value - range.low) / (range.high - range.low);
-  return begin + share * (end - begin);
+  const double fraction = logarithmic ? std::log(value / range.low) / std::log(range.high / range.low)
+                                      : (value - range.low) / (range.high - range.low);
+  return begin + fraction * (end - begin);
 }
 
 }  // namespace softkin

@@ -20,7 +20,7 @@ struct AxisTicks {
 };
 
 /// Round numbers: multiples of 1, 2 or 5 times a power of ten, at least 2 and at most `most` >= 5 of them; whole: of
-/// whole numbers (then there may be fewer than 2). Labels have as many digits as tell them apart.
+/// whole numbers (then there may be fewer than 2). Labels have as many digits as are needed to distinguish them.
 [[nodiscard]] AxisTicks round_ticks(const AxisRange& range, int most, bool whole);
 
 /// Powers of ten, at most `most` >= 2 of them.

@@ -45,7 +45,7 @@ class SvgCanvas {
   void segments(const std::vector<SvgPoint>& points, const SvgStroke& stroke);
   /// shape: from 0 to svg_mark_shapes - 1.
   void marks(const std::vector<SvgPoint>& points, int shape, double radius, const SvgStroke& stroke);
-  /// What follows under clip-path="url(#name)" shows inside the rectangle alone.
+  /// Later content under clip-path="url(#name)" is visible inside the rectangle alone.
   void clip(const std::string& name, SvgPoint low, SvgPoint high);
 
   /// The whole picture.

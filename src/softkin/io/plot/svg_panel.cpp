@@ -13,7 +13,7 @@ constexpr double text_size = 12, title_size = 13, tick_size = 11;  // [pixel]
 constexpr double title_room = 20, legend_line = 17, label_height = 18, tick_mark = 4;
 constexpr double sample_length = 30, sample_gap = 6, entry_gap = 16;  // of the legend
 constexpr double label_room = 14;                                     // between the labels of ticks
-constexpr double least_equal_height = 110;
+constexpr double min_equal_height = 110;
 
 // colours of one lightness would be one grey: these differ in lightness, the dashes and marks in form
 constexpr std::array<const char*, 6> colors{"#0b5394", "#c2410c", "#15803d", "#7e22ce", "#000000", "#0891b2"};
@@ -85,12 +85,12 @@ SvgPanel::SvgPanel(const PlotPanel& panel, double width, double frame_height) : 
   arrange_axes();
   if (panel.equal) {
     const double wanted = frame_width() * (y_range_.high - y_range_.low) / (x_range_.high - x_range_.low);
-    heights_.frame = std::clamp(wanted, std::min(least_equal_height, frame_height), frame_height);
+    heights_.frame = std::clamp(wanted, std::min(min_equal_height, frame_height), frame_height);
   }
   arrange_legend();
 }
 
-void SvgPanel::settle(const Heights& heights) {
+void SvgPanel::correct(const Heights& heights) {
   heights_ = heights;
   arrange_axes();
   if (panel_.equal) equalize();

@@ -24,7 +24,7 @@ class SvgPanel {
   [[nodiscard]] double width() const { return width_; }
 
   /// Takes the heights of its row: frames of a row stand side by side.
-  void settle(const Heights& heights);
+  void correct(const Heights& heights);
   /// corner: upper left. number: of the panel in the plot.
   void draw(SvgCanvas& canvas, SvgPoint corner, int number) const;
 

@@ -83,7 +83,7 @@ PanelRow row_of(const Plot& plot, const std::vector<PlotPanel>& panels) {
     row.panels.emplace_back(panel, width, plot.panel_height);
     heights.cover(row.panels.back().heights());
   }
-  for (SvgPanel& panel : row.panels) panel.settle(heights);
+  for (SvgPanel& panel : row.panels) panel.correct(heights);
   row.height = heights.all();
   return row;
 }

@@ -14,7 +14,7 @@ struct PlotSeries {
   bool line = true, marks = true;  // marks of a line are left out where they would crowd
   bool pairs = false;              // the line joins the first point with the second, the third with the fourth, ...
   int style = -1;                  // colour, dashes and shape of marks: >= 0, six of each; -1: the place in the panel
-  bool pale = false;               // a solid grey line, for what lies below the others
+  bool pale = false;               // a solid grey line, for curves below the others
   double width = 1.6;              // of the line, > 0 [pixel]
   double mark_radius = 3;          // > 0 [pixel]
 };

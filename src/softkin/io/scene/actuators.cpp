@@ -15,7 +15,7 @@ struct Kind {
   DriveSpec drive;  // as one begins
   const DriveTraits& traits;
   Keys controls;  // the ratio, then the load where there is one, then what fills it
-  Keys keys;      // beside the common ones
+  Keys keys;      // besides the common ones
 };
 
 const Keys common_keys{"name", "kind", "control", "range", "weight", "distribution"};
@@ -209,29 +209,29 @@ void read_curve(const Context& context, const Node& node, ActuatorSpec& actuator
   actuator.curve = load_file(context, *file, context.files.curve);
 }
 
-/// A CSV file of the share of the voltage that each prism of the layer has.
-PrismValues read_shares(const Context& context, const Node& node, Control control) {
+/// Reads a CSV file of the fraction of the voltage at each prism of the layer.
+PrismValues read_fractions(const Context& context, const Node& node, Control control) {
   if (control == Control::ratio) fail(node, node.name + " belongs to 'control: voltage'");
   return load_file(context, node, [&](const std::filesystem::path& path) {
     const std::string content = context.files.scene(path);
     const CsvTable table = parse_csv(path.string(), content);
     if (table.columns != std::vector<std::string>{"prism", "share"})
-      table.fail_header("the columns must be prism,share: the number of a prism in the mesh, from 0, and its share");
-    PrismValues shares;
+      table.fail_header("the columns must be prism,share: the number of a prism in the mesh, from 0, and its fraction");
+    PrismValues fractions;
     for (std::size_t row = 0; row < table.rows.size(); ++row) {
       const double prism = table.rows[row][0];
       if (!(prism >= 0 && prism < 2e9 && prism == std::floor(prism)))
         table.fail(row, "column 'prism' must hold a whole number from 0, not " + softkin::number(prism));
-      shares.prisms.push_back(static_cast<Index>(prism));
-      shares.values.push_back(table.rows[row][1]);
-      shares.origins.push_back({.file = table.file, .line = table.lines[row]});
+      fractions.prisms.push_back(static_cast<Index>(prism));
+      fractions.values.push_back(table.rows[row][1]);
+      fractions.origins.push_back({.file = table.file, .line = table.lines[row]});
     }
-    return shares;
+    return fractions;
   });
 }
 
 /// What of a commanded tension or pressure acts.
-void read_share(const Map& map, ActuatorSpec& actuator) {
+void read_fraction(const Map& map, ActuatorSpec& actuator) {
   const Node *factor = map.find("factor"), *offset = map.find("offset"), *backlash = map.find("backlash");
   for (const Node* node : {factor, offset, backlash})
     if (node != nullptr && actuator.control != Control::load)
@@ -257,7 +257,7 @@ void read_rubbing(const Map& map, Formulation formulation, CableSpec& cable) {
 void read_dea(const Context& context, const Map& map, ActuatorSpec& actuator, DeaSpec& dea) {
   if (const Node* node = map.find("prestretch"))
     (actuator.control == Control::ratio ? actuator.rest : dea.prestretch) = positive(*node);
-  if (const Node* node = map.find("voltage_share")) dea.shares = read_shares(context, *node, actuator.control);
+  if (const Node* node = map.find("voltage_share")) dea.fractions = read_fractions(context, *node, actuator.control);
   dea.region = text(map.at("region"));
 }
 
@@ -277,7 +277,7 @@ std::vector<ActuatorSpec> read_actuator(const Context& context, Formulation form
   if (const Node* node = map.find("distribution"))
     actuator.distribution = static_cast<Distribution>(choice(*node, {"least-norm", "uniform", "proportional"}));
   if (auto* dea = actuator.as<DeaSpec>()) read_dea(context, map, actuator, *dea);
-  read_share(map, actuator);
+  read_fraction(map, actuator);
   if (auto* cable = actuator.as<CableSpec>()) read_rubbing(map, formulation, *cable);
   if (const Node* node = map.find("curve")) read_curve(context, *node, actuator);
   if (auto* chamber = actuator.as<PneumaticSpec>()) read_chamber(context, map, *chamber);

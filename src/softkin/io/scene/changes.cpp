@@ -26,15 +26,15 @@ std::string name_of_item(const Node& list, const Node& item) {
 /// Follows a path and copies what is on it: all else is shared with the scene as it was.
 class Change {
  public:
-  Change(const std::string& option, const std::string& text) : told_(option + " " + excerpt(text)) {
+  Change(const std::string& option, const std::string& text) : reported_(option + " " + excerpt(text)) {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos || equals == 0) refuse("expected PATH=VALUE");
     path_ = trimmed(std::string_view(text).substr(0, equals));
     const std::string value(trimmed(std::string_view(text).substr(equals + 1)));
     if (value.empty()) refuse("the value is missing");
     if (path_.empty()) refuse("the path is missing");
-    value_ = std::make_shared<Node>(*parse_yaml(value, told_));
-    value_->origin = {.file = told_};
+    value_ = std::make_shared<Node>(*parse_yaml(value, reported_));
+    value_->origin = {.file = reported_};
   }
 
   /// What stands at the path now; null: a key that its entry does not have.
@@ -52,7 +52,7 @@ class Change {
                                       [&](const Node::Entry& each) { return each.key == key; });
       if (entry == node->entries.end()) {
         if (key.size() == path.size()) return nullptr;
-        (void)within_of(*node, path);  // says what is wrong
+        (void)within_of(*node, path);  // reports the error
         return nullptr;
       }
       node = entry->value;
@@ -61,7 +61,7 @@ class Change {
     return node;
   }
 
-  [[noreturn]] void refuse(const std::string& why) const { throw InvalidInput({.file = told_}, why); }
+  [[noreturn]] void refuse(const std::string& why) const { throw InvalidInput({.file = reported_}, why); }
 
   [[nodiscard]] Shared made(const Shared& root, const std::string& within) const {
     return within_of(*root, within.empty() ? path_ : within + "." + path_);
@@ -87,11 +87,11 @@ class Change {
     const auto found =
         std::find_if(copy->entries.begin(), copy->entries.end(), [&](const auto& each) { return each.key == key; });
     const bool here = found != copy->entries.end();
-    if (dot == std::string::npos) {  // a key that nobody knows is refused where the scene is read
+    if (dot == std::string::npos) {  // an unknown key is refused where the scene is read
       if (here)
         found->value = named_value(found->value->name);
       else
-        copy->entries.push_back({key, {.file = told_}, named_value(excerpt(key))});
+        copy->entries.push_back({key, {.file = reported_}, named_value(excerpt(key))});
       return copy;
     }
     if (!here) {
@@ -133,16 +133,16 @@ class Change {
         at = i;
       }
     }
-    const std::string asked = path.substr(0, path.find('.'));
+    const std::string requested = path.substr(0, path.find('.'));
     if (at == list.items.size())
-      refuse("there is no " + excerpt(asked) + " in " + list.name + suggest_name(asked, names));
+      refuse("there is no " + excerpt(requested) + " in " + list.name + suggest_name(requested, names));
     if (several)
       refuse(list.name + " has several of the name " + excerpt(path.substr(0, longest)) +
              ": give the number of the one that is meant, from 1");
     return {at, path.size() == longest ? "" : path.substr(longest + 1)};
   }
 
-  std::string told_, path_;
+  std::string reported_, path_;
   std::shared_ptr<Node> value_;
 };
 

@@ -29,13 +29,13 @@ Helix read_helix(const Context& context, const Node& node) {
   return helix;
 }
 
-std::vector<Vec3> read_corners(const Context& context, const Node::Entry& way) {
+std::vector<Vec3> read_corners(const Context& context, const Node::Entry& path) {
   std::vector<Vec3> corners;
-  if (way.key == "points") {
-    for (const auto& point : list(*way.value)) corners.push_back(read_position(context, *point));
+  if (path.key == "points") {
+    for (const auto& point : list(*path.value)) corners.push_back(read_position(context, *point));
     return corners;
   }
-  const Points points = load_file(context, *way.value, context.files.way);
+  const Points points = load_file(context, *path.value, context.files.route);
   for (Index i = 0; i < points.rows(); ++i) corners.push_back(vertex_at(points, i));
   return corners;
 }
@@ -52,11 +52,11 @@ FibreSpec read_fibre(const Context& context, const Node& node, Names& names) {
   FibreSpec fibre;
   fibre.name = names.add_label(map.at("name"));
   fibre.origin = node.origin;
-  const Node::Entry& way = map.one_of({"points", "helix", "file"});
-  if (way.key == "helix")
-    fibre.way = read_helix(context, *way.value);
+  const Node::Entry& path = map.one_of({"points", "helix", "file"});
+  if (path.key == "helix")
+    fibre.path = read_helix(context, *path.value);
   else
-    fibre.way = read_corners(context, way);
+    fibre.path = read_corners(context, path);
   const Node::Entry& held = map.one_of({"stiffness", "inextensible"});
   if (held.key == "stiffness")
     fibre.stiffness_N = positive(*held.value);

@@ -13,10 +13,9 @@ SceneFiles FileContents::kept(bool read) {
       return known.emplace(path.string(), reader(path)).first->second;
     };
   };
-  return {of(meshes, read_mesh),       of(surfaces, read_surface),
-          of(sidecars, read_sidecar),  of(curves, read_actuator_curve),
-          of(scenes, read_scene_file), of(samples, read_field_samples),
-          of(ways, read_way),          of(directions, read_directions)};
+  return {of(meshes, read_mesh),           of(surfaces, read_surface),     of(sidecars, read_sidecar),
+          of(curves, read_actuator_curve), of(scenes, read_scene_file),    of(samples, read_field_samples),
+          of(routes, read_path),           of(directions, read_directions)};
 }
 
 std::vector<std::filesystem::path> FileContents::paths() const {
@@ -24,7 +23,7 @@ std::vector<std::filesystem::path> FileContents::paths() const {
   const auto add = [&all](const auto& known) {
     for (const auto& [path, content] : known) all.emplace_back(path);
   };
-  add(meshes), add(surfaces), add(sidecars), add(curves), add(scenes), add(samples), add(ways), add(directions);
+  add(meshes), add(surfaces), add(sidecars), add(curves), add(scenes), add(samples), add(routes), add(directions);
   return all;
 }
 

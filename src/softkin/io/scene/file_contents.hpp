@@ -13,7 +13,7 @@ struct FileContents {
   std::map<std::string, ActuatorCurve> curves{};      // of actuators
   std::map<std::string, std::string> scenes{};        // texts of those that the scene's `robots` name
   std::map<std::string, FieldSamples> samples{};      // of magnetic fields
-  std::map<std::string, Points> ways{};               // of threads and curves [mm]
+  std::map<std::string, Points> routes{};             // of threads and curves [mm]
   std::map<std::string, FieldSamples> directions{};   // of fibres and growths
 
   /// How a scene takes them from here. For one thread at a time; *this must outlive what is returned.

@@ -60,7 +60,7 @@ scene::Keys with_motor_keys(std::initializer_list<const char*> more) {
   return keys;
 }
 
-/// turn: the key that says what a revolution of the motor moves.
+/// turn: the key of the motion per revolution of the motor.
 void read_motor(const Map& map, const char* turn, scene::Names& actuators, scene::Names& axes, MotorSpec& motor) {
   motor.actuator = actuators.add(map.at("actuator"));
   motor.axis = axis(map.at("axis"));

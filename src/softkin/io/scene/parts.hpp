@@ -111,7 +111,7 @@ void read_mesh_of(const Context& context, const Map& scene, RobotSpec& spec);
 [[nodiscard]] FieldSamples read_samples(const Context& context, const Map& map);
 /// Three components; or a map: `radial`, `circumferential`, `file`, or `places` and `samples`.
 [[nodiscard]] DirectionSpec read_direction(const Context& context, const Node& node);
-/// Keys that an actuator of kind growth has beside the common ones.
+/// Keys that an actuator of kind growth has besides the common ones.
 [[nodiscard]] const Keys& growth_keys();
 [[nodiscard]] ActuatorSpec read_growth(const Context& context, const Map& map, const std::string& name);
 /// Keys that an actuator of kind magnetic alone has.

@@ -26,18 +26,18 @@ std::vector<Index> read_indices(const Node& node, std::int64_t count, const std:
   return indices;
 }
 
-/// Does a sidecar speak of elements? By its number of rows, and by the key 'of' where that does not tell.
+/// Does a sidecar refer to elements? Decided by its number of rows, or by the key 'of' where that is ambiguous.
 bool is_of_elements(const Context& context, const Map& map, std::int64_t rows) {
   const std::string mesh = "the mesh has " + std::to_string(context.vertices) + " vertices and " +
                            std::to_string(context.tetrahedra) + " tetrahedra";
   const bool vertices = rows == context.vertices, elements = rows == context.tetrahedra;
   const Node* of = map.find("of");
-  const bool asked = of && choice(*of, {"vertices", "elements"}) == 1;
-  if (of ? !(asked ? elements : vertices) : !(vertices || elements))
+  const bool requested = of && choice(*of, {"vertices", "elements"}) == 1;
+  if (of ? !(requested ? elements : vertices) : !(vertices || elements))
     fail(map.node(), "the sidecar has " + std::to_string(rows) + " rows, but " + mesh);
   if (!of && vertices && elements)
     fail(map.node(), mesh + ": say 'of: vertices' or 'of: elements' in " + map.node().name);
-  return of ? asked : elements;
+  return of ? requested : elements;
 }
 
 Selector read_sidecar_column(const Context& context, const Node& node) {
@@ -47,7 +47,7 @@ Selector read_sidecar_column(const Context& context, const Node& node) {
   const std::int64_t number = column ? integer(*column) : 1;
   const auto columns = static_cast<std::int64_t>(sidecar.columns.size());
   if (number < 1 || number > columns)
-    fail(column ? *column : node, "column " + std::to_string(number) + " is asked for, but the sidecar has " +
+    fail(column ? *column : node, "column " + std::to_string(number) + " is requested, but the sidecar has " +
                                       std::to_string(columns) + ", numbered from 1");
   const std::vector<Index>& chosen = sidecar.columns[number - 1];
   if (is_of_elements(context, map, sidecar.rows)) return ElementList{chosen};

@@ -261,19 +261,20 @@ namespace fs = std::filesystem;
 
 namespace {
 
-RobotSpec read_scene_and(std::vector<fs::path>& inputs, const AskedScene& asked) {
+RobotSpec read_scene_and(std::vector<fs::path>& inputs, const RequestedScene& requested) {
   const auto noting = [&inputs](auto read) {
     return [&inputs, read](const fs::path& path) {
       inputs.push_back(path);
       return read(path);
     };
   };
-  auto root = scene::parse_yaml(read_scene_file(asked.scene), asked.scene);
-  for (const std::string& material : asked.materials) root = scene::changed(root, "--material", material, "materials");
-  for (const std::string& each : asked.changes) root = scene::changed(root, "--change", each, "");
-  return parse_scene(*root, asked.scene,
+  auto root = scene::parse_yaml(read_scene_file(requested.scene), requested.scene);
+  for (const std::string& material : requested.materials)
+    root = scene::changed(root, "--material", material, "materials");
+  for (const std::string& each : requested.changes) root = scene::changed(root, "--change", each, "");
+  return parse_scene(*root, requested.scene,
                      {noting(read_mesh), noting(read_surface), noting(read_sidecar), noting(read_actuator_curve),
-                      noting(read_scene_file), noting(read_field_samples), noting(read_way), noting(read_directions)});
+                      noting(read_scene_file), noting(read_field_samples), noting(read_path), noting(read_directions)});
 }
 
 bool parse_vector(const std::string& text, Vec3& vector) {
@@ -317,16 +318,16 @@ void change_forces(RobotSpec& spec, const std::vector<std::string>& forces, cons
 
 }  // namespace
 
-RobotSpec read_asked_scene(const AskedScene& asked, std::vector<fs::path>& inputs) {
-  RobotSpec spec = read_scene_and(inputs, asked);
-  change(spec, asked);
+RobotSpec read_requested_scene(const RequestedScene& requested, std::vector<fs::path>& inputs) {
+  RobotSpec spec = read_scene_and(inputs, requested);
+  change(spec, requested);
   return spec;
 }
 
-void change(RobotSpec& spec, const AskedScene& asked, const std::string& option) {
-  if (asked.formulation == "physical") spec.formulation = Formulation::physical;
-  if (asked.formulation == "target-shape") spec.formulation = Formulation::target_shape;
-  change_forces(spec, asked.forces, option);
+void change(RobotSpec& spec, const RequestedScene& requested, const std::string& option) {
+  if (requested.formulation == "physical") spec.formulation = Formulation::physical;
+  if (requested.formulation == "target-shape") spec.formulation = Formulation::target_shape;
+  change_forces(spec, requested.forces, option);
 }
 
 }  // namespace softkin

@@ -7,7 +7,7 @@
 #include <softkin/io/scene/scene_file.hpp>
 #include <softkin/io/table/actuator_curve_file.hpp>
 #include <softkin/io/table/field_samples.hpp>
-#include <softkin/io/table/way.hpp>
+#include <softkin/io/table/path_table.hpp>
 #include <softkin/model/robot_spec.hpp>
 #include <string>
 #include <vector>
@@ -30,7 +30,7 @@ struct SceneFiles {
   std::function<ActuatorCurve(const std::filesystem::path&)> curve = read_actuator_curve;  // of actuators
   std::function<std::string(const std::filesystem::path&)> scene = read_scene_file;  // the text of one of `robots`
   std::function<FieldSamples(const std::filesystem::path&)> samples = read_field_samples;  // of fields
-  std::function<Points(const std::filesystem::path&)> way = read_way;                      // corners [mm]
+  std::function<Points(const std::filesystem::path&)> route = read_path;                   // corners [mm]
   std::function<FieldSamples(const std::filesystem::path&)> directions = read_directions;  // of fibres and growths
 };
 
@@ -43,7 +43,7 @@ struct SceneFiles {
 [[nodiscard]] RobotSpec parse_scene(const scene::Node& root, const std::string& file_name, const SceneFiles& files);
 
 /// A scene, and what the user changes in it.
-struct AskedScene {
+struct RequestedScene {
   std::string scene;                     // file
   std::string formulation;               // "physical" or "target-shape"; empty: the scene's
   std::vector<std::string> forces;       // NAME=FX,FY,FZ [N]
@@ -53,12 +53,13 @@ struct AskedScene {
 
 /// inputs  the files that the scene names are added
 /// throws  InvalidInput naming --force, --material or --change, or file and line
-[[nodiscard]] RobotSpec read_asked_scene(const AskedScene& asked, std::vector<std::filesystem::path>& inputs);
+[[nodiscard]] RobotSpec read_requested_scene(const RequestedScene& requested,
+                                             std::vector<std::filesystem::path>& inputs);
 
-/// Changes in a description what the user changes: all of `asked` but the scene.
+/// Applies the changes of the user to a description: all of `requested` but the scene.
 ///
 /// option  that gives the forces, for messages
 /// throws  InvalidInput naming it
-void change(RobotSpec& spec, const AskedScene& asked, const std::string& option = "--force");
+void change(RobotSpec& spec, const RequestedScene& requested, const std::string& option = "--force");
 
 }  // namespace softkin

@@ -46,7 +46,7 @@ constexpr OtherKind other_kinds[] = {{".stl", "a surface", make_mesh},
 }  // namespace
 
 std::string read_scene_file(const std::filesystem::path& path) {
-  (void)read_beginning(path, 1);  // says first whether it is there
+  (void)read_beginning(path, 1);  // reports first whether it is there
   const std::string extension = lower_extension(path);
   const auto other = std::find_if(std::begin(other_kinds), std::end(other_kinds),
                                   [&](const OtherKind& kind) { return kind.extension == extension; });

@@ -28,7 +28,7 @@ struct Node {
   std::vector<Entry> entries;                      // map, in order, keys unique
 };
 
-/// The one YAML document of a text. Aliases share their anchor's node.
+/// The one YAML document of a text. Aliases refer to the node of their anchor.
 /// throws  InvalidInput on text that is not UTF-8 or not YAML, an empty text, several documents, a key given twice,
 ///         keys that are not words, tags, an alias within its own anchor
 [[nodiscard]] std::shared_ptr<const Node> parse_yaml(const std::string& text, const std::string& file);

@@ -218,9 +218,9 @@ class CommandReader {
       throw InvalidInput({file}, "it is of chambers " + names_of(curves.chambers) + ", but " + commands_.file +
                                      " commands " + names_of(chambers) + " by volume");
     for (CommandRow& row : commands_.rows) {
-      Eigen::VectorXd asked(chambers.size());
-      for (std::size_t k = 0; k < chambers.size(); ++k) asked[k] = row.actuation[chambers[k]];
-      const std::vector<Eigen::VectorXd> found = curves.pressures_for(asked);
+      Eigen::VectorXd requested(chambers.size());
+      for (std::size_t k = 0; k < chambers.size(); ++k) requested[k] = row.actuation[chambers[k]];
+      const std::vector<Eigen::VectorXd> found = curves.pressures_for(requested);
       if (found.size() != 1)
         throw InvalidInput({commands_.file, row.line}, (found.empty() ? "no pressures" : "several pressures") +
                                                            std::string(" within ") + file + " lead to its ratios");
@@ -254,12 +254,12 @@ class CommandReader {
                  const std::vector<std::size_t>& chambers) {
     CommandRow& row = commands_.rows[index];
     for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
-      const double asked = step.at("actuation").at(model_.actuators[a].name).get<double>();
+      const double requested = step.at("actuation").at(model_.actuators[a].name).get<double>();
       const double here = row.actuation[a];
-      if (std::abs(asked - here) > 1e-9 * std::max(1.0, std::abs(here)))
+      if (std::abs(requested - here) > 1e-9 * std::max(1.0, std::abs(here)))
         throw InvalidInput({file}, "its step " + std::to_string(index) + " is of " + model_.actuators[a].name + " = " +
-                                       number(asked, 12) + ", but " + commands_.file + ":" + std::to_string(row.line) +
-                                       " commands " + number(here, 12));
+                                       number(requested, 12) + ", but " + commands_.file + ":" +
+                                       std::to_string(row.line) + " commands " + number(here, 12));
     }
     if (step.at("status").get<std::string>() != "converged")
       throw InvalidInput({file}, "its step " + std::to_string(index) + " has not converged: it has no pressures");
@@ -272,10 +272,11 @@ class CommandReader {
 
   /// The gauge pressure that a report has of a chamber: that of its measured curve, where there is one, before the
   /// model's.
-  [[nodiscard]] static double pressure_of(const std::string& file, std::size_t index, const Json& told,
+  [[nodiscard]] static double pressure_of(const std::string& file, std::size_t index, const Json& reported,
                                           const Actuator& actuator) {
-    if (!actuator.curve || !told.contains(curve_key(*actuator.curve))) return told.at("pressure_kPa").get<double>();
-    const Json& by_curve = told.at(curve_key(*actuator.curve));
+    if (!actuator.curve || !reported.contains(curve_key(*actuator.curve)))
+      return reported.at("pressure_kPa").get<double>();
+    const Json& by_curve = reported.at(curve_key(*actuator.curve));
     if (by_curve.is_null())
       throw InvalidInput({file}, "its step " + std::to_string(index) + " has no pressure of '" + actuator.name +
                                      "': its curve does not reach so far");

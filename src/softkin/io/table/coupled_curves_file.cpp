@@ -11,8 +11,8 @@ namespace softkin {
 
 namespace {
 
-constexpr std::size_t most_chambers = 6;  // a cell has 2^n corners
-constexpr double most_nodes = 1e6;
+constexpr std::size_t max_chambers = 6;  // a cell has 2^n corners
+constexpr double max_nodes = 1e6;
 const std::string end_of_pressure = "_pressure_kPa";
 
 struct ChamberColumns {
@@ -39,8 +39,8 @@ std::vector<ChamberColumns> chamber_columns(const Model& model, const CsvTable& 
                         " is of no chamber that is commanded by its volume: a table of coupled chambers has columns "
                         "such as air1 and air1" +
                         end_of_pressure);
-  if (found.size() < 2 || found.size() > most_chambers)
-    table.fail_header("a table of coupled chambers has 2 to " + std::to_string(most_chambers) + " of them, not " +
+  if (found.size() < 2 || found.size() > max_chambers)
+    table.fail_header("a table of coupled chambers has 2 to " + std::to_string(max_chambers) + " of them, not " +
                       std::to_string(found.size()) + "; a chamber alone has a curve (docs/pressure.md)");
   return found;
 }
@@ -70,7 +70,7 @@ std::string missing_text(const CsvTable& table, const std::vector<ChamberColumns
 double nodes_of(const CsvTable& table, const CoupledCurves& curves) {
   double nodes = 1;
   for (const std::vector<double>& axis : curves.pressures_kPa) nodes *= static_cast<double>(axis.size());
-  if (nodes > most_nodes)
+  if (nodes > max_nodes)
     table.fail_header("its pressures are of no grid: a row for every combination would be " + number(nodes, 3) +
                       " rows");
   return nodes;
@@ -101,7 +101,7 @@ std::map<std::size_t, std::size_t> rows_of_nodes(const CsvTable& table, const st
   return row_of;
 }
 
-/// Along its own pressure a chamber grows, or there is no way back from ratios to pressures.
+/// Checks that a chamber grows along its own pressure; else ratios cannot be converted back to pressures.
 void check_rise(const CsvTable& table, const std::vector<ChamberColumns>& columns, const CoupledCurves& curves,
                 const std::vector<std::size_t>& rows) {
   std::size_t stride = 1;

@@ -81,7 +81,7 @@ std::vector<double> read_row(const Scanner& scanner, std::string_view line, cons
   return row;
 }
 
-constexpr double most_runs = 1e6;
+constexpr double max_runs = 1e6;
 
 std::string lower(std::string text) {
   for (char& c : text) c = static_cast<char>(std::tolower(static_cast<unsigned char>(c)));
@@ -157,7 +157,7 @@ void RunTable::group() {
   std::vector<double> numbers;
   for (std::size_t row = 0; row < rows.size(); ++row) {
     const double number = find("run") ? cell(row, "run") : 1;
-    if (number != std::round(number) || std::abs(number) > most_runs)
+    if (number != std::round(number) || std::abs(number) > max_runs)
       fail(row, "column 'run' must hold whole numbers, not " + std::to_string(number));
     const auto found = std::find(numbers.begin(), numbers.end(), number);
     if (found == numbers.end()) {

@@ -44,7 +44,7 @@ struct RunTable : CsvTable {
   };
   std::vector<Run> runs;
 
-  /// known   columns beside run and t_s, in lower case
+  /// known   columns besides run and t_s, in lower case
   /// units   what begins the name of a column and what its unit must be: "p_", "pressures are in kPa"
   /// throws  InvalidInput naming file and line, as read_csv, and on unknown columns
   RunTable(const std::filesystem::path& path, const std::vector<std::string>& known,

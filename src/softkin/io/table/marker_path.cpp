@@ -159,18 +159,18 @@ class TrackColumns {
     for (std::size_t c = 0; c < table.columns.size(); ++c) add(c);
   }
 
-  [[nodiscard]] const Coordinates& of(const std::string& asked) const {
+  [[nodiscard]] const Coordinates& of(const std::string& requested) const {
     std::vector<std::string> names;
     for (const auto& [name, coordinates] : markers_) names.push_back(name);
     if (markers_.empty())
       table_.fail_header("no column is a coordinate: x_mm, y_mm, z_mm, or tip_x_mm of a marker 'tip'");
-    std::string marker = asked;
-    if (asked.empty() && !markers_.contains("")) {
+    std::string marker = requested;
+    if (requested.empty() && !markers_.contains("")) {
       if (markers_.size() > 1)
         table_.fail_header("it has several markers; say which one is meant (marker)" + suggest_name("", names));
       marker = names.front();
     }
-    // a file of x_mm, y_mm, z_mm alone is that of whatever marker is asked for
+    // a file of x_mm, y_mm, z_mm alone is that of any requested marker
     const auto found = markers_.size() == 1 && markers_.contains("") ? markers_.begin() : markers_.find(marker);
     if (found == markers_.end()) table_.fail_header("no marker " + excerpt(marker) + suggest_name(marker, names));
     if (std::count_if(found->second.begin(), found->second.end(), [](const auto& c) { return c.has_value(); }) < 2)
@@ -178,10 +178,10 @@ class TrackColumns {
     return found->second;
   }
 
-  [[nodiscard]] std::optional<std::size_t> parameter(const std::string& asked) const {
-    const auto found = table_.find(asked.empty() ? time_column : asked);
-    if (!found && !asked.empty())
-      table_.fail_header("no column " + excerpt(asked) + suggest_name(asked, table_.columns));
+  [[nodiscard]] std::optional<std::size_t> parameter(const std::string& requested) const {
+    const auto found = table_.find(requested.empty() ? time_column : requested);
+    if (!found && !requested.empty())
+      table_.fail_header("no column " + excerpt(requested) + suggest_name(requested, table_.columns));
     return found;
   }
 

@@ -12,7 +12,7 @@ namespace softkin {
 
 namespace {
 
-constexpr std::size_t least_outline_points = 8;
+constexpr std::size_t min_outline_points = 8;
 
 using OutlinesByPicture = std::map<Index, std::vector<Eigen::Vector2d>>;
 
@@ -30,7 +30,7 @@ OutlinesByPicture read_outlines(const CsvTable& table) {
   OutlinesByPicture outlines;
   for (std::size_t row = 0; row < table.rows.size(); ++row) {
     const double number = table.rows[row][picture];
-    if (!(number >= 1 && number <= most_pictures && number == std::floor(number)))
+    if (!(number >= 1 && number <= max_pictures && number == std::floor(number)))
       table.fail(row, std::string("column '") + picture_column + "': expected the number of a picture, 1 or more");
     const Eigen::Vector2d point(table.rows[row][x], table.rows[row][y]);
     std::vector<Eigen::Vector2d>& points = outlines[static_cast<Index>(number)];
@@ -38,9 +38,9 @@ OutlinesByPicture read_outlines(const CsvTable& table) {
   }
   for (auto& [number, points] : outlines) {
     if (points.back() == points.front()) points.pop_back();  // closed by its first point
-    if (points.size() < least_outline_points)
+    if (points.size() < min_outline_points)
       table.fail_header("picture " + std::to_string(number) + " has " + counted(points.size(), "point") +
-                        ": an outline has " + std::to_string(least_outline_points) + " different ones at least");
+                        ": an outline has " + std::to_string(min_outline_points) + " different ones at least");
   }
   return outlines;
 }

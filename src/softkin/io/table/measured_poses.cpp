@@ -171,7 +171,7 @@ class Columns {
   void add_pictures(MeasuredPoses& poses) const {
     for (std::size_t row = 0; row < table_.rows.size(); ++row) {
       const double number = table_.rows[row][*picture_];
-      if (!std::isnan(number) && !(number >= 1 && number <= most_pictures && number == std::floor(number)))
+      if (!std::isnan(number) && !(number >= 1 && number <= max_pictures && number == std::floor(number)))
         table_.fail(row, std::string("column '") + picture_column + "': expected the number of a picture, 1 or more");
       poses.pictures.push_back(std::isnan(number) ? 0 : static_cast<Index>(number));
     }

@@ -8,7 +8,7 @@ namespace softkin {
 
 /// The column of tables of pictures that numbers them, from 1 on.
 inline constexpr const char* picture_column = "picture";
-constexpr int most_pictures = 1000000;
+constexpr int max_pictures = 1000000;
 
 /// Reads a table of measured poses: a row each, columns of commands as paths have them (read_actuation_path), of
 /// coordinates of markers as those of targets (tip_x_mm; x_mm of the only marker), and of what actuators answer with,

@@ -51,7 +51,7 @@ class MeasurementTable : public CsvTable {
     if (!value(row, name)) return std::nullopt;
     return positive(row, name);
   }
-  /// Of what lies inside something else: 0 < part < whole.
+  /// Returns the size of a part within a whole: 0 < part < whole.
   [[nodiscard]] double part(std::size_t row, const std::string& name, const std::string& whole) const {
     const double value = positive(row, name), all = at(row, whole);
     if (!(value < all))
@@ -131,18 +131,18 @@ double converted(const RunTable& table, std::size_t row, const std::string& colu
   return value;
 }
 
-PressureScale scale_of(const RunTable& table, const std::string& column, std::optional<PressureScale> asked) {
+PressureScale scale_of(const RunTable& table, const std::string& column, std::optional<PressureScale> requested) {
   if (column == "p_kpa") {
-    if (!asked)
+    if (!requested)
       table.fail_header(
           "column 'p_kpa' does not say above what: name it p_abs_kpa (above vacuum) or p_gauge_kpa (above the air "
           "around), or say which of the two it is (pressure: absolute or gauge)");
-    return *asked;
+    return *requested;
   }
   const PressureScale named = column == "p_abs_kpa" ? PressureScale::absolute : PressureScale::gauge;
-  if (asked && *asked != named)
+  if (requested && *requested != named)
     table.fail_header("column '" + column + "' is not of " +
-                      (*asked == PressureScale::absolute ? "absolute" : "gauge") +
+                      (*requested == PressureScale::absolute ? "absolute" : "gauge") +
                       " pressures, as is said of the file");
   return named;
 }
@@ -202,8 +202,8 @@ TensileCurve read_tensile_curve(const std::filesystem::path& path) {
     curve.stress.push_back(table.at(row, "stress"));
     curve.lines.push_back(table.lines[row]);
   }
-  constexpr std::size_t least_rows = 5;
-  if (table.rows.size() < least_rows)
+  constexpr std::size_t min_rows = 5;
+  if (table.rows.size() < min_rows)
     throw InvalidInput({table.file},
                        "a tensile test needs at least five rows, not " + std::to_string(table.rows.size()));
   if (!(*std::max_element(curve.stress.begin(), curve.stress.end()) > 0))

@@ -43,14 +43,14 @@ class StripColumns {
 
   [[nodiscard]] double stress(std::size_t row) const {
     const double value = table_.cell(row, stress_) / stress_over_;
-    if (!std::isfinite(value) || std::abs(value) > most_stress)
+    if (!std::isfinite(value) || std::abs(value) > max_stress)
       table_.fail(
           row, "column '" + stress_ + "' holds " + number(table_.cell(row, stress_)) + ", which is beyond all measure");
     return value;
   }
 
  private:
-  static constexpr double most_stress = 1e9;  // [MPa]
+  static constexpr double max_stress = 1e9;  // [MPa]
 
   const RunTable& table_;
   std::string strain_, stress_;

@@ -71,12 +71,12 @@ std::string curve_remarks(const Model& model, const std::vector<std::string>& se
       const std::string_view whole = setting;
       const std::size_t equals = whole.find('=');
       if (equals == std::string_view::npos || trimmed(whole.substr(0, equals)) != actuator.name) continue;
-      const auto asked = parse_curve_setting(actuator, std::string(trimmed(whole.substr(equals + 1))));
-      if (!asked) continue;
-      const std::optional<double> spread = spread_by_curve(actuator, asked->input, asked->branch);
-      text += actuator.name + ": " + input_text(*actuator.curve, asked->input) + ", " + branch_name(asked->branch) +
-              " branch of " + actuator.curve->file + ": ratio " + number(ratio_of(actuator, *asked)) +
-              (spread ? " +- " + number(*spread, 2) : "") + " [-]\n";
+      const auto requested = parse_curve_setting(actuator, std::string(trimmed(whole.substr(equals + 1))));
+      if (!requested) continue;
+      const std::optional<double> spread = spread_by_curve(actuator, requested->input, requested->branch);
+      text += actuator.name + ": " + input_text(*actuator.curve, requested->input) + ", " +
+              branch_name(requested->branch) + " branch of " + actuator.curve->file + ": ratio " +
+              number(ratio_of(actuator, *requested)) + (spread ? " +- " + number(*spread, 2) : "") + " [-]\n";
     }
   return text;
 }

@@ -25,8 +25,8 @@ struct CurveSetting {
 /// Ends of the names of a path's columns that hold inputs: "kPa" and "kPa_abs", or "kV"; none without a curve.
 [[nodiscard]] std::vector<std::string> curve_units(const Actuator& actuator);
 
-/// What the settings ACTUATOR=VALUE asked of curves, a line each: "air: 50 kPa (gauge), loading branch of F: ratio
-/// 1.31 +- 0.01 [-]".
+/// Lists the values that the settings ACTUATOR=VALUE take from curves, a line each: "air: 50 kPa (gauge), loading
+/// branch of F: ratio 1.31 +- 0.01 [-]".
 [[nodiscard]] std::string curve_remarks(const Model& model, const std::vector<std::string>& settings);
 
 /// "; curve F: 0 to 140 kPa (gauge), loading branch".

@@ -9,22 +9,23 @@ namespace softkin::estimate {
 namespace {
 
 constexpr double first_damping = 1e-3;
-/// Slopes of another shape are used while each step by them is so much shorter than the one before.
+/// The slopes of another shape are reused while each step with them is shorter than the one before by this factor.
 constexpr double contraction = 0.15;
-/// Longest move of a vertex that a step foretells, over the diagonal: equilibria farther away take long to find, and
-/// slopes do not tell of them.
-constexpr double longest_move = 0.08, least_reach = 1e-3;
-/// Steps to where no equilibrium is found, as where readings contradict each other: each takes as long as many others.
-constexpr int most_failures = 3;
-/// After so many of all fits of an update the first ends one.
+/// Largest displacement of a vertex that a step predicts, relative to the diagonal of the robot: equilibria farther
+/// away take long to find, and first-order predictions of them are not valid.
+constexpr double longest_move = 0.08, min_reach = 1e-3;
+/// Maximum number of steps to guesses without an equilibrium, as where readings contradict each other: each takes as
+/// long as many others.
+constexpr int max_failures = 3;
+/// After this number of failures in all fits of an update, the first failure of a fit ends it.
 constexpr int many_failures = 12;
-/// Longest step of a place, over the deviation of one that may be anywhere on its patch.
+/// Longest step of a place, relative to the standard deviation of a place that may be anywhere on its patch.
 constexpr double longest_slide = 1;
-/// Steps to the least cost as it is foretold, and the length at which they end.
-constexpr int most_inner = 30;
+/// Maximum number of steps to the minimum of the predicted cost, and the step length at which they end.
+constexpr int max_inner = 30;
 constexpr double inner_length = 0.01;
 
-/// Steps so far, and what one more would leave.
+/// Step-size control: the steps done, and an estimate of the error that one more step leaves.
 struct Pace {
   Damping hold{1};                                        // of steps to other shapes, over what is known before
   double last = std::numeric_limits<double>::infinity();  // length of the last step by these slopes
@@ -42,7 +43,7 @@ struct Pace {
     rate = std::min(1.0, length / last);
     of_length = last;
   }
-  /// Of old slopes in proportion to the step, of fresh ones to its square.
+  /// The error after a step is proportional to its length with old slopes, and to its square with fresh ones.
   [[nodiscard]] double left_of(double length) const {
     return rate * length * (fresh ? std::min(1.0, length / of_length) : 1);
   }
@@ -52,9 +53,9 @@ struct Pace {
     reach = std::min(1.0, 2 * reach);
     fresh = false;
   }
-  /// False where that leads nowhere.
+  /// Returns false where shorter steps are exhausted.
   bool shorten(bool lost, int most) {
-    if (lost) return ++failures < most && (reach /= 4) > least_reach;
+    if (lost) return ++failures < most && (reach /= 4) > min_reach;
     return hold.tighten();
   }
 };
@@ -65,7 +66,7 @@ double length_of(const Eigen::VectorXd& step, const Normal& normal) {
 
 }  // namespace
 
-/// Numbers at an end of their range that want to leave it stay.
+/// Numbers at an end of their range stay there where the step would leave the range.
 Eigen::VectorXd Fitter::step_of(const Guess& at, const Normal& normal, double damping) const {
   Eigen::MatrixXd matrix = normal.matrix;
   Eigen::VectorXd right = -normal.gradient;
@@ -95,11 +96,12 @@ Fit Fitter::refine(Guess from, const Readings& readings, std::shared_ptr<const N
 }
 
 void Fitter::set_normal(Fit& fit, const Readings& readings) const {
-  fit.slopes = problem_.slopes(*fit.nearby, fit.told);
-  fit.normal = problem_.normal(fit.told, fit.slopes, readings);
+  fit.slopes = problem_.slopes(*fit.nearby, fit.estimated);
+  fit.normal = problem_.normal(fit.estimated, fit.slopes, readings);
 }
 
-/// Of the readings as fit.nearby has them from fit.at on, where it is held by so many times what is known before.
+/// Minimises the cost of the readings that fit.nearby predicts from fit.at. `holding` times the prior information
+/// penalises the distance from fit.at.
 Guess Fitter::least(const Fit& fit, const Readings& readings, double holding) const {
   Guess at{fit.at.values, fit.at.places, {}, fit.at.computed};
   const auto normal_at = [&](const Guess& guess) {
@@ -109,17 +111,17 @@ Guess Fitter::least(const Fit& fit, const Readings& readings, double holding) co
   const Eigen::MatrixXd hold = holding * readings.known.cost(problem_.variables(), fit.at.values, fit.at.places).matrix;
   normal.matrix += hold;
   Damping inner(first_damping);
-  for (int i = 0; i < most_inner; ++i) {
+  for (int i = 0; i < max_inner; ++i) {
     const Eigen::VectorXd step = step_of(at, normal, inner.value());
     if (!(length_of(step, normal) > inner_length)) break;
     Guess next{{}, {}, {}, fit.at.computed};
     problem_.move(at, step, next.values, next.places);
     problem_.follow(*fit.nearby, fit.at, next, {}, next.computed, nullptr);
     Normal there = normal_at(next);
-    const Eigen::VectorXd way = problem_.way(fit.at, next);
+    const Eigen::VectorXd path = problem_.path(fit.at, next);
     there.matrix += hold;
-    there.gradient += hold * way;
-    there.cost += way.dot(hold * way);
+    there.gradient += hold * path;
+    there.cost += path.dot(hold * path);
     if (there.cost < normal.cost) {
       at = std::move(next);
       normal = std::move(there);
@@ -131,12 +133,12 @@ Guess Fitter::least(const Fit& fit, const Readings& readings, double holding) co
   return at;
 }
 
-Fit Fitter::foretell(Guess from, const Readings& readings, std::shared_ptr<const Nearby> nearby,
-                     const Actuation& before) const {
+Fit Fitter::predict(Guess from, const Readings& readings, std::shared_ptr<const Nearby> nearby,
+                    const Actuation& before) const {
   Fit fit{std::move(from), std::move(nearby)};
   const Guess same = fit.at;
   problem_.follow(*fit.nearby, same, same, readings.commands - before, fit.at.computed, nullptr);
-  fit.told = least(fit, readings, 0);
+  fit.estimated = least(fit, readings, 0);
   set_normal(fit, readings);
   fit.converged = true;
   return fit;
@@ -146,7 +148,7 @@ bool Fitter::exhausted() const {
   return problem_.lost() - lost_before_ > many_failures;
 }
 
-/// Slopes of where the fit is.
+/// Computes the slopes at the current guess of the fit.
 void Fitter::renew(Fit& fit) const {
   fit.nearby = std::make_shared<const Nearby>(problem_.nearby(fit.at));
 }
@@ -164,21 +166,22 @@ Fit Fitter::begin(Guess from, const Readings& readings, const Start& start, Actu
   return fit;
 }
 
-/// A step is gone to first order alone where what that leaves, as the last steps shrank, is below the accuracy.
+/// The last step is done to first order alone where its error, estimated from how the last steps shrank, is below the
+/// accuracy.
 Fit Fitter::refine_by(Guess from, const Readings& readings, const Start& start) const {
   Actuation elsewhere;
   Fit fit = begin(std::move(from), readings, start, elsewhere);
   Pace pace;
   pace.fresh = start.nearby == nullptr;
   while (true) {
-    fit.told = least(fit, readings, pace.hold.value());
+    fit.estimated = least(fit, readings, pace.hold.value());
     set_normal(fit, readings);
-    const double length = length_of(problem_.way(fit.at, fit.told), fit.normal);
+    const double length = length_of(problem_.path(fit.at, fit.estimated), fit.normal);
     if (!std::isfinite(length)) break;
     pace.see(length);
     fit.converged = elsewhere.size() == 0 && pace.hold.value() == 0 && pace.left_of(length) <= options_.accuracy;
     if (fit.converged) return fit;
-    if (fit.iterations >= start.most_iterations) break;
+    if (fit.iterations >= start.max_iterations) break;
     if (!pace.fresh && elsewhere.size() == 0 && length > contraction * pace.last) {
       renew(fit);
       pace.renewed();
@@ -190,7 +193,7 @@ Fit Fitter::refine_by(Guess from, const Readings& readings, const Start& start) 
       fit.interrupted = true;
       return fit;
     }
-    // what was foretold of other commands may be off by more than a short step gains
+    // the prediction for other commands may have an error larger than the reduction by a short step
     const bool short_step = elsewhere.size() > 0 && length <= 1;
     if (next.solved() && (short_step || problem_.cost(next, readings) < problem_.cost(fit.at, readings))) {
       fit.at = std::move(next);
@@ -208,24 +211,25 @@ Fit Fitter::refine_by(Guess from, const Readings& readings, const Start& start) 
       renew(fit);
       pace.renewed();
     }
-    if (!pace.shorten(!next.solved(), exhausted() ? 1 : most_failures)) break;
+    if (!pace.shorten(!next.solved(), exhausted() ? 1 : max_failures)) break;
   }
-  fit.told = {fit.at.values, fit.at.places, {}, fit.at.computed};
+  fit.estimated = {fit.at.values, fit.at.places, {}, fit.at.computed};
   set_normal(fit, readings);
   return fit;
 }
 
-/// The equilibrium at fit.told, or on the way there as far as may be foretold, from where it is foretold.
+/// Solves for the equilibrium at fit.estimated, or at the farthest guess towards it that may be predicted; the
+/// predicted state is the initial guess.
 Guess Fitter::stepped(const Fit& fit, const Readings& readings, const Actuation& elsewhere, double reach) const {
   const double most = reach * longest_move * problem_.variables().model().diagonal_mm;
-  const double share = most / problem_.largest_move(*fit.nearby, fit.at, fit.told);
-  Guess to = fit.told;
-  if (share < 1) problem_.move(fit.at, share * problem_.way(fit.at, fit.told), to.values, to.places);
+  const double fraction = most / problem_.largest_move(*fit.nearby, fit.at, fit.estimated);
+  Guess to = fit.estimated;
+  if (fraction < 1) problem_.move(fit.at, fraction * problem_.path(fit.at, fit.estimated), to.values, to.places);
   Eigen::VectorXd computed = fit.at.computed;
-  State foretold = fit.at.equilibrium.state;
-  problem_.follow(*fit.nearby, fit.at, to, elsewhere, computed, &foretold);
-  foretold.actuation = problem_.variables().actuation(readings.commands, to.values, to.places);
-  return problem_.solve(readings.commands, to.values, to.places, &fit.at, progress_, &foretold);
+  State predicted = fit.at.equilibrium.state;
+  problem_.follow(*fit.nearby, fit.at, to, elsewhere, computed, &predicted);
+  predicted.actuation = problem_.variables().actuation(readings.commands, to.values, to.places);
+  return problem_.solve(readings.commands, to.values, to.places, &fit.at, progress_, &predicted);
 }
 
 }  // namespace softkin::estimate

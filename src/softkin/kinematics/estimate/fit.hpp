@@ -8,15 +8,16 @@ namespace softkin::estimate {
 
 struct Survey;
 
-/// What a step adds to the diagonal (Levenberg and Marquardt): less after one that helps, more after one that does not.
+/// The damping that a step adds to the diagonal (Levenberg and Marquardt): it falls after a step that reduces the cost
+/// and grows after one that does not.
 class Damping {
  public:
-  /// first  the least above none
+  /// first  the smallest damping above zero
   explicit Damping(double first) : first_(first) {}
 
   [[nodiscard]] double value() const { return value_; }
   void relax() { value_ = value_ > first_ ? value_ / 16 : 0; }
-  /// False where more leads nowhere.
+  /// Returns false where the maximum is exceeded.
   bool tighten() { return (value_ = value_ == 0 ? first_ : 8 * value_) <= most; }
 
  private:
@@ -28,14 +29,15 @@ class Damping {
 struct Fit {
   Guess at;                                // the last equilibrium
   std::shared_ptr<const Nearby> nearby{};  // of a guess so near that steps by it still converge
-  /// The least cost as `nearby` has it, without an equilibrium; where that may be off by more than the accuracy, `at`.
-  Guess told{};
+  /// The minimum of the cost that `nearby` predicts, without an equilibrium; `at` where its error may exceed the
+  /// accuracy.
+  Guess estimated{};
   Eigen::MatrixXd slopes{};                // of readings, there
   Normal normal{};                         // the same
   std::shared_ptr<const Survey> around{};  // of all places, at a shape nearby; null: none was made
   bool converged = false;
   bool interrupted = false;
-  bool anew = false;  // without what earlier readings tell
+  bool anew = false;  // without the information of earlier readings
   int iterations = 0;
 };
 
@@ -50,19 +52,19 @@ class Fitter {
   struct Start {
     std::shared_ptr<const Nearby> nearby{};  // of a guess nearby: it is used as long as it is good enough
     const Actuation* before = nullptr;       // commands of the guess, where these are others; nearby is known then
-    int most_iterations = 0;
+    int max_iterations = 0;
   };
-  /// Each step leads to the least cost of `nearby`; damped as Levenberg and Marquardt do. What the last step leaves is
-  /// foretold by how the steps shrank.
+  /// Each step leads to the minimum of the cost that `nearby` predicts, with the damping of Levenberg and Marquardt.
+  /// The error after the last step is estimated from how the steps shrank.
   ///
   /// from  a guess that is solved
   [[nodiscard]] Fit refine_by(Guess from, const Readings& readings, const Start& start) const;
   [[nodiscard]] Fit refine(Guess from, const Readings& readings, std::shared_ptr<const Nearby> nearby,
                            const Actuation* before = nullptr) const;
-  /// The least cost as it is foretold, without an equilibrium.
-  [[nodiscard]] Fit foretell(Guess from, const Readings& readings, std::shared_ptr<const Nearby> nearby,
-                             const Actuation& before) const;
-  /// Were so many equilibria not found that fits end at the first that is not?
+  /// Returns the minimum of the predicted cost, without an equilibrium.
+  [[nodiscard]] Fit predict(Guess from, const Readings& readings, std::shared_ptr<const Nearby> nearby,
+                            const Actuation& before) const;
+  /// Have so many solves failed that a fit ends at its first failure?
   [[nodiscard]] bool exhausted() const;
 
  private:

@@ -6,8 +6,7 @@ namespace softkin::estimate {
 
 namespace {
 
-/// A variance below this share of what is known before any reading is that of a direction that is held, as across a
-/// flat patch.
+/// A variance below this fraction of the prior one belongs to a fixed direction, such as the normal of a flat patch.
 constexpr double held = 1e-8;
 
 Eigen::MatrixXd covariance_before(const Variables& variables) {
@@ -33,7 +32,7 @@ Eigen::VectorXd mean_before(const Variables& variables) {
   return mean;
 }
 
-/// Inverse on what it spans, by coordinates in units of what is known before.
+/// Returns the pseudoinverse of a covariance, computed in coordinates scaled by their prior standard deviations.
 Eigen::MatrixXd information_of(const Variables& variables, const Eigen::MatrixXd& covariance) {
   Eigen::VectorXd units(covariance.rows());
   for (Index i = 0; i < variables.numbers(); ++i) units[i] = variables.all()[i].deviation;

@@ -11,18 +11,19 @@ namespace softkin::estimate {
 /// How these change with the columns of Variables: identity, and the tangents.
 [[nodiscard]] Eigen::MatrixXd directions_at(const Variables& variables, const std::vector<Place>& places);
 
-/// What is known of the unknowns before a reading: a normal distribution of their coordinates, and what earlier
-/// readings tell.
+/// The prior of the unknowns before a reading: a normal distribution of their coordinates, and the information of
+/// earlier readings.
 struct Knowledge {
   Eigen::VectorXd mean;
   Eigen::MatrixXd information;  // inverse of the covariance, on what it spans
 
-  const Memory* memory = nullptr;  // what earlier readings tell beside; null: nothing
+  const Memory* memory = nullptr;  // the information of earlier readings; null: none
 
-  /// Before any reading: of numbers as given, of places anywhere on their patches.
+  /// The prior before any reading: numbers as given, places anywhere on their patches.
   explicit Knowledge(const Variables& variables);
 
-  /// What is known costs at unknowns, to second order in Variables' columns: its matrix, half its gradient, itself.
+  /// The cost of the prior at given unknowns, to second order in the columns of Variables: half its Hessian matrix,
+  /// half its gradient, and its value.
   struct Cost {
     Eigen::MatrixXd matrix;
     Eigen::VectorXd gradient;

@@ -6,24 +6,25 @@ namespace softkin::estimate {
 
 namespace {
 
-/// A variance below this share of the largest of a place is that of a direction that is held, as across a flat patch.
-constexpr double least_spanned = 1e-8;
+/// A variance below this fraction of the largest one of a place belongs to a fixed direction, such as the normal of a
+/// flat patch.
+constexpr double min_spanned = 1e-8;
 
-/// M with M M^T a covariance, without what it does not span.
+/// Returns M with M M^T equal to the covariance, without the directions that it does not span.
 Eigen::MatrixXd root_of(const Eigen::MatrixXd& covariance) {
   const SymmetricEigen eigen = symmetric_eigen(covariance);
   const double largest = eigen.values.maxCoeff();
   std::vector<Index> spanned;
   for (Index k = 0; k < std::ssize(eigen.values); ++k)
-    if (eigen.values[k] > least_spanned * largest) spanned.push_back(k);
+    if (eigen.values[k] > min_spanned * largest) spanned.push_back(k);
   Eigen::MatrixXd root(covariance.rows(), static_cast<Index>(spanned.size()));
   for (Index c = 0; c < std::ssize(spanned); ++c)
     root.col(c) = std::sqrt(eigen.values[spanned[c]]) * eigen.vectors.col(spanned[c]);
   return root;
 }
 
-/// Of the products of a force's components with the place's coordinates from its mean, the former's first, where both
-/// are independent.
+/// Returns the covariance of the products of a force's components with the place's coordinates relative to its mean;
+/// the component is the slower index, and both factors are independent.
 Eigen::MatrixXd product_covariance(const Variables& variables, const FreeForce& force) {
   Mat3 squares = Mat3::Zero();
   Vec3 mean = Vec3::Zero();
@@ -70,10 +71,10 @@ Eigen::VectorXd Memory::sums(const Eigen::VectorXd& values, const std::vector<Pl
   sums.head(variables_.numbers()) = values;
   for (std::size_t f = 0; f < places.size(); ++f) {
     const FreeForce& force = variables_.forces()[f];
-    const Vec3 way = force.patch->at(places[f], variables_.model().rest) - force.patch->middle();
+    const Vec3 path = force.patch->at(places[f], variables_.model().rest) - force.patch->middle();
     for (Index axis = 0; axis < 3; ++axis)
       if (const Index v = force.variables[axis]; v >= 0)
-        sums.segment<3>(variables_.numbers() + 9 * f + 3 * axis) = values[v] * way;
+        sums.segment<3>(variables_.numbers() + 9 * f + 3 * axis) = values[v] * path;
   }
   return sums;
 }
@@ -88,13 +89,13 @@ Eigen::MatrixXd Memory::slopes(const Eigen::VectorXd& values, const std::vector<
   slopes.topLeftCorner(numbers, numbers).setIdentity();
   for (std::size_t f = 0; f < places.size(); ++f) {
     const FreeForce& force = variables_.forces()[f];
-    const Vec3 way = force.patch->at(places[f], variables_.model().rest) - force.patch->middle();
+    const Vec3 path = force.patch->at(places[f], variables_.model().rest) - force.patch->middle();
     const auto tangents = force.patch->tangents(places[f]);
     for (Index axis = 0; axis < 3; ++axis) {
       const Index v = force.variables[axis];
       if (v < 0) continue;
       const Index row = numbers + 9 * f + 3 * axis;
-      slopes.block<3, 1>(row, v) = way;
+      slopes.block<3, 1>(row, v) = path;
       slopes.block<3, 2>(row, numbers + 2 * f) = values[v] * tangents;
     }
   }
@@ -103,7 +104,7 @@ Eigen::MatrixXd Memory::slopes(const Eigen::VectorXd& values, const std::vector<
 
 void Memory::add(const Eigen::MatrixXd& by_parts, const std::vector<Place>& base, const Eigen::VectorXd& values,
                  const std::vector<Place>& places, const Eigen::VectorXd& missed, const Eigen::VectorXd& weights) {
-  // a part of a force is its product with the way along a tangent from the base
+  // a part of a force is its product with the displacement along a tangent from the base
   const Index numbers = variables_.numbers();
   Eigen::MatrixXd parts = Eigen::MatrixXd::Zero(by_parts.cols(), mean_.size());
   parts.topLeftCorner(numbers, numbers).setIdentity();
@@ -127,14 +128,14 @@ void Memory::add(const Eigen::MatrixXd& by_parts, const std::vector<Place>& base
   pull_ += by_y.transpose() * weights.cwiseProduct(target);
 }
 
-void Memory::fade(double share) {
-  const double kept = share * share;
+void Memory::fade(double fraction) {
+  const double kept = fraction * fraction;
   const SymmetricEigen eigen = symmetric_eigen(information_);
   Eigen::VectorXd along = eigen.vectors.transpose() * pull_, faded(along.size());
   for (Index k = 0; k < std::ssize(along); ++k) {
-    const double told = std::max(0.0, eigen.values[k]);  // deviation before is 1
-    faded[k] = kept * told / (1 + (1 - kept) * told);
-    along[k] *= share * (1 + faded[k]) / (1 + told);
+    const double estimated = std::max(0.0, eigen.values[k]);  // deviation before is 1
+    faded[k] = kept * estimated / (1 + (1 - kept) * estimated);
+    along[k] *= fraction * (1 + faded[k]) / (1 + estimated);
   }
   information_ = eigen.vectors * faded.asDiagonal() * eigen.vectors.transpose();
   pull_ = eigen.vectors * along;

@@ -4,15 +4,15 @@
 
 namespace softkin::estimate {
 
-/// What earlier readings tell: how likely they make unknowns, exp(-(y^T S y - 2 h^T y) / 2).
+/// The information of earlier readings: the likelihood that they give to unknowns, exp(-(y^T S y - 2 h^T y) / 2).
 ///
-/// y are the numbers, and of each force of unknown place the products of its components with the place's coordinates,
-/// less what they are before any reading in the mean and in units in which they are uncorrelated then, each of
-/// deviation 1. Readings are about linear in them however far a place is told wrongly, as they are not in the force and
-/// its place: what is known of these is a bent ridge of all pairs that do the same.
+/// y contains the numbers, and for each force of unknown place the products of its components with the place's
+/// coordinates. Their prior means are subtracted, and they are scaled so that they are uncorrelated with standard
+/// deviation 1 before any reading. Readings are nearly linear in y however large the error of a place is. They are not
+/// linear in the force and its place, whose likelihood is a curved ridge of all pairs with the same effect.
 class Memory {
  public:
-  /// Of nothing. variables must outlive the object.
+  /// Contains no information at first. variables must outlive the object.
   explicit Memory(const Variables& variables);
 
   /// y
@@ -25,16 +25,16 @@ class Memory {
   /// Adds readings near unknowns.
   ///
   /// by_parts  readings by Variables::parts() at a base
-  /// missed    what was computed under the unknowns less what was read; where the weight is 0 it is not looked at
+  /// missed    computed values less readings at the unknowns; not used where the weight is 0
   /// weights   1 / deviation^2; 0: not read
   void add(const Eigen::MatrixXd& by_parts, const std::vector<Place>& base, const Eigen::VectorXd& values,
            const std::vector<Place>& places, const Eigen::VectorXd& missed, const Eigen::VectorXd& weights);
-  /// After a time in which what was told may have changed: y decays and is stirred so that without readings it comes to
-  /// be known as before any, with this share of it left.
+  /// Reduces the information after a time in which the unknowns may have changed: y decays under noise, so that without
+  /// readings its distribution returns to the prior one; this fraction of y remains.
   ///
-  /// share   exp(-elapsed / fade), 0 <= share <= 1
+  /// fraction  exp(-elapsed / fade), 0 <= fraction <= 1
   /// source  Ornstein-Uhlenbeck process: mean a m, covariance a^2 P + (1 - a^2) I
-  void fade(double share);
+  void fade(double fraction);
   void forget();
 
  private:

@@ -8,23 +8,25 @@ namespace softkin::estimate {
 
 namespace {
 
-/// Standard deviations by which readings may be farther off than theirs say: of one in some hundred thousand.
+/// Number of standard deviations by which the misfit of readings may exceed its expectation: the probability of more is
+/// about 1e-5.
 constexpr double agrees_below = 4.3;
-/// Freedoms that must be left for readings to be able to contradict each other.
-constexpr double least_freedoms = 0.9;
-/// Of a reading's variance, that a residual keeps however well the fit follows it.
-constexpr double least_variance = 0.01;
+/// Degrees of freedom that must remain for readings to be able to contradict each other.
+constexpr double min_freedoms = 0.9;
+/// Fraction of a reading's variance that its residual retains at least, however closely the fit follows the reading.
+constexpr double min_variance = 0.01;
 
-/// How often a fit goes on that agrees but has not converged.
-constexpr int most_returns = 3;
-/// Sets of readings that are tried by a search.
-constexpr std::size_t most_searches = 8;
-/// By so many times a linear fit must become better for each group that is left out, to be tried before fits to more.
+/// How often a fit that agrees with its readings but has not converged is continued.
+constexpr int max_returns = 3;
+/// Maximum number of sets of readings that a search tries.
+constexpr std::size_t max_searches = 8;
+/// Factor by which the cost of a linear fit must fall for each group that is left out, for that set to be tried before
+/// larger sets of readings.
 constexpr double worthwhile_gain = 4;
 
 using Set = std::vector<std::size_t>;
 
-/// How far off readings are, all together and each group.
+/// The misfit of the readings, of all together and of each group.
 struct Judgement {
   double freedoms = 0;
   double all = 0;  // excess
@@ -43,7 +45,7 @@ std::vector<Index> read_of(const ReadingGroup& group, const Eigen::VectorXd& wei
   return read;
 }
 
-/// Of the readings of a group, in their deviations.
+/// Slopes and residuals of the readings of a group, over their standard deviations.
 struct Weighted {
   Eigen::MatrixXd slopes;
   Eigen::VectorXd off;  // from the fit
@@ -57,7 +59,7 @@ Weighted weighted(const Fit& fit, const ReadingGroup& group, const Eigen::Vector
   for (Index i = 0; i < count; ++i) {
     const Index r = read[i];
     of.slopes.row(i) = std::sqrt(weights[r]) * fit.slopes.row(r);
-    of.off[i] = std::sqrt(weights[r]) * (fit.told.computed[r] - values[r]);
+    of.off[i] = std::sqrt(weights[r]) * (fit.estimated.computed[r] - values[r]);
   }
   return of;
 }
@@ -70,10 +72,10 @@ Judgement judge(const Fit& fit, const std::vector<ReadingGroup>& groups, const E
   for (const ReadingGroup& group : groups) {
     const auto [own, off] = weighted(fit, group, values, weights);
     const Index count = off.size();
-    const Eigen::MatrixXd told = own * factor.solve(Eigen::MatrixXd(own.transpose()));
-    const Eigen::MatrixXd left = (1 + least_variance) * Eigen::MatrixXd::Identity(count, count) - told;
+    const Eigen::MatrixXd estimated = own * factor.solve(Eigen::MatrixXd(own.transpose()));
+    const Eigen::MatrixXd left = (1 + min_variance) * Eigen::MatrixXd::Identity(count, count) - estimated;
     chi_square += off.squaredNorm();
-    judgement.freedoms += static_cast<double>(count) - told.trace();
+    judgement.freedoms += static_cast<double>(count) - estimated.trace();
     judgement.groups.push_back(count == 0 ? 0
                                           : excess(off.dot(solve_symmetric(left, off)), static_cast<double>(count)));
   }
@@ -81,7 +83,7 @@ Judgement judge(const Fit& fit, const std::vector<ReadingGroup>& groups, const E
   return judgement;
 }
 
-/// Does a fit agree with a group that it was not made of?
+/// Does a fit agree with a group of readings that it did not use?
 bool agrees_with(const Fit& fit, const ReadingGroup& group, const Eigen::VectorXd& values,
                  const Eigen::VectorXd& weights) {
   const auto [own, off] = weighted(fit, group, values, weights);
@@ -99,14 +101,14 @@ class Trials {
          const Fits& fits)
       : groups_(groups), values_(values), weights_(weights), fits_(fits) {}
 
-  /// From the last estimate on: what its slopes foretell says which group, if any, to leave out.
+  /// Continues from the last estimate: a prediction with its slopes determines which group, if any, to leave out.
   void track() {
-    const Fit foretold = fits_.foretold(weights_);
+    const Fit predicted = fits_.predicted(weights_);
     std::optional<Set> best;
     double least = 0;
-    if (!agrees(foretold, {}))
+    if (!agrees(predicted, {}))
       for (const Set& out : sets(1)) {
-        const Fit fit = fits_.foretold(without(out));
+        const Fit fit = fits_.predicted(without(out));
         if (!agrees(fit, out) || (best && fit.normal.cost >= least)) continue;
         best = out;
         least = fit.normal.cost;
@@ -115,34 +117,34 @@ class Trials {
     if (!interrupted_) (void)take(fits_.tracked(weights_), {}, false);
   }
 
-  /// Without a start: first where a linear fit promises most.
+  /// Searches without a start, first the sets of readings with the lowest predicted cost.
   void search() {
     std::vector<std::pair<double, Set>> promise{{forecast({}), {}}};
     for (std::size_t size = 1; size <= 2; ++size)
       for (const Set& out : sets(size)) promise.emplace_back(std::pow(worthwhile_gain, size) * forecast(out), out);
     std::sort(promise.begin(), promise.end());
-    promise.resize(std::min(promise.size(), most_searches));
+    promise.resize(std::min(promise.size(), max_searches));
     for (const auto& [cost, out] : promise) {
       if (take(fits_.anew(without(out)), out, true) || interrupted_ || fits_.exhausted()) return;
     }
   }
 
-  /// Where nothing agrees.
+  /// Fits all readings, where no set of them agrees.
   void search_all() { (void)take(fits_.anew(weights_), {}, true); }
 
   [[nodiscard]] bool found() const { return found_; }
   [[nodiscard]] bool interrupted() const { return interrupted_; }
   [[nodiscard]] const Set& out() const { return out_; }
   [[nodiscard]] Eigen::VectorXd kept() const { return without(out_); }
-  /// What agrees; else the fit to all readings.
+  /// Returns the fit whose readings agree; else the fit to all readings.
   Fit fit() { return std::move(fit_); }
   [[nodiscard]] bool any() const { return any_; }
 
  private:
-  /// A fit whose readings agree is taken, with what else agrees with it.
+  /// Accepts a fit whose readings agree, and puts back the groups that agree with it.
   bool take(Fit fit, Set out, bool anew) {
     found_ = !fit.interrupted && agrees(fit, out);
-    for (int times = 0; found_ && !fit.converged && !fit.interrupted && times < most_returns; ++times)
+    for (int times = 0; found_ && !fit.converged && !fit.interrupted && times < max_returns; ++times)
       fit = fits_.near(without(out), fit, anew);
     interrupted_ = fit.interrupted;
     found_ = found_ && !interrupted_;
@@ -169,21 +171,22 @@ class Trials {
     }
   }
 
-  /// What is not the least cost yet but agrees shows as well that the least does.
+  /// A fit that agrees before its cost is minimal shows that the minimum agrees as well.
   [[nodiscard]] bool agrees(const Fit& fit, const Set& out) const {
     if (!fit.at.solved() || fit.normal.matrix.size() == 0) return false;
     const Judgement judgement = judge(fit, groups_, values_, without(out));
-    return judgement.agrees() && (out.empty() || judgement.freedoms >= least_freedoms);
+    return judgement.agrees() && (out.empty() || judgement.freedoms >= min_freedoms);
   }
 
-  /// Per reading, above what noise costs: where all agree to noise, none is to be left out.
+  /// Returns the predicted cost per reading, plus the expected cost of noise: where all readings agree within noise,
+  /// none is to be left out.
   [[nodiscard]] double forecast(const Set& out) const {
     const Eigen::VectorXd weights = without(out);
     const auto read = static_cast<double>((weights.array() > 0).count());
     return 1 + fits_.forecast(weights) / std::max(1.0, read);
   }
 
-  /// Of so many groups that were read.
+  /// Returns all sets of `size` groups that have readings.
   [[nodiscard]] std::vector<Set> sets(std::size_t size) const {
     std::vector<Set> sets;
     for (std::size_t g = 0; g < groups_.size(); ++g) {

@@ -8,7 +8,8 @@ namespace softkin::estimate {
 
 namespace {
 
-/// Radius of a spot, over the longest edge of a face: it holds the corners of the face about its middle, and more.
+/// Radius of a spot, relative to the longest edge of a face: it contains at least the corners of the face at its
+/// middle.
 constexpr double spot = 1.5;
 
 std::vector<Triangle> triangles_of(const std::vector<CavityFace>& faces) {
@@ -88,8 +89,8 @@ Eigen::Matrix<double, 3, 2> Patch::tangents(const Place& place) const {
   return tangents;
 }
 
-Patch::Shares Patch::shares(const Place& place) const {
-  Shares found{{}, {}, {}, tangents(place)};
+Patch::Fractions Patch::fractions(const Place& place) const {
+  Fractions found{{}, {}, {}, tangents(place)};
   const Vec3 there = at(place, model_.rest);
   std::vector<SpotNode> near;
   for (std::size_t i = 0; i < nodes_.size(); ++i) {
@@ -110,12 +111,12 @@ Patch::Shares Patch::shares(const Place& place) const {
   }
   const Mat3 inverse = moments.inverse();
   const Vec3 fit = inverse.col(0);
-  found.shares.resize(near.size());
+  found.fractions.resize(near.size());
   found.slopes.resize(near.size(), 2);
   for (std::size_t i = 0; i < near.size(); ++i) {
     const SpotNode& node = near[i];
     const Index row = i;
-    found.shares[row] = node.weight * node.basis.dot(fit);
+    found.fractions[row] = node.weight * node.basis.dot(fit);
     for (int t = 0; t < 2; ++t)
       found.slopes(row, t) = node.slope[t] * node.basis.dot(fit) - node.weight * fit[t + 1] / radius_ -
                              node.weight * node.basis.dot(inverse * changes[t] * fit);

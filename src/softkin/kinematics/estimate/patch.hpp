@@ -20,19 +20,19 @@ class Patch {
   /// Of all faces, ascending.
   [[nodiscard]] const std::vector<Index>& nodes() const { return nodes_; }
 
-  /// The nodes that carry a force there, by their place in nodes(), each with its share of it: spread over a spot of
-  /// 1.5 times the longest edge of the patch so that force and moment are those of a force at the place, and so
-  /// smoothly that shapes are smooth functions of the place, as they are not of one that crosses the edges of faces.
+  /// The nodes that carry a force at a place, by their index in nodes(), each with its fraction of it. The force is
+  /// distributed over a spot whose radius is 1.5 times the longest edge of the patch. The resultant force and moment
+  /// are those of a force at the place, and shapes are smooth functions of the place, also across the edges of faces.
   ///
   /// source  moving least squares (Lancaster, Salkauskas 1981) of degree 1 in the tangent plane, weights
   ///         (1 - r^2 / R^2)^3
-  struct Shares {
+  struct Fractions {
     std::vector<Index> nodes;
-    Eigen::VectorXd shares;
-    Eigen::MatrixXd slopes;                // nodes by 2: of shares, along the tangents [1/mm at rest]
+    Eigen::VectorXd fractions;
+    Eigen::MatrixXd slopes;                // nodes by 2: of fractions, along the tangents [1/mm at rest]
     Eigen::Matrix<double, 3, 2> tangents;  // orthonormal, at rest
   };
-  [[nodiscard]] Shares shares(const Place& place) const;
+  [[nodiscard]] Fractions fractions(const Place& place) const;
   /// Orthonormal, in the flat face at rest.
   [[nodiscard]] Eigen::Matrix<double, 3, 2> tangents(const Place& place) const;
 
@@ -40,11 +40,11 @@ class Patch {
   [[nodiscard]] Vec3 at(const Place& place, const Points& positions) const;
   /// The place whose flat face, through the corners at rest, is nearest to a point [mm].
   [[nodiscard]] Place nearest(const Vec3& at_rest) const;
-  /// Middles of faces, spread out as far from each other as so many can be: each is that which is farthest from those
-  /// before it, the first that nearest to the patch's middle.
+  /// Returns at most `most` centroids of faces, spread over the patch: the first is the one nearest to the middle of
+  /// the patch, each further one the farthest from those before it.
   [[nodiscard]] std::vector<Place> spread(std::size_t most) const;
 
-  /// Of its area at rest: the mean place [mm], and the covariance of a place that may be anywhere [mm^2].
+  /// Moments of the area at rest: the mean place [mm], and the covariance of a place that may be anywhere [mm^2].
   [[nodiscard]] double area() const { return area_; }  // [mm^2]
   [[nodiscard]] const Vec3& middle() const { return middle_; }
   [[nodiscard]] const Mat3& covariance() const { return covariance_; }

@@ -6,12 +6,13 @@ namespace softkin::estimate {
 
 namespace {
 
-/// Robots that are kept, each of other stiffnesses: of the last fits of an update.
+/// Number of stored robots with different stiffnesses, those of the last fits of an update.
 constexpr std::size_t kept_robots = 4;
-/// By which a stiffness is perturbed, of its mean.
+/// Perturbation of a stiffness, relative to its mean.
 constexpr double perturbation = 1e-5;
-/// Of a solve that begins at an equilibrium nearby: where it takes more, a shorter step is the shorter way.
-constexpr int most_iterations = 12;
+/// Maximum number of iterations of a solve that begins at a nearby equilibrium: where more are needed, a shorter step
+/// is faster.
+constexpr int max_iterations = 12;
 
 StaticsOptions quiet(StaticsOptions options) {
   options.keep_history = false;
@@ -19,7 +20,7 @@ StaticsOptions quiet(StaticsOptions options) {
   return options;
 }
 
-/// What was computed less the readings, where these were read.
+/// Returns the computed values less the readings; 0 where the weight is 0.
 Eigen::VectorXd missed(const Guess& at, const Readings& read) {
   Eigen::VectorXd missed = Eigen::VectorXd::Zero(read.values.size());
   for (Index r = 0; r < std::ssize(read.values); ++r)
@@ -61,13 +62,13 @@ const Statics& Problem::statics(const Eigen::VectorXd& values) const {
 }
 
 Guess Problem::solve(const Actuation& commands, const Eigen::VectorXd& values, const std::vector<Place>& places,
-                     const Guess* near, const ProgressCallback& progress, const State* foretold) const {
+                     const Guess* near, const ProgressCallback& progress, const State* predicted) const {
   Guess guess{values, places, {}, {}};
   const Statics& statics = this->statics(values);
   const State start = near && near->solved() ? near->equilibrium.state : statics.rest();
-  if (near && near->solved() && foretold) (void)statics.foretell(start, *foretold, options_);
+  if (near && near->solved() && predicted) (void)statics.set_initial_guess(start, *predicted, options_);
   StaticsOptions options = options_;
-  if (near && near->solved()) options.max_iterations = std::min(options.max_iterations, most_iterations);
+  if (near && near->solved()) options.max_iterations = std::min(options.max_iterations, max_iterations);
   guess.equilibrium = statics.solve(variables_.actuation(commands, values, places), start, options, progress);
   ++solves_;
   if (guess.equilibrium.report.status != Status::converged) {
@@ -103,7 +104,7 @@ Nearby Problem::nearby(const Guess& at) const {
   return near;
 }
 
-/// The columns of stiffnesses, which are no commands.
+/// Sets the columns of stiffnesses, which are no commands.
 void Problem::set_stiffness_slopes(const Guess& at, Slopes& parts) const {
   std::vector<Model> models;
   std::vector<Perturbed> perturbed;
@@ -199,16 +200,16 @@ void Problem::move(const Guess& from, const Eigen::VectorXd& step, Eigen::Vector
   }
 }
 
-Eigen::VectorXd Problem::way(const Guess& from, const Guess& to) const {
-  Eigen::VectorXd way(variables_.columns());
-  way.head(variables_.numbers()) = to.values - from.values;
+Eigen::VectorXd Problem::path(const Guess& from, const Guess& to) const {
+  Eigen::VectorXd path(variables_.columns());
+  path.head(variables_.numbers()) = to.values - from.values;
   for (std::size_t f = 0; f < to.places.size(); ++f) {
     const Patch& patch = *variables_.forces()[f].patch;
     const Points& rest = variables_.model().rest;
-    way.segment<2>(variables_.numbers() + 2 * f) =
+    path.segment<2>(variables_.numbers() + 2 * f) =
         patch.tangents(from.places[f]).transpose() * (patch.at(to.places[f], rest) - patch.at(from.places[f], rest));
   }
-  return way;
+  return path;
 }
 
 Eigen::MatrixXd Problem::slopes(const Nearby& nearby, const Guess& at) const {
@@ -228,20 +229,20 @@ std::vector<Points> Problem::moves(const Nearby& nearby, const Guess& at) const 
 
 void Problem::follow(const Nearby& nearby, const Guess& from, const Guess& to, const Actuation& commands,
                      Eigen::VectorXd& computed, State* state) const {
-  const auto add = [&](const Slopes& by, const Eigen::VectorXd& way) {
-    computed += by.of_readings * way;
+  const auto add = [&](const Slopes& by, const Eigen::VectorXd& path) {
+    computed += by.of_readings * path;
     if (state == nullptr) return;
-    state->multipliers += by.multipliers * way;
-    for (Index c = 0; c < std::ssize(way); ++c)
-      if (way[c] != 0) state->positions += way[c] * by.moves[c];
+    state->multipliers += by.multipliers * path;
+    for (Index c = 0; c < std::ssize(path); ++c)
+      if (path[c] != 0) state->positions += path[c] * by.moves[c];
   };
   add(nearby.parts,
       variables_.parts(to.values, to.places, nearby.base) - variables_.parts(from.values, from.places, nearby.base));
   if (commands.size() == 0) return;
   const std::vector<Index> measured = variables_.measured();
-  Eigen::VectorXd way(measured.size());
-  for (std::size_t i = 0; i < measured.size(); ++i) way[i] = commands[measured[i]];
-  add(nearby.commands, way);
+  Eigen::VectorXd path(measured.size());
+  for (std::size_t i = 0; i < measured.size(); ++i) path[i] = commands[measured[i]];
+  add(nearby.commands, path);
 }
 
 double Problem::largest_move(const Nearby& nearby, const Guess& from, const Guess& to) const {

@@ -27,7 +27,7 @@ struct Nearby {
   Slopes commands;  // by those that are measured, Variables::measured()
 };
 
-/// What is read at one time, and what was known before.
+/// The readings at one time, and the prior.
 struct Readings {
   const Actuation& commands;  // of the robot
   const Eigen::VectorXd& values;
@@ -35,7 +35,7 @@ struct Readings {
   const Knowledge& known;
 };
 
-/// Normal equations of the readings and of what was known before.
+/// Normal equations of the readings and the prior.
 struct Normal {
   Eigen::MatrixXd matrix;
   Eigen::VectorXd gradient;
@@ -45,7 +45,7 @@ struct Normal {
 /// The readings of a robot as functions of unknowns.
 class Problem {
  public:
-  /// Of derivatives, relative: far below what readings tell.
+  /// Relative accuracy of derivatives: its effect is far below the noise of readings.
   static constexpr double enough = 1e-2;
 
   Problem(const Model& model, const std::vector<EstimatedUnknown>& unknowns, std::vector<PoseColumn> columns,
@@ -53,15 +53,16 @@ class Problem {
 
   [[nodiscard]] const Variables& variables() const { return variables_; }
   [[nodiscard]] const std::vector<PoseColumn>& columns() const { return columns_; }
-  /// Of the robot with these numbers, kept for some of them.
+  /// Returns the solver of the robot with these numbers; a few are stored.
   [[nodiscard]] const Statics& statics(const Eigen::VectorXd& values) const;
 
   /// near      a guess from whose equilibrium the search begins; null: from rest
-  /// foretold  where the equilibrium is about, from `near`; null: along the tangent there
+  /// predicted  where the equilibrium is about, from `near`; null: along the tangent there
   [[nodiscard]] Guess solve(const Actuation& commands, const Eigen::VectorXd& values, const std::vector<Place>& places,
-                            const Guess* near, const ProgressCallback& progress, const State* foretold = nullptr) const;
+                            const Guess* near, const ProgressCallback& progress,
+                            const State* predicted = nullptr) const;
   [[nodiscard]] Nearby nearby(const Guess& at) const;
-  /// Of some changes of the commands: readings by changes.
+  /// Returns the derivatives of readings by the given changes of the commands.
   [[nodiscard]] Slopes slopes(const Guess& at, const std::vector<Actuation>& changes) const;
 
   /// Are all readings of markers and sensors?
@@ -72,28 +73,28 @@ class Problem {
 
   [[nodiscard]] Normal normal(const Guess& at, const Eigen::MatrixXd& slopes, const Readings& read) const;
   [[nodiscard]] double cost(const Guess& at, const Readings& read) const;
-  /// Adds what readings tell near a guess to a memory.
+  /// Adds the information of readings, linearised near a guess, to a memory.
   void remember(const Nearby& nearby, const Guess& at, const Readings& read, Memory& memory) const;
   /// A step from a guess: numbers within their ranges, places along their surfaces.
   void move(const Guess& from, const Eigen::VectorXd& step, Eigen::VectorXd& values, std::vector<Place>& places) const;
 
-  /// By how much the unknowns of another guess differ from those of one, in its columns.
-  [[nodiscard]] Eigen::VectorXd way(const Guess& from, const Guess& to) const;
+  /// Returns the difference of the unknowns of two guesses, in the columns at `from`.
+  [[nodiscard]] Eigen::VectorXd path(const Guess& from, const Guess& to) const;
   /// Readings by the columns, and how the vertices move.
   [[nodiscard]] Eigen::MatrixXd slopes(const Nearby& nearby, const Guess& at) const;
   [[nodiscard]] std::vector<Points> moves(const Nearby& nearby, const Guess& at) const;
-  /// Adds to readings of a guess, and to its shape, what they change by to another one and to other commands.
+  /// Adds the predicted change from one guess to another and to other commands to the readings and the shape.
   ///
   /// commands  change of those of the robot; no rows: none
-  /// state     null: not asked for. Its actuation stays as it is
+  /// state     null: not requested. Its actuation stays as it is
   void follow(const Nearby& nearby, const Guess& from, const Guess& to, const Actuation& commands,
               Eigen::VectorXd& computed, State* state) const;
-  /// What a vertex moves by from one to the other, at most [mm].
+  /// Returns the largest displacement of a vertex from one guess to the other [mm].
   [[nodiscard]] double largest_move(const Nearby& nearby, const Guess& from, const Guess& to) const;
 
-  /// Equilibria that were solved.
+  /// Returns the number of equilibria that were solved for.
   [[nodiscard]] int solves() const { return solves_; }
-  /// Those that were not found.
+  /// Returns the number of equilibria that were not found.
   [[nodiscard]] int lost() const { return lost_; }
 
  private:
@@ -106,13 +107,13 @@ class Problem {
   StaticsOptions options_;
   double slope_accuracy_;
   Statics statics_;
-  /// Of a robot whose materials are as stiff as it is asked for.
+  /// A robot whose materials have the requested stiffnesses.
   struct Stiffened {
     Eigen::VectorXd values;
     std::unique_ptr<const Model> model;
     std::unique_ptr<const Statics> statics;
   };
-  mutable std::vector<Stiffened> stiffened_;  // the last one asked for at the end
+  mutable std::vector<Stiffened> stiffened_;  // the last one requested at the end
   mutable int solves_ = 0, lost_ = 0;
 };
 

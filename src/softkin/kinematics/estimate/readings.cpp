@@ -7,7 +7,8 @@ namespace softkin::estimate {
 
 namespace {
 
-/// Largest move of a vertex, over the diagonal, by which lengths and volumes are differentiated along known moves.
+/// Largest displacement of a vertex, relative to the diagonal, of the differences that differentiate lengths and
+/// volumes.
 constexpr double small_move = 1e-6;
 
 double force_on(const Model& model, const PoseColumn& column, const Points& positions, const Points& at_vertices) {
@@ -16,7 +17,7 @@ double force_on(const Model& model, const PoseColumn& column, const Points& posi
   return reactions(model, positions, deformation)[column.support].force[column.axis];
 }
 
-/// Of a cable or a chamber, [mm] or [mm^3].
+/// Returns the length of a cable or the volume of a chamber, [mm] or [mm^3].
 double measure_at(const Model& model, Index actuator, const Points& positions) {
   const Actuator& of = model.actuators[actuator];
   return achieved_ratio(model, of, positions) * of.rest_measure;
@@ -58,7 +59,7 @@ double reading_change(const Model& model, const PoseColumn& column, const State&
 
 namespace {
 
-/// Those that a marker or a sensor is read from, some of them twice.
+/// Returns the vertices on which a marker or a sensor depends, some of them twice.
 std::vector<Index> vertices_of(const Model& model, const PoseColumn& column) {
   if (column.marker >= 0) return model.markers[column.marker].point.vertices;
   const Sensor& sensor = *model.sensors[column.sensor];

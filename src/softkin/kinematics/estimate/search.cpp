@@ -8,25 +8,26 @@ namespace softkin::estimate {
 
 namespace {
 
-/// Iterations by which places that rank well are followed, before the best of them is chosen.
+/// Number of iterations with which places that rank well are refined, before the best of them is chosen.
 constexpr int followed = 6;
-/// Places that are followed are so far from each other, over the deviation of one that may be anywhere on its patch.
+/// Minimum distance of the places that are refined, relative to the standard deviation of a place that may be anywhere
+/// on its patch.
 constexpr double apart = 0.35;
-/// Largest move of a vertex, over the diagonal, after which a survey still ranks places.
+/// Largest displacement of a vertex, relative to the diagonal, after which a survey is still used to rank places.
 constexpr double nearby_shape = 0.02;
-/// Of a survey that costs no more for more of them.
+/// Number of places of a survey whose cost does not depend on that number.
 constexpr std::size_t many = 300;
-/// How often a fit is begun anew elsewhere, and by how much less it must promise to cost.
-constexpr int most_relocations = 3;
+/// How often a fit is started again at another place, and by how much its predicted cost must be lower.
+constexpr int max_relocations = 3;
 constexpr double worthwhile = 2;
-/// Places of a survey that a spread is of, by their weights: fewer are too few to tell it.
-constexpr double least_places = 5;
-/// What a force moves where a search begins, at most, over the diagonal.
+/// Minimum effective number of places of a survey, by their weights, from which a covariance is estimated.
+constexpr double min_places = 5;
+/// Largest predicted displacement of a marker by the force with which a search begins, relative to the diagonal.
 constexpr double longest_begin = 0.1;
-/// Shares of that force: the first that has an equilibrium is where a search begins.
-constexpr double begun_shares[] = {1, 0.5, 0.1};
+/// Fractions of that force: a search begins at the first that has an equilibrium.
+constexpr double begun_fractions[] = {1, 0.5, 0.1};
 
-/// Of a positive matrix.
+/// Returns the logarithm of the determinant of a positive definite matrix.
 double log_determinant(const Eigen::MatrixXd& matrix) {
   double sum = 0;
   for (const double value : symmetric_eigen(matrix).values) sum += std::log(std::max(value, 1e-300));
@@ -54,16 +55,16 @@ Survey Searcher::survey(std::size_t force, const Guess& at, std::shared_ptr<cons
   const Index count = axes.size();
   survey.theirs.setZero(by_nodes.rows(), count * std::ssize(survey.places));
   for (std::size_t p = 0; p < survey.places.size(); ++p) {
-    const Patch::Shares shares = patch.shares(survey.places[p]);
-    for (std::size_t i = 0; i < shares.nodes.size(); ++i)
+    const Patch::Fractions fractions = patch.fractions(survey.places[p]);
+    for (std::size_t i = 0; i < fractions.nodes.size(); ++i)
       for (Index k = 0; k < count; ++k)
-        survey.theirs.col(p * count + k) += shares.shares[i] * by_nodes.col(3 * shares.nodes[i] + axes[k]);
+        survey.theirs.col(p * count + k) += fractions.fractions[i] * by_nodes.col(3 * fractions.nodes[i] + axes[k]);
   }
   return survey;
 }
 
-/// For each candidate the least cost by slopes at one shape, with the force where it is as an unknown. What acts there
-/// already is taken away as it is put elsewhere.
+/// Returns for each candidate place the minimum cost by the slopes at one shape, with the force at that place as an
+/// unknown. The force that acts at the current place is removed.
 std::vector<Searcher::Ranked> Searcher::rank(std::size_t force, const Survey& survey, const Readings& readings) const {
   const Variables& variables = problem_.variables();
   const std::array<Index, 3>& components = variables.forces()[force].variables;
@@ -105,15 +106,15 @@ Guess Searcher::begun(const Guess& at, const Ranked& ranked, std::size_t force, 
   places[force] = ranked.place;
   const double most = longest_begin * problem_.variables().model().diagonal_mm;
   const double near = ranked.reach > most ? most / ranked.reach : 1;
-  for (const double share : begun_shares) {
-    const Eigen::VectorXd values = at.values + near * share * (ranked.values - at.values);
+  for (const double fraction : begun_fractions) {
+    const Eigen::VectorXd values = at.values + near * fraction * (ranked.values - at.values);
     Guess guess = problem_.solve(readings.commands, values, places, &at, progress_);
     if (guess.solved() || guess.equilibrium.report.stopped) return guess;
   }
   return {};
 }
 
-/// The best ranks of places that are not beside one that ranks better: those would be followed to the same.
+/// Returns the best-ranked places that are not close to one of better rank: refinement would lead to the same result.
 std::vector<Searcher::Ranked> Searcher::best_apart(std::size_t force, std::vector<Ranked> ranked) const {
   const Patch& patch = *problem_.variables().forces()[force].patch;
   const Points& rest = problem_.variables().model().rest;
@@ -130,13 +131,13 @@ std::vector<Searcher::Ranked> Searcher::best_apart(std::size_t force, std::vecto
   return best;
 }
 
-/// The places that rank best are followed a little, the best of them to the end.
+/// Refines the best-ranked places with a few iterations, and the best of them until it converges.
 std::optional<Fit> Searcher::best_of(std::size_t force, const Survey& survey, const Readings& readings) const {
   std::optional<Fit> found;
   for (const Ranked& each : best_apart(force, rank(force, survey, readings))) {
     Guess guess = begun(survey.at, each, force, readings);
     if (!guess.solved()) continue;
-    Fit fit = fitter_.refine_by(std::move(guess), readings, {.most_iterations = followed});
+    Fit fit = fitter_.refine_by(std::move(guess), readings, {.max_iterations = followed});
     if (fit.interrupted) return fit;
     if (!found || fit.normal.cost < found->normal.cost) found = std::move(fit);
   }
@@ -146,7 +147,7 @@ std::optional<Fit> Searcher::best_of(std::size_t force, const Survey& survey, co
   return fit;
 }
 
-/// A survey of a shape nearby ranks as well.
+/// Returns the stored survey where its shape is near enough, else a new one.
 const Survey& Searcher::first(const Readings& readings) const {
   if (kept_ && kept_->at.solved() && kept_->commands == readings.commands) return *kept_;
   const Variables& variables = problem_.variables();
@@ -193,7 +194,7 @@ Fit Searcher::search(const Readings& readings) const {
 
 Fit Searcher::relocated(Fit fit, const Readings& readings) const {
   if (problem_.variables().forces().size() != 1 || !problem_.reciprocal()) return fit;
-  for (int times = 0; times < most_relocations && fit.converged && !fit.interrupted; ++times) {
+  for (int times = 0; times < max_relocations && fit.converged && !fit.interrupted; ++times) {
     fit.around = std::make_shared<const Survey>(survey(0, fit.at, fit.nearby));
     if (!fit.around->whole) return fit;
     const Ranked best = std::move(best_apart(0, rank(0, *fit.around, readings)).front());
@@ -223,16 +224,16 @@ Eigen::MatrixXd Searcher::spread(const Fit& fit, const Readings& readings) const
   std::vector<double> logs;
   for (const Ranked& each : all) logs.push_back(-0.5 * (each.cost + log_determinant(each.matrix)));
   const double most = *std::max_element(logs.begin(), logs.end());
-  const auto tangents = patch.tangents(fit.told.places[0]);
-  const Vec3 told = patch.at(fit.told.places[0], rest);
-  // within what is nearer to a place than to others, as far as it is even
+  const auto tangents = patch.tangents(fit.estimated.places[0]);
+  const Vec3 estimated = patch.at(fit.estimated.places[0], rest);
+  // variance inside the area that is nearer to a place than to the others, taken as a square
   const double within = patch.area() / (12 * static_cast<double>(all.size()));
   Eigen::MatrixXd moments = Eigen::MatrixXd::Zero(size, size);
   double sum = 0, squares = 0;
   for (std::size_t p = 0; p < all.size(); ++p) {
     const double weight = std::exp(logs[p] - most);
     Eigen::VectorXd off(size);
-    off << all[p].values - fit.told.values, tangents.transpose() * (patch.at(all[p].place, rest) - told);
+    off << all[p].values - fit.estimated.values, tangents.transpose() * (patch.at(all[p].place, rest) - estimated);
     moments += weight * off * off.transpose();
     moments.topLeftCorner(numbers, numbers) +=
         weight * CholeskyFactor(all[p].matrix).solve(Eigen::MatrixXd(Eigen::MatrixXd::Identity(numbers, numbers)));
@@ -240,7 +241,7 @@ Eigen::MatrixXd Searcher::spread(const Fit& fit, const Readings& readings) const
     sum += weight;
     squares += weight * weight;
   }
-  if (sum * sum / squares < least_places) return {};
+  if (sum * sum / squares < min_places) return {};
   return moments / sum;
 }
 

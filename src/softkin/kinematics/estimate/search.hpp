@@ -4,38 +4,39 @@
 
 namespace softkin::estimate {
 
-/// Readings by a force at each of some places, at an equilibrium.
+/// The derivatives of readings by a force at each of several places, at an equilibrium.
 struct Survey {
   Actuation commands;
   Guess at;
   std::shared_ptr<const Nearby> own;
   Eigen::MatrixXd theirs;     // readings by the force's components at each place
   std::vector<Place> places;  // none: no place is unknown
-  bool whole = false;         // are they many, as they cost nothing
+  bool whole = false;         // does it contain many places, as they cost nothing
 };
 
-/// Finds unknowns without a start: from what was known before, each force of unknown place begun where a linear fit
-/// ranks best.
+/// Finds unknowns without a start: it begins with the prior means, and with each force of unknown place at the place
+/// that a linear fit ranks best.
 class Searcher {
  public:
   /// All must outlive the object.
   ///
-  /// kept  the survey of an earlier search, which serves for a shape nearby
+  /// kept  the survey of an earlier search, which is reused for a nearby shape
   Searcher(const Problem& problem, const EstimatorOptions& options, const ProgressCallback& progress,
            std::optional<Survey>& kept)
       : problem_(problem), options_(options), progress_(progress), fitter_(problem, options, progress), kept_(kept) {}
 
   [[nodiscard]] Fit search(const Readings& readings) const;
-  /// A fit, from where another place of its force promises more, if one does: as the shape that was found tells what
-  /// forces anywhere do to the readings. Of one force of unknown place, and readings of markers and sensors.
+  /// Fits again from another place of the force where the derivatives at the found shape predict a lower cost there;
+  /// returns the better fit. It applies to one force of unknown place, and to readings of markers and sensors.
   [[nodiscard]] Fit relocated(Fit fit, const Readings& readings) const;
-  /// The second moments of the unknowns about what a fit tells, by its columns, of all places where the force may be:
-  /// each by its weight, with the force that fits best there and its covariance. No columns where that is not known,
-  /// and where the linear covariance tells as much, as the place is told to less than surveys tell apart.
+  /// Returns the second moments of the unknowns about the estimate of a fit, by its columns, over all places where the
+  /// force may be: each with its weight, the force that fits best there, and the covariance of that force. The matrix
+  /// is empty where it is not available, and where the linear covariance is sufficient, as the place is estimated more
+  /// precisely than the distance between the places of the survey.
   ///
   /// source  a mixture of normal distributions over a grid, each conditional on the place (Tierney, Kadane 1986)
   [[nodiscard]] Eigen::MatrixXd spread(const Fit& fit, const Readings& readings) const;
-  /// The least cost that a linear fit foretells of that search; infinite where it cannot begin.
+  /// Returns the minimum cost that a linear fit predicts for that search; infinite where it cannot begin.
   [[nodiscard]] double forecast(const Readings& readings) const;
 
  private:
@@ -43,7 +44,7 @@ class Searcher {
     double cost;
     Eigen::VectorXd values;
     Place place;
-    double reach;            // what the force moves a marker, about [mm]
+    double reach;            // predicted displacement of a marker by the force [mm]
     Eigen::MatrixXd matrix;  // of the normal equations of the numbers
   };
   [[nodiscard]] const Survey& first(const Readings& readings) const;

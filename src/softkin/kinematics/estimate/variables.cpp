@@ -30,11 +30,11 @@ Variables::Variables(const Model& model, const std::vector<EstimatedUnknown>& un
     : model_(std::make_unique<Model>(model)), own_actuators_(model.actuators.size()) {
   if (model.formulation != Formulation::physical)
     throw InvalidInput({.file = model.name},
-                       "forces are told in the physical formulation; this scene is of target shapes");
-  if (rubs(model))
+                       "forces are estimated in the physical formulation; this scene is of target shapes");
+  if (has_friction(model))
     throw InvalidInput({.file = model.name},
-                       "shapes depend on the way there where something rubs: what pushes cannot be told from them");
-  if (unknowns.empty()) throw InvalidInput("there is no unknown to tell");
+                       "with friction shapes depend on the path: forces cannot be estimated from them");
+  if (unknowns.empty()) throw InvalidInput("there is no unknown to estimate");
   for (const EstimatedUnknown& unknown : unknowns) add(unknown);
 }
 
@@ -80,7 +80,7 @@ void Variables::add(const EstimatedUnknown& unknown) {
   if (unknown.deviation && !(*unknown.deviation > 0 && std::isfinite(*unknown.deviation)))
     refuse_unknown(unknown, "the deviation must be above 0");
   if (unknown.somewhere && !moment.empty())
-    refuse_unknown(unknown, "it has a moment, which acts on its region as a whole: its place cannot be told");
+    refuse_unknown(unknown, "it has a moment, which acts on its region as a whole: its place cannot be estimated");
   if (unknown.somewhere) return add_patch(unknown, force);
   if (command) return add_variable(unknown, *command, -1);
   for (const Index a : force) add_variable(unknown, a, -1);
@@ -90,11 +90,11 @@ void Variables::add(const EstimatedUnknown& unknown) {
 void Variables::add_variable(const EstimatedUnknown& unknown, Index actuator, Index force) {
   const Actuator& of = model_->actuators[actuator];
   if (std::any_of(variables_.begin(), variables_.end(), [&](const Variable& v) { return v.actuator == actuator; }))
-    refuse_unknown(unknown, "command '" + of.name + "' is to be told twice");
+    refuse_unknown(unknown, "command '" + of.name + "' is to be estimated twice");
   if (!(of.low < of.high))
-    refuse_unknown(unknown, "command '" + of.name + "' has one value, so there is nothing to tell");
+    refuse_unknown(unknown, "command '" + of.name + "' has one value, so there is nothing to estimate");
   if (of.is<HoldCommand>() || of.is<MotionCommand>())
-    refuse_unknown(unknown, "a command of kind '" + std::string(kind_name(of)) + "' cannot be told");
+    refuse_unknown(unknown, "a command of kind '" + std::string(kind_name(of)) + "' cannot be estimated");
   Variable variable{.actuator = actuator,
                     .force = force,
                     .mean = unknown.mean.value_or(of.rest),
@@ -118,7 +118,7 @@ void Variables::add_stiffness(const EstimatedUnknown& unknown, const std::string
   }
   const Index index = material - model_->elements.materials.begin();
   if (std::any_of(variables_.begin(), variables_.end(), [&](const Variable& v) { return v.material == index; }))
-    refuse("it is to be told twice");
+    refuse("it is to be estimated twice");
   if (unknown.somewhere) refuse("a stiffness has no place: name a force");
   if (!unknown.deviation)
     refuse("say what is known of it before, over that of the scene, such as " + unknown.name + "=1+-0.2");
@@ -134,24 +134,24 @@ std::string name_of(const Model& model, const Variable& variable) {
   return "materials." + model.elements.materials[variable.material].region + ".stiffness";
 }
 
-ToldNumber told_number(const Model& model, const Variable& variable, double value, double deviation) {
-  ToldNumber told;
-  told.name = name_of(model, variable);
-  if (variable.actuator >= 0) told.unit = command_unit(model.actuators[variable.actuator]);
-  told.value = value;
-  told.deviation = deviation;
-  told.known_mean = variable.mean;
-  told.known_deviation = variable.deviation;
-  told.at_bound = value <= variable.low ? -1 : value >= variable.high ? 1 : 0;
-  told.actuator = variable.actuator;
-  return told;
+EstimatedNumber reported_number(const Model& model, const Variable& variable, double value, double deviation) {
+  EstimatedNumber estimated;
+  estimated.name = name_of(model, variable);
+  if (variable.actuator >= 0) estimated.unit = command_unit(model.actuators[variable.actuator]);
+  estimated.value = value;
+  estimated.deviation = deviation;
+  estimated.known_mean = variable.mean;
+  estimated.known_deviation = variable.deviation;
+  estimated.at_bound = value <= variable.low ? -1 : value >= variable.high ? 1 : 0;
+  estimated.actuator = variable.actuator;
+  return estimated;
 }
 
-std::vector<Index> Variables::told_actuators() const {
-  std::vector<Index> told;
+std::vector<Index> Variables::reported_actuators() const {
+  std::vector<Index> estimated;
   for (const Variable& variable : variables_)
-    if (variable.actuator >= 0) told.push_back(variable.actuator);
-  return told;
+    if (variable.actuator >= 0) estimated.push_back(variable.actuator);
+  return estimated;
 }
 
 bool Variables::stiffens() const {
@@ -173,7 +173,7 @@ void Variables::add_patch(const EstimatedUnknown& unknown, const std::vector<Ind
     const auto& of = std::get<ForceCommand>(model_->actuators[a].drive);
     if (of.faces.empty())
       refuse_unknown(unknown,
-                     "its place can be told on a region of faces of the body's surface; it is at a point, or at a "
+                     "its place can be estimated on a region of faces of the body's surface; it is at a point, or at a "
                      "region without such");
     if (!force.patch) force.patch = std::make_unique<Patch>(*model_, of.faces);
     force.variables[of.axis] = numbers();
@@ -217,13 +217,13 @@ Actuation Variables::actuation(const Actuation& commands, const Eigen::VectorXd&
 
 std::vector<Actuation> Variables::changes_at(std::size_t number, const Place& place) const {
   const FreeForce& force = forces_[number];
-  const Patch::Shares at = force.patch->shares(place);
+  const Patch::Fractions at = force.patch->fractions(place);
   std::vector<Actuation> changes;
   for (Index axis = 0; axis < 3; ++axis) {
     if (force.variables[axis] < 0) continue;
     Actuation& change = changes.emplace_back(Actuation::Zero(model_->actuators.size()));
     for (std::size_t i = 0; i < at.nodes.size(); ++i)
-      change[force.first_command + 3 * at.nodes[i] + axis] = at.shares[i];
+      change[force.first_command + 3 * at.nodes[i] + axis] = at.fractions[i];
   }
   return changes;
 }
@@ -233,10 +233,10 @@ Eigen::VectorXd Variables::parts(const Eigen::VectorXd& values, const std::vecto
   std::vector<double> parts(values.data(), values.data() + values.size());
   for (std::size_t f = 0; f < forces_.size(); ++f) {
     const Patch& patch = *forces_[f].patch;
-    const Eigen::Vector2d way =
+    const Eigen::Vector2d path =
         patch.tangents(base[f]).transpose() * (patch.at(places[f], model_->rest) - patch.at(base[f], model_->rest));
     for (const Index variable : forces_[f].variables)
-      for (Index t = 0; variable >= 0 && t < 2; ++t) parts.push_back(values[variable] * way[t]);
+      for (Index t = 0; variable >= 0 && t < 2; ++t) parts.push_back(values[variable] * path[t]);
   }
   return Eigen::Map<const Eigen::VectorXd>(parts.data(), parts.size());
 }
@@ -249,11 +249,11 @@ Eigen::MatrixXd Variables::part_slopes(const Eigen::VectorXd& values, const std:
   for (std::size_t f = 0; f < forces_.size(); ++f) {
     const Patch& patch = *forces_[f].patch;
     const Eigen::Matrix<double, 2, 3> along = patch.tangents(base[f]).transpose();
-    const Eigen::Vector2d way = along * (patch.at(places[f], model_->rest) - patch.at(base[f], model_->rest));
+    const Eigen::Vector2d path = along * (patch.at(places[f], model_->rest) - patch.at(base[f], model_->rest));
     const Eigen::Matrix2d turned = along * patch.tangents(places[f]);
     for (const Index variable : forces_[f].variables)
       for (Index t = 0; variable >= 0 && t < 2; ++t, ++part) {
-        slopes(part, variable) = way[t];
+        slopes(part, variable) = path[t];
         slopes.block<1, 2>(part, numbers() + 2 * f) = values[variable] * turned.row(t);
       }
   }
@@ -268,7 +268,7 @@ std::vector<Actuation> Variables::part_changes(const std::vector<Place>& base) c
       changes[i][variable.actuator] = 1;
   for (std::size_t f = 0; f < forces_.size(); ++f) {
     const FreeForce& force = forces_[f];
-    const Patch::Shares at = force.patch->shares(base[f]);
+    const Patch::Fractions at = force.patch->fractions(base[f]);
     std::vector<Actuation> along = changes_at(f, base[f]);
     std::size_t next = 0;
     for (Index axis = 0; axis < 3; ++axis) {
@@ -289,9 +289,9 @@ std::vector<Index> Variables::measured() const {
   std::vector<Index> measured;
   for (Index a = 0; a < own_actuators_; ++a) {
     const Actuator& actuator = model_->actuators[a];
-    const bool told =
+    const bool estimated =
         std::any_of(variables_.begin(), variables_.end(), [&](const Variable& v) { return v.actuator == a; });
-    if (!told && actuator.low < actuator.high && drives(actuator)) measured.push_back(a);
+    if (!estimated && actuator.low < actuator.high && drives(actuator)) measured.push_back(a);
   }
   return measured;
 }

@@ -5,7 +5,7 @@
 
 namespace softkin::estimate {
 
-/// A number that is told.
+/// A number that is estimated.
 struct Variable {
   Index actuator = -1;             // whose command it is; -1: of none
   Index material = -1;             // whose stiffness it is, over that of the robot; -1: of none
@@ -14,9 +14,10 @@ struct Variable {
   double low = 0, high = 0;
 };
 
-/// Of its command; "materials.REGION.stiffness".
+/// Returns the name of its command, or "materials.REGION.stiffness".
 [[nodiscard]] std::string name_of(const Model& model, const Variable& variable);
-[[nodiscard]] ToldNumber told_number(const Model& model, const Variable& variable, double value, double deviation);
+[[nodiscard]] EstimatedNumber reported_number(const Model& model, const Variable& variable, double value,
+                                              double deviation);
 
 /// A force of unknown place.
 struct FreeForce {
@@ -37,34 +38,35 @@ class Variables {
   [[nodiscard]] const std::vector<Variable>& all() const { return variables_; }
   [[nodiscard]] const std::vector<FreeForce>& forces() const { return forces_; }
   [[nodiscard]] Index numbers() const { return variables_.size(); }
-  /// Of the numbers, then two tangents of each place.
+  /// Returns the number of columns: the numbers, then two tangents of each place.
   [[nodiscard]] Index columns() const { return numbers() + 2 * std::ssize(forces_); }
 
-  /// Of the extended robot. commands: of the robot
+  /// Returns the actuation of the extended robot. commands: of the robot
   [[nodiscard]] Actuation actuation(const Actuation& commands, const Eigen::VectorXd& values,
                                     const std::vector<Place>& places) const;
-  /// What it is of near some places, `base`, to first order in the way from them: a sum of parts, which are the
-  /// numbers, and of each component of a force of unknown place its products with both tangents' ways. So it is linear
-  /// in the force wherever that acts.
+  /// Returns the parts in which the actuation near some places, `base`, is linear to first order in the displacement
+  /// from them: the numbers, and for each component of a force of unknown place its products with the displacements
+  /// along both tangents. So the actuation is linear in the force at any place.
   [[nodiscard]] Eigen::VectorXd parts(const Eigen::VectorXd& values, const std::vector<Place>& places,
                                       const std::vector<Place>& base) const;
   /// Derivatives of the parts by the columns.
   [[nodiscard]] Eigen::MatrixXd part_slopes(const Eigen::VectorXd& values, const std::vector<Place>& places,
                                             const std::vector<Place>& base) const;
-  /// How it changes with each part.
+  /// Returns the derivative of the actuation by each part.
   [[nodiscard]] std::vector<Actuation> part_changes(const std::vector<Place>& base) const;
-  /// By a force at some place of a patch, along the axes that are told.
+  /// Returns the derivatives of the actuation by a force at a place of a patch, along the axes that are estimated.
   [[nodiscard]] std::vector<Actuation> changes_at(std::size_t force, const Place& place) const;
 
   [[nodiscard]] Index own_actuators() const { return own_actuators_; }
-  /// Commands that are told.
-  [[nodiscard]] std::vector<Index> told_actuators() const;
+  /// Returns the commands that are estimated.
+  [[nodiscard]] std::vector<Index> reported_actuators() const;
   /// Is the stiffness of a material a number?
   [[nodiscard]] bool stiffens() const;
-  /// The robot with these numbers: whatever makes a material resist a change of shape is so many times as stiff.
+  /// Returns the robot with these numbers: all stiffnesses of a material are multiplied by its number.
   [[nodiscard]] Model stiffened(const Eigen::VectorXd& values) const;
 
-  /// Commands of the robot that are measured and can change a shape smoothly: neither told nor held nor moved.
+  /// Returns the measured commands on which a shape depends smoothly: all but those that are estimated and those that
+  /// hold or move something.
   [[nodiscard]] std::vector<Index> measured() const;
 
   [[nodiscard]] Eigen::VectorXd means() const;

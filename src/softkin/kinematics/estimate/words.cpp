@@ -8,13 +8,13 @@ namespace softkin {
 
 namespace {
 
-/// A number is hardly told where its deviation is above this share of what was known before.
+/// The readings hardly determine a number where its standard deviation is above this fraction of the prior one.
 constexpr double hardly = 0.5;
-/// Standard deviations from which on readings do not fit the model.
+/// Misfit above which readings do not fit the model, in standard deviations.
 constexpr double doubtful = 3;
 
-/// With its unit, if it has one.
-std::string in_its_unit(double value, int digits, const ToldNumber& of) {
+/// Returns the value with its unit, if it has one.
+std::string in_its_unit(double value, int digits, const EstimatedNumber& of) {
   return number(value, digits) + (of.unit.empty() ? "" : " " + of.unit);
 }
 
@@ -29,19 +29,19 @@ std::string listed(const std::vector<std::string>& names) {
 
 std::vector<std::string> estimate_words(const Estimate& estimate, const std::vector<ReadingGroup>& groups) {
   std::vector<std::string> words;
-  for (const ToldNumber& told : estimate.numbers) {
-    if (told.deviation > hardly * told.known_deviation)
-      words.push_back(told.name + " is told to " + in_its_unit(told.deviation, 2, told) +
-                      " only: the readings hardly say more than what was known before, " + number(told.known_mean, 3) +
-                      " +- " + in_its_unit(told.known_deviation, 3, told));
-    if (told.at_bound != 0)
-      words.push_back(told.name + " is at the " + (told.at_bound < 0 ? "low" : "high") +
+  for (const EstimatedNumber& estimated : estimate.numbers) {
+    if (estimated.deviation > hardly * estimated.known_deviation)
+      words.push_back(estimated.name + " is known to " + in_its_unit(estimated.deviation, 2, estimated) +
+                      " only: the readings hardly say more than what was known before, " +
+                      number(estimated.known_mean, 3) + " +- " + in_its_unit(estimated.known_deviation, 3, estimated));
+    if (estimated.at_bound != 0)
+      words.push_back(estimated.name + " is at the " + (estimated.at_bound < 0 ? "low" : "high") +
                       " end of its range: the readings may want more");
   }
-  for (const ToldPlace& place : estimate.places)
+  for (const EstimatedPlace& place : estimate.places)
     if (const double deviation = std::sqrt(place.covariance.trace()), known = std::sqrt(place.known_covariance.trace());
         deviation > hardly * known)
-      words.push_back("the place of " + place.force + " is told to " + number(deviation, 2) +
+      words.push_back("the place of " + place.force + " is known to " + number(deviation, 2) +
                       " mm only: anywhere on its region is " + number(known, 2) + " mm");
   if (!estimate.left_out.empty()) {
     std::vector<std::string> names;

@@ -6,7 +6,7 @@ namespace softkin::maps {
 
 bool Crew::each(Index count, const MapProgress& from, Index MapProgress::*counted,
                 const std::function<bool(Index)>& work) {
-  told_ = from;
+  reported_ = from;
   stopped_ = false;
   std::atomic<Index> next = 0;
   work_together(std::min<int>(threads_, count), stopped_, [&] {
@@ -15,8 +15,8 @@ bool Crew::each(Index count, const MapProgress& from, Index MapProgress::*counte
     bool goes_on = work(i);
     if (goes_on) {
       const std::lock_guard lock(mutex_);
-      ++(told_.*counted);
-      goes_on = !progress_ || progress_(told_);
+      ++(reported_.*counted);
+      goes_on = !progress_ || progress_(reported_);
     }
     if (!goes_on) stopped_ = true;
     return true;
@@ -42,7 +42,7 @@ ProgressCallback Crew::patience() {
   return [this](const Progress&) {
     if (stopped_) return false;
     const std::lock_guard lock(mutex_);
-    return !progress_ || progress_(told_);
+    return !progress_ || progress_(reported_);
   };
 }
 

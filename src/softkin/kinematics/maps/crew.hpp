@@ -7,31 +7,32 @@
 
 namespace softkin::maps {
 
-/// Threads that solve the equilibria of a map's making, with its desk and its progress.
+/// The threads that solve the equilibria of a map, with its desk and its progress.
 class Crew {
  public:
   /// desk: null: nothing is kept. All must outlive the object.
   Crew(int threads, MapDesk* desk, const MapCallback& progress) : threads_(threads), desk_(desk), progress_(progress) {}
 
-  /// work(i) for every i below count, on any thread; what it counts up in `from` is told. False where something stopped
-  /// it.
+  /// Calls work(i) for every i below count, on any thread, and reports progress, `from` with `counted` incremented.
+  /// Returns false where it was stopped.
   bool each(Index count, const MapProgress& from, Index MapProgress::*counted, const std::function<bool(Index)>& work);
-  [[nodiscard]] const MapProgress& told() const { return told_; }
+  [[nodiscard]] const MapProgress& reported() const { return reported_; }
 
-  /// What the desk knows, else what `solve` makes, which the desk keeps then; nothing where that was stopped.
+  /// Returns the sample that the desk has stored, else the one that `solve` returns, which the desk then stores;
+  /// nothing where the solve was stopped.
   ///
   /// key  of a piece, or of a round of checks
   [[nodiscard]] std::optional<Sample> found(Index key, Index number, const Eigen::VectorXd& commands,
                                             const std::function<std::optional<Sample>()>& solve);
 
-  /// For the solver.
+  /// Returns the progress callback for the solver.
   [[nodiscard]] ProgressCallback patience();
 
  private:
   int threads_;
   MapDesk* desk_;
   const MapCallback& progress_;
-  MapProgress told_;
+  MapProgress reported_;
   std::atomic<bool> stopped_ = false;
   std::mutex mutex_;
 };

@@ -8,13 +8,14 @@ namespace softkin::maps {
 
 namespace {
 
-/// By which a coefficient is kept small: that of degree 0, and the highest ones. So little that what is known wins.
+/// Regularisation weights of the coefficients: of degree 0, and of the highest degrees. They are so small that the
+/// observations dominate.
 struct Caution {
   double least, most;
 };
 constexpr Caution of_fits{1e-7, 1e-3}, of_plans{1e-4, 1e-1};
 
-/// What a point tells of the terms: a row for the values, and one per slope with its weight.
+/// The rows of the least-squares matrix for a point: one for the values, and one per slope with its weight.
 struct Rows {
   RowMatrix rows;             // 1 + d by #terms
   Eigen::VectorXd of_slopes;  // d: the weight of each slope
@@ -48,7 +49,7 @@ double radical_inverse(Index i, int base) {
 
 /// Points among which new ones are chosen.
 RowMatrix candidates(Index variables) {
-  constexpr std::array<int, most_variables> primes{2, 3, 5, 7, 11, 13, 17, 19};
+  constexpr std::array<int, max_variables> primes{2, 3, 5, 7, 11, 13, 17, 19};
   constexpr double pi = 3.14159265358979323846;
   const Index corners = Index{1} << variables, inside = 200 * std::max<Index>(1, variables);
   RowMatrix points(corners + 2 * variables + 1 + inside, variables);
@@ -86,7 +87,7 @@ Polynomials fit(const Terms& terms, const std::vector<Observation>& observations
 
 Eigen::VectorXd decay_of(const Polynomials& polynomials) {
   constexpr double usual = 1.6, slowest = 0.3, fastest = 4;
-  constexpr double still_falling = 3;  // over that of the highest degree: those below are what is not known
+  constexpr double still_falling = 3;  // over that of the highest degree: those below are errors of the fit
   const Terms& terms = polynomials.terms();
   Eigen::VectorXd decay(terms.cols());
   for (Index j = 0; j < terms.cols(); ++j) {
@@ -95,7 +96,7 @@ Eigen::VectorXd decay_of(const Polynomials& polynomials) {
     for (Index t = 0; t < terms.rows(); ++t)
       largest[terms(t, j)] = std::max(largest[terms(t, j)], polynomials.coefficients().row(t).cwiseAbs().maxCoeff());
     for (Index k = highest; k-- > 0;) largest[k] = std::max(largest[k], largest[k + 1]);
-    // from the first degree on: the mean says nothing of how fast what varies falls
+    // from the first degree on: the mean gives no information on the decay of the varying part
     double n = 0, x = 0, y = 0, xx = 0, xy = 0;
     bool falls = true;
     for (Index k = 1; k <= highest && largest[k] > 0 && falls; ++k) {
@@ -116,7 +117,7 @@ RowMatrix worst_known(const Terms& terms, const Eigen::VectorXd& decay, const Ro
     normal.selfadjointView<Eigen::Lower>().rankUpdate(rows.transpose());
   }
   const CholeskyFactor factor(normal);
-  // what is not known of each candidate's values, in an orthonormal basis of the terms
+  // the unknown part of each candidate's values, in an orthonormal basis of the terms
   Eigen::MatrixXd values(terms.rows(), points.rows());
   Eigen::VectorXd of_point;
   for (Index i = 0; i < points.rows(); ++i) {

@@ -97,7 +97,7 @@ MapCheck summed_up(const std::vector<Compared>& all, std::size_t outputs) {
   return made;
 }
 
-/// What was asked for and is not so; empty: all is.
+/// Returns which requested accuracy is not met; empty: all are.
 std::string verdict(const MapData& data, const MapOptions& options, const std::vector<Compared>& all) {
   if (data.check.points == 0)
     return "nothing was checked, as none of " + std::to_string(all.size()) +
@@ -107,11 +107,11 @@ std::string verdict(const MapData& data, const MapOptions& options, const std::v
     const double largest = data.check.largest[q];
     if (largest > output.accuracy)
       return output.name + " was " + number(largest, 3) + " " + output.unit + " off at a check, " +
-             number(output.accuracy, 3) + " was asked for";
+             number(output.accuracy, 3) + " was requested";
   }
   if (data.shape && data.check.shape_largest_mm > options.shape_accuracy_mm)
     return "a vertex was " + number(data.check.shape_largest_mm, 3) + " mm off at a check, " +
-           number(options.shape_accuracy_mm, 3) + " was asked for";
+           number(options.shape_accuracy_mm, 3) + " was requested";
   const auto lost =
       std::count_if(all.begin(), all.end(), [](const Compared& each) { return !each.refused && !each.solved; });
   if (lost > 0) return "at " + std::to_string(lost) + " checks inside the map the robot has no equilibrium";

@@ -53,7 +53,7 @@ Index OutputCorrection::count() const {
   return std::ssize(marker_fields_) + std::ssize(ratios_);
 }
 
-/// What outputs lack, unscaled: coordinates of markers, then ratios.
+/// Returns the missing changes of the outputs, unscaled: coordinates of markers, then ratios.
 Eigen::VectorXd OutputCorrection::missing(const Eigen::VectorXd& values, const Points& positions) const {
   Eigen::VectorXd lacking(count());
   Index next = 0;
@@ -66,7 +66,8 @@ Eigen::VectorXd OutputCorrection::missing(const Eigen::VectorXd& values, const P
   return lacking;
 }
 
-/// Of what carries a stem, about its mean: the marker at the end of the stem moves where others hold the mean.
+/// Adds rotations of the region that carries a stem, about its mean: the marker at the end of the stem moves while
+/// other markers fix the mean.
 void OutputCorrection::add_rotations(const Points& positions, std::vector<Field>& fields) const {
   for (const Marker& marker : model_.markers) {
     if (marker.arms.empty()) continue;

@@ -8,15 +8,15 @@ namespace softkin::maps {
 
 namespace {
 
-/// Predictions of new points this many times as good as is wanted are good enough: they were the worst known.
+/// Largest error of predictions at new points, over the requested accuracy: these points had the largest variance.
 constexpr double enough = 0.5;
-/// Terms over what is known: values and slopes.
+/// Number of terms per observed number, a value or a slope.
 constexpr double terms_per_number = 0.8;
-/// A box is halved where so many batches bring its error down by less than this.
+/// A box is halved where `patience` batches do not reduce its error to this fraction.
 constexpr std::size_t patience = 2;
 constexpr double worthwhile = 0.3;
-/// A box of this share of its piece's or less is not halved any more.
-constexpr double least_width = 1.0 / 64;
+/// A box of this fraction of its piece's box or less is not halved any more.
+constexpr double min_width = 1.0 / 64;
 
 }  // namespace
 
@@ -43,7 +43,7 @@ Eigen::VectorXd PieceFit::scaled(const Chart& chart, const Eigen::VectorXd& comm
   return (2 * commands - chart.low - chart.high).cwiseQuotient(chart.high - chart.low);
 }
 
-/// Values and slopes of outputs and probes, over what is wanted of them.
+/// Returns values and slopes of outputs and probes, over their requested accuracy.
 Observation PieceFit::observation(const Chart& chart, const Sample& sample) const {
   const Index outputs = data_.outputs.size();
   const bool shape = wanted_.shape_mm > 0;
@@ -75,7 +75,7 @@ Index PieceFit::batch_of(const Chart& chart) const {
 Terms PieceFit::terms_of(const Chart& chart, Index samples) const {
   if (variables_ == 0) return Terms(1, 0);
   const double numbers = static_cast<double>((1 + variables_) * samples);
-  return least_terms(chart.decay, std::max<Index>(1, static_cast<Index>(terms_per_number * numbers)));
+  return min_terms(chart.decay, std::max<Index>(1, static_cast<Index>(terms_per_number * numbers)));
 }
 
 RowMatrix PieceFit::next() {
@@ -85,7 +85,7 @@ RowMatrix PieceFit::next() {
       if (!chart.errors.empty() && chart.errors.back() <= 1) keep(std::move(chart));  // the others: outside the map
   }
   if (open_.empty()) return RowMatrix(0, variables_);
-  // the widest first: what is left of many small ones when equilibria are used up is little
+  // the widest first: when the maximum of equilibria is reached, the unfinished boxes are small
   std::stable_sort(open_.begin(), open_.end(), [](const Chart& a, const Chart& b) { return a.width < b.width; });
   const Chart& chart = open_.back();
   const Index batch = batch_of(chart);
@@ -147,8 +147,8 @@ void PieceFit::take(std::vector<Sample> samples) {
   open_.push_back(std::move(chart));
 }
 
-/// Along the variable that parts what has equilibria from what has none, or along which coefficients fall slowest and
-/// the box is longest: beside a kink they fall alike along all.
+/// Returns the variable along which a box is halved: that which separates samples with and without equilibria, or that
+/// along which coefficients fall slowest and the box is longest, as near a kink they fall alike along all.
 Index PieceFit::side_of(const Chart& chart) const {
   Eigen::VectorXd score = (chart.high - chart.low).cwiseQuotient(high_ - low_).array().log().matrix() - chart.decay;
   Index bad = 0;
@@ -173,7 +173,7 @@ void PieceFit::halve(Chart chart) {
   const auto is_good = [&](Index s) { return samples_[s].is_good(); };
   const bool any = std::any_of(chart.samples.begin(), chart.samples.end(), is_good);
   const bool hopeless = !any && std::ssize(chart.samples) > 2 * variables_;
-  if (variables_ == 0 || hopeless || chart.width <= least_width) return;  // a node without a cell: outside the map
+  if (variables_ == 0 || hopeless || chart.width <= min_width) return;  // a node without a cell: outside the map
   const Index side = side_of(chart);
   const double middle = 0.5 * (chart.low[side] + chart.high[side]);
   const Index first = piece_.tree.size();
@@ -214,8 +214,8 @@ const Sample* PieceFit::nearest(const Eigen::VectorXd& commands) const {
     double distance = 0;
     for (Index j = 0; j < variables_; ++j) {
       const MapInput& input = data_.inputs[piece_.inputs[j]];
-      const double share = (sample.commands[j] - commands[j]) / (input.high - input.low);
-      distance += share * share;
+      const double fraction = (sample.commands[j] - commands[j]) / (input.high - input.low);
+      distance += fraction * fraction;
     }
     if (distance < least) {
       least = distance;

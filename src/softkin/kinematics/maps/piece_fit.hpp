@@ -6,34 +6,35 @@
 
 namespace softkin::maps {
 
-/// What a fit is to reach.
+/// The accuracy that a fit is to reach, and its maximum number of equilibria.
 struct Wanted {
-  Eigen::VectorXd accuracy;   // per output, in its unit; 0: any will do
+  Eigen::VectorXd accuracy;   // per output, in its unit; 0: none is requested
   std::vector<Index> probes;  // vertices that stand for the shape
-  double shape_mm = 0;        // of them; 0: any will do
+  double shape_mm = 0;        // of them; 0: none is requested
   Index most = 0;             // equilibria of a piece, >= 1
 };
 
-/// Refines a piece of a map until it predicts new equilibria as well as is wanted: adds points at which its polynomials
-/// are known worst; halves boxes in which that does not help, or parts of which have no equilibrium.
+/// Refines a piece of a map until it predicts new equilibria with the requested accuracy: it adds points at which the
+/// variance of its polynomials is largest, and halves boxes in which that does not help or which have parts without an
+/// equilibrium.
 class PieceFit {
  public:
   /// All must outlive the object; data: inputs and outputs
   PieceFit(const MapData& data, const Wanted& wanted, MapPiece& piece);
 
-  /// Commands of the equilibria to be solved next, a row each; none: there is nothing left to do.
+  /// Returns the commands of the equilibria to be solved next, a row each; none: the piece is finished.
   [[nodiscard]] RowMatrix next();
 
-  /// What was found at them, in their order.
+  /// Takes the samples at these commands, in their order.
   void take(std::vector<Sample> samples);
 
   [[nodiscard]] const std::vector<Sample>& samples() const { return samples_; }
   [[nodiscard]] std::vector<Sample> take_samples() { return std::move(samples_); }
-  /// The nearest good one to commands, over the ranges; null: there is none.
+  /// Returns the good sample nearest to commands, scaled by the ranges; null: there is none.
   [[nodiscard]] const Sample* nearest(const Eigen::VectorXd& commands) const;
-  /// Largest error of a prediction over what is wanted, of the last points anywhere.
+  /// Returns the largest error of a prediction over the requested accuracy, of the last points in all boxes.
   [[nodiscard]] double error() const { return error_; }
-  /// Were all equilibria used up before it was accurate?
+  /// Was the maximum number of equilibria reached before it was accurate?
   [[nodiscard]] bool gave_up() const { return gave_up_; }
 
   /// Amplitudes of the modes of the shape, for every cell; the samples keep their order.
@@ -47,7 +48,7 @@ class PieceFit {
     Polynomials polynomials{};
     Eigen::VectorXd decay{};
     std::vector<double> errors{};  // of each batch when it was new
-    double width = 1;              // share of the piece's box
+    double width = 1;              // fraction of the piece's box
   };
 
   [[nodiscard]] Eigen::VectorXd scaled(const Chart& chart, const Eigen::VectorXd& commands) const;

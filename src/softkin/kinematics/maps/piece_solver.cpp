@@ -51,8 +51,8 @@ bool answers_with_ratio(const Model& model, const Actuator& actuator) {
 MapData outline_of(const Model& model) {
   if (model.markers.empty())
     throw InvalidInput("the robot has no marker, so that a map has nothing to give: add one to the scene");
-  if (rubs(model))
-    throw InvalidInput("shapes depend on the way there where something rubs: a map is for robots without friction");
+  if (has_friction(model))
+    throw InvalidInput("with friction shapes depend on the path: a map is for robots without friction");
   MapData data;
   data.robot = fingerprint_of(model);
   data.name = std::filesystem::path(model.name).stem().string();
@@ -75,8 +75,8 @@ MapData outline_of(const Model& model) {
       data.inputs.push_back({actuator.name, command_unit(actuator), number, actuator.low, actuator.high});
   }
   if (data.inputs.empty()) throw InvalidInput("no actuator of the robot has a range, so that there is nothing to map");
-  if (data.inputs.size() > most_variables)
-    throw InvalidInput("a map takes up to " + std::to_string(most_variables) + " commands, the robot has " +
+  if (data.inputs.size() > max_variables)
+    throw InvalidInput("a map takes up to " + std::to_string(max_variables) + " commands, the robot has " +
                        std::to_string(data.inputs.size()));
   return data;
 }
@@ -129,7 +129,7 @@ void PieceSolver::add_values(Sample& sample) const {
 }
 
 void PieceSolver::add_slopes(const Sensitivity& sensitivity, Sample& sample) const {
-  constexpr double share = 1e-4;  // of a range: for ratios, which are differentiated by differences
+  constexpr double fraction = 1e-4;  // of a range: for ratios, which are differentiated by differences
   const Index variables = actuators_.size();
   sample.slopes.resize(variables, sample.values.size());
   sample.moves.resize(3 * model_.rest.rows(), variables);
@@ -137,7 +137,7 @@ void PieceSolver::add_slopes(const Sensitivity& sensitivity, Sample& sample) con
     const Index a = actuators_[j];
     const Actuator& actuator = model_.actuators[a];
     const Points& moves = sensitivity.positions[a];
-    const double step = share * (actuator.high - actuator.low);
+    const double step = fraction * (actuator.high - actuator.low);
     State before = sample.state, after = sample.state;
     before.positions -= step * moves;
     after.positions += step * moves;

@@ -29,7 +29,7 @@ void chebyshev(double x, int highest, double* values, double* slopes) {
 }
 
 struct Table {
-  std::array<std::array<double, highest_degree + 1>, most_variables> values, slopes;
+  std::array<std::array<double, highest_degree + 1>, max_variables> values, slopes;
 
   Table(const double* x, const std::vector<int>& highest) {
     for (std::size_t j = 0; j < highest.size(); ++j) chebyshev(x[j], highest[j], values[j].data(), slopes[j].data());
@@ -52,7 +52,7 @@ std::vector<int> highest_degrees(const Terms& terms) {
 
 }  // namespace
 
-Terms least_terms(const Eigen::VectorXd& decay, Index count) {
+Terms min_terms(const Eigen::VectorXd& decay, Index count) {
   using Entry = std::pair<double, Degrees>;
   const std::size_t variables = decay.size();
   std::priority_queue<Entry, std::vector<Entry>, std::greater<>> next;
@@ -92,7 +92,7 @@ void evaluate_terms(const Terms& terms, const Eigen::VectorXd& x, Eigen::VectorX
 Polynomials::Polynomials(Terms terms, RowMatrix coefficients)
     : terms_(std::move(terms)), coefficients_(std::move(coefficients)), highest_(highest_degrees(terms_)) {
   const Index last = variables() - 1;
-  const bool fits = variables() <= most_variables && coefficients_.rows() == terms_.rows() &&
+  const bool fits = variables() <= max_variables && coefficients_.rows() == terms_.rows() &&
                     std::all_of(highest_.begin(), highest_.end(), [](int degree) { return degree <= highest_degree; });
   if (!fits) throw InvalidInput("sums of polynomials have too many variables or degrees, or other coefficients");
   for (Index t = 0; t < terms_.rows(); ++t) {
@@ -119,7 +119,7 @@ void Polynomials::add_up(const double* x, double* values, double* slopes) const 
   const auto& of_last = table.values[last];
   const auto& slopes_of_last = table.slopes[last];
   const double* row = blocks_.data();
-  std::array<Block, most_variables> changes;  // of the sums, by each variable
+  std::array<Block, max_variables> changes;  // of the sums, by each variable
   for (Index begin = 0; begin < count(); begin += width) {
     Block totals{};
     if constexpr (sloped) std::fill_n(changes.begin(), last + 1, Block{});

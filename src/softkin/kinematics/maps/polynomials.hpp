@@ -11,25 +11,25 @@ namespace softkin::maps {
 using Terms = Eigen::Matrix<std::uint8_t, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 using RowMatrix = Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor>;
 
-constexpr int most_variables = 8, highest_degree = 60;
+constexpr int max_variables = 8, highest_degree = 60;
 
 /// The terms with the least sums of decay times degree over the variables, sorted by their degrees, the last variable
 /// fastest: with each term all that have lower degrees.
 ///
-/// decay  d values > 0, d <= most_variables
+/// decay  d values > 0, d <= max_variables
 /// count  how many, >= 1; fewer where no degree is above highest_degree
-[[nodiscard]] Terms least_terms(const Eigen::VectorXd& decay, Index count);
+[[nodiscard]] Terms min_terms(const Eigen::VectorXd& decay, Index count);
 
 /// Products of Chebyshev polynomials in d variables from -1 to 1, one per term.
 ///
-/// slopes  returns d by #terms, if asked for
+/// slopes  returns d by #terms; null: not requested
 void evaluate_terms(const Terms& terms, const Eigen::VectorXd& x, Eigen::VectorXd& values, RowMatrix* slopes);
 
 /// p sums of such products.
 class Polynomials {
  public:
   Polynomials() = default;
-  /// terms         sorted as those of least_terms()
+  /// terms         sorted as those of min_terms()
   /// coefficients  #terms by p
   /// throws        InvalidInput on terms in another order or beyond the limits above
   Polynomials(Terms terms, RowMatrix coefficients);
@@ -41,7 +41,7 @@ class Polynomials {
 
   /// x       d values from -1 to 1
   /// values  p
-  /// slopes  d by p, by rows; null: not asked for
+  /// slopes  d by p, by rows; null: not requested
   void evaluate(const double* x, double* values, double* slopes = nullptr) const;
 
  private:

@@ -71,7 +71,7 @@ bool RangeProbe::probe_inputs() {
     InputReach& of = inputs_[i];
     (upper ? of.high_end : of.low_end) = *reached >= 1;
     double& end = upper ? of.high : of.low;
-    // a long step may pass a limit where a shorter one ends, so what is suggested is tried
+    // a long step may pass a limit where a shorter one ends, so the suggested range is tried
     for (int trial = 0; *reached < 1 && trial < max_trials; ++trial) {
       end = rest_[i] + *reached * (commands[i] - rest_[i]);
       commands[i] = safe_end(rest_[i], end);
@@ -81,7 +81,7 @@ bool RangeProbe::probe_inputs() {
     }
     return true;
   };
-  const MapProgress from{crew_.told().equilibria, 0, crew_.told().error, "probing the ranges"};
+  const MapProgress from{crew_.reported().equilibria, 0, crew_.reported().error, "probing the ranges"};
   return crew_.each(2 * count, from, &MapProgress::equilibria, probe_end);
 }
 
@@ -98,7 +98,7 @@ bool RangeProbe::probe_corners() {
     if (found) reached[k] = *found;
     return found.has_value();
   };
-  const MapProgress from{crew_.told().equilibria, 0, crew_.told().error, "probing corners of the ranges"};
+  const MapProgress from{crew_.reported().equilibria, 0, crew_.reported().error, "probing corners of the ranges"};
   if (!crew_.each(corners, from, &MapProgress::equilibria, probe_corner)) return false;
   const auto nearest = std::min_element(reached.begin(), reached.end());
   corner_reach_ = *nearest;

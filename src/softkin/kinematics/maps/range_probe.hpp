@@ -26,7 +26,7 @@ class RangeProbe {
   /// In the order of the map's inputs; empty before probe_inputs().
   [[nodiscard]] const std::vector<InputReach>& inputs() const { return inputs_; }
 
-  /// What is wrong with the range of each input of which less than 80 % has equilibria, and what to do; empty: nothing.
+  /// Returns the error in the range of each input with equilibria in less than 80 % of it, and the remedy; empty: none.
   [[nodiscard]] std::string wrong_inputs() const;
   /// The same of all inputs together, at the corner that is nearest to rest.
   [[nodiscard]] std::string wrong_corner() const;

@@ -19,7 +19,7 @@ double largest_vertex(const Eigen::MatrixXf& moves) {
 MapShape shape_modes(const std::vector<const Sample*>& samples, double accuracy_mm) {
   constexpr double most = 32767;
   const Index count = samples.size();
-  Eigen::MatrixXf left(samples.front()->state.positions.size(), count);  // what the modes so far do not tell
+  Eigen::MatrixXf left(samples.front()->state.positions.size(), count);  // remainder without the modes found yet
   for (Index s = 0; s < count; ++s) {
     const Points& at = samples[s]->state.positions;
     left.col(s) = Eigen::Map<const Eigen::VectorXd>(at.data(), at.size()).cast<float>();
@@ -53,8 +53,8 @@ RowMatrix random_commands(const MapData& data, Index count, std::uint64_t seed) 
   for (Index i = 0; i < count; ++i)
     for (Index j = 0; j < std::ssize(data.inputs); ++j) {
       const MapInput& input = data.inputs[j];
-      const double share = static_cast<double>(generator() >> 11) / steps;
-      commands(i, j) = input.low + share * (input.high - input.low);
+      const double fraction = static_cast<double>(generator() >> 11) / steps;
+      commands(i, j) = input.low + fraction * (input.high - input.low);
     }
   return commands;
 }

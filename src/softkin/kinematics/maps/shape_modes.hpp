@@ -4,8 +4,8 @@
 
 namespace softkin::maps {
 
-/// The few modes of which all sampled shapes are sums but for so much at the farthest vertex, by proper orthogonal
-/// decomposition.
+/// Returns the fewest modes of which all sampled shapes are sums, with at most this error at any vertex, by proper
+/// orthogonal decomposition.
 ///
 /// source  Sirovich 1987, the method of snapshots
 [[nodiscard]] MapShape shape_modes(const std::vector<const Sample*>& samples, double accuracy_mm);

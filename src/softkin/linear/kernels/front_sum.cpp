@@ -121,7 +121,7 @@ struct Columns {
       const Number* child = from + pack->from;
 #pragma GCC unroll 4
       for (int c = 0; c < Count; ++c, child += from_stride) {
-        __builtin_prefetch(child + Count * from_stride);  // no processor foresees where the next columns' packs stand
+        __builtin_prefetch(child + Count * from_stride);  // processors do not predict where the next columns' packs are
         store(to[c] + at, load(to[c] + at) + spread(child));
       }
     }

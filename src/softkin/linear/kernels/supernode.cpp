@@ -51,7 +51,7 @@ void forward_supernode(const SupernodeColumns& node, double* rows, double* above
   };
   p = node.below;
   Index r = 0;
-  for (; r + 4 <= node.row_count; r += 4, p += 4 * width) {  // four rows share the loads of x
+  for (; r + 4 <= node.row_count; r += 4, p += 4 * width) {  // four rows use each load of x
     Row lost[4] = {};
     for (Index k = 0; k < width; ++k) {
       const Row known = row_at(x, k);

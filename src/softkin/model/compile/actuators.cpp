@@ -43,7 +43,7 @@ void check_ratio(const ActuatorSpec& spec, bool prestretched = false) {
                      interval_text(spec.low, spec.high));
 }
 
-/// Of a ratio by pressures or voltages. others: what these are not.
+/// Checks the curve of a ratio by pressures or voltages. others: the name of inputs that do not fit, for messages.
 void check_curve(const ActuatorSpec& spec, CurveInput input, const char* load, const char* ratio, const char* others) {
   if (!spec.curve) return;
   if (spec.control == Control::load)
@@ -57,7 +57,7 @@ void check_curve(const ActuatorSpec& spec, CurveInput input, const char* load, c
     refuse(spec, "takes the unloading branch of its curve, but " + spec.curve->file + " has none");
 }
 
-/// Refuses what does not fit the kind of an actuator.
+/// Refuses settings that do not fit the kind of an actuator.
 struct CheckedDrive {
   const ActuatorSpec& spec;
   Formulation formulation;
@@ -71,10 +71,10 @@ struct CheckedDrive {
     if (spec.curve) refuse(spec, "is a cable: it takes no curve");
     if (!(cable.spacing >= 0 && std::isfinite(cable.spacing)))
       refuse(spec, "needs a spacing of 0 or more, not " + number(cable.spacing));
-    const std::array<double, 3> rubs{cable.friction, cable.sheath_friction, cable.sheath_turns_degrees};
-    if (rubs != std::array<double, 3>{} && formulation != Formulation::physical)
+    const std::array<double, 3> coefficients{cable.friction, cable.sheath_friction, cable.sheath_turns_degrees};
+    if (coefficients != std::array<double, 3>{} && formulation != Formulation::physical)
       refuse(spec, "takes no friction and no sheath: they belong to the physical formulation, which knows tensions");
-    for (const double value : rubs)
+    for (const double value : coefficients)
       if (!(value >= 0 && std::isfinite(value)))
         refuse(spec, "needs a friction and a sheath of 0 or more, not " + number(value));
   }
@@ -110,8 +110,8 @@ struct CheckedDrive {
       check_ratio(spec, true);
     check_curve(spec, CurveInput::voltage, "voltage", "area", "pressures");
     if (dea.region.empty()) refuse(spec, "needs a region of prisms");
-    if (dea.shares && !charged)
-      refuse(spec, "takes no shares of a voltage: only a dea that is controlled by its voltage does");
+    if (dea.fractions && !charged)
+      refuse(spec, "takes no fractions of a voltage: only a dea that is controlled by its voltage does");
     if (dea.prestretch != 1 && !charged)
       refuse(spec, "takes no prestretch beside its ratio at rest: only a dea that is controlled by its voltage does");
     if (!(dea.prestretch > 0 && std::isfinite(dea.prestretch)))
@@ -277,37 +277,38 @@ void fill_membrane(Compilation& c, const ActuatorSpec& spec, const DeaSpec& give
 }
 
 /// Shares of the voltage, by the place of each prism among the actuator's.
-void fill_shares(const Compilation& c, const ActuatorSpec& spec, const std::optional<PrismValues>& given,
-                 DeaDrive& dea) {
+void fill_fractions(const Compilation& c, const ActuatorSpec& spec, const std::optional<PrismValues>& given,
+                    DeaDrive& dea) {
   if (!given) {
-    dea.shares.assign(dea.prisms.size(), 1);
+    dea.fractions.assign(dea.prisms.size(), 1);
     return;
   }
   constexpr double none = -1;
-  std::vector<double> shares(c.prism_at.size(), none);
+  std::vector<double> fractions(c.prism_at.size(), none);
   for (std::size_t i = 0; i < given->prisms.size(); ++i) {
     const Index prism = given->prisms[i];
-    const double share = given->values[i];
+    const double fraction = given->values[i];
     const auto fail = [&](const std::string& what) {
       throw InvalidInput(given->origins[i], "prism " + std::to_string(prism) + " (from 0) " + what);
     };
-    if (prism < 0 || prism >= std::ssize(shares)) fail("is none of the mesh's");
-    if (!(share >= 0 && std::isfinite(share))) fail("has a share of the voltage of " + number(share) + ": 0 or more");
-    if (shares[prism] != none) fail("is there twice");
+    if (prism < 0 || prism >= std::ssize(fractions)) fail("is none of the mesh's");
+    if (!(fraction >= 0 && std::isfinite(fraction)))
+      fail("has a fraction of the voltage of " + number(fraction) + ": 0 or more");
+    if (fractions[prism] != none) fail("is there twice");
     const Index at = c.prism_at[prism];
     if (at < 0 || c.model.elements.prism_roles[at].actuator != std::ssize(c.model.actuators))
       fail("does not belong to actuator '" + spec.name + "'");
-    shares[prism] = share;
+    fractions[prism] = fraction;
   }
   for (const Index e : dea.prisms) {
     const Index prism = c.prism_of[e];
-    if (shares[prism] == none)
-      refuse(spec, "has no share of the voltage for prism " + std::to_string(prism) + " (from 0)");
-    dea.shares.push_back(shares[prism]);
+    if (fractions[prism] == none)
+      refuse(spec, "has no fraction of the voltage for prism " + std::to_string(prism) + " (from 0)");
+    dea.fractions.push_back(fractions[prism]);
   }
 }
 
-/// Compiles what has elements; a cable, a field and a growth are compiled later.
+/// Compiles the kinds with elements; a cable, a field and a growth are compiled later.
 struct FilledDrive {
   Compilation& c;
   const ActuatorSpec& spec;
@@ -324,7 +325,7 @@ struct FilledDrive {
   void operator()(const DeaSpec& dea) const {
     actuator.drive = DeaDrive{.prestretch = dea.prestretch};
     fill_membrane(c, spec, dea, actuator);
-    if (under_voltage(actuator)) fill_shares(c, spec, dea.shares, std::get<DeaDrive>(actuator.drive));
+    if (under_voltage(actuator)) fill_fractions(c, spec, dea.fractions, std::get<DeaDrive>(actuator.drive));
   }
   void operator()(const FieldSpec&) const { actuator.drive = MagneticDrive{}; }
   void operator()(const GrowthSpec&) const { actuator.drive = GrowthDrive{}; }

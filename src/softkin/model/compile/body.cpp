@@ -71,31 +71,31 @@ std::optional<NearestFace> nearest_face(const Body& body, const Points& rest, co
 }  // namespace
 
 EmbeddedPoint carried(const Body& body, const Points& rest, const Vec3& point) {
-  constexpr double least_weight = 1e-12;
+  constexpr double min_weight = 1e-12;
   const std::optional<NearestFace> nearest = nearest_face(body, rest, point);
   if (!nearest) return body.embedder.embed(point);
   const auto& [face, at] = *nearest;
   const Vec3 a = vertex_at(rest, face.corners[0]), b = vertex_at(rest, face.corners[1]),
              c = vertex_at(rest, face.corners[2]);
   const Vec3 normal = (b - a).cross(c - a);
-  const Vec3 shares =
+  const Vec3 fractions =
       Vec3((b - at).cross(c - at).dot(normal), (c - at).cross(a - at).dot(normal), (a - at).cross(b - at).dot(normal)) /
       normal.squaredNorm();
   const std::vector<Index> nodes = nodes_of(face);
-  const TrianglePoint quadratic = triangle_point(shares[1], shares[2], 0);
+  const TrianglePoint quadratic = triangle_point(fractions[1], fractions[2], 0);
   EmbeddedPoint embedded;
   embedded.distance_mm = (point - at).norm();
   for (std::size_t i = 0; i < nodes.size(); ++i) {
     const Eigen::Index k = i;
-    const double weight = nodes.size() == 3 ? shares[k] : quadratic.shape[k];
-    if (std::abs(weight) < least_weight) continue;
+    const double weight = nodes.size() == 3 ? fractions[k] : quadratic.shape[k];
+    if (std::abs(weight) < min_weight) continue;
     embedded.vertices.push_back(nodes[i]);
     embedded.weights.push_back(weight);
   }
   return embedded;
 }
 
-double most_outside(const Body& body, const Points& rest, const Vec3& point) {
+double max_outside(const Body& body, const Points& rest, const Vec3& point) {
   const std::optional<NearestFace> nearest = nearest_face(body, rest, point);
   const double edge = nearest ? longest_edge(rest, nearest->face.corners) : body.embedder.edge_near(point);
   return std::min(0.5 * edge, 0.1 * body.diagonal_mm);

@@ -7,28 +7,28 @@ namespace softkin {
 
 namespace {
 
-constexpr double least_segment_mm = 1e-6;
-constexpr double most_guides = 10'000;
-constexpr double least_height = 1e-3;  // of a gap's triangle, over the length of its segment
+constexpr double min_segment_mm = 1e-6;
+constexpr double max_guides = 10'000;
+constexpr double min_height = 1e-3;  // of a gap's triangle, over the length of its segment
 
 std::string segment_text(std::size_t segment) {
   return "between points[" + std::to_string(segment) + "] and points[" + std::to_string(segment + 1) + "]";
 }
 
-/// Where the cable is guided on the straight way to `end` [mm]: at most `spacing` apart, but nowhere outside the body.
+/// Adds the points that guide the cable on the straight line to `end`: at most `spacing` apart, none outside the body.
 void add_guides(Compilation& c, const ActuatorSpec& spec, const CableSpec& given, const Vec3& end, CableDrive& cable) {
   const Vec3 start = cable.points.back().at(c.model.rest);
   const double pieces = std::ceil((end - start).norm() / given.spacing * (1 - 1e-12));
-  if (pieces > most_guides)
+  if (pieces > max_guides)
     refuse(spec, "would be guided at " + number(pieces) + " places by its spacing of " + number(given.spacing) +
-                     " mm: the most are " + number(most_guides));
+                     " mm: the most are " + number(max_guides));
   for (double i = 1; i < pieces; ++i) {
     EmbeddedPoint guide = body_of(c, spec.robot).embedder.embed(start + i / pieces * (end - start));
     if (guide.distance_mm <= 1e-9 * c.model.diagonal_mm) cable.points.push_back(std::move(guide));
   }
 }
 
-/// The cable's points at rest, those by which its spacing guides it between the given ones among them.
+/// Returns the cable's points at rest, with the guide points that its spacing adds between the given ones.
 std::vector<Vec3> embed_points(Compilation& c, const ActuatorSpec& spec, const CableSpec& given, CableDrive& cable) {
   if (given.points.size() < 2) refuse(spec, "is a cable and needs at least two points");
   for (std::size_t i = 0; i < given.points.size(); ++i) {
@@ -36,7 +36,7 @@ std::vector<Vec3> embed_points(Compilation& c, const ActuatorSpec& spec, const C
         embed_point(c, given.points[i], "points[" + std::to_string(i) + "] of actuator '" + spec.name + "'");
     if (i > 0) {
       const Vec3 end = point.at(c.model.rest);
-      if ((end - cable.points.back().at(c.model.rest)).norm() < least_segment_mm)
+      if ((end - cable.points.back().at(c.model.rest)).norm() < min_segment_mm)
         refuse(spec, "has no length " + segment_text(i - 1));
       if (given.spacing > 0) add_guides(c, spec, given, end, cable);
     }
@@ -89,7 +89,7 @@ Vec3 find_apex(const Compilation& c, const ActuatorSpec& spec, const SurfaceTree
   if (across.norm() > 1e-9 * c.model.diagonal_mm) {
     const Vec3 direction = across.normalized();
     const auto hit = boundary.first_hit(middle, direction, 1e-9 * c.model.diagonal_mm);
-    if (hit && *hit >= least_height * length) return middle + *hit * direction;
+    if (hit && *hit >= min_height * length) return middle + *hit * direction;
   }
   refuse(spec,
          "has a gap " + segment_text(segment) + " with no body straight across it: name its third corner in `apexes`");
@@ -113,7 +113,7 @@ void take_apexes(Compilation& c, const ActuatorSpec& spec, const CableSpec& give
     const std::string what = "apexes[" + std::to_string(i) + "] of actuator '" + spec.name + "'";
     gap.apex = embed_point(c, given.apexes[i], what);
     const Vec3 &start = points[gap.segment], &end = points[gap.segment + 1];
-    if (height_over(start, end, gap.apex.at(c.model.rest)) < least_height * (end - start).norm())
+    if (height_over(start, end, gap.apex.at(c.model.rest)) < min_height * (end - start).norm())
       throw InvalidInput(given.apexes[i].origin, what + " lies on the line of the cable: move it into the body");
   }
 }

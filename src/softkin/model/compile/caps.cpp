@@ -59,8 +59,9 @@ void measure_face(const Points& points, OpenFace& face) {
   face.area = 0.5 * normal.norm();
 }
 
-/// Sets the supports of the faces. A face in the middle of an opening, whose vertices no entry names, has that of most
-/// of the faces around the same opening that look the same way, or of any.
+/// Sets the supports of the faces. A face in the middle of an opening, whose vertices belong to no support, takes the
+/// support with the largest area around the same opening, of the faces with the same main axis of the normal or, where
+/// there are none, of all.
 void assign_supports(const Holders& holders, const Points& points, const std::vector<OpenFace>& faces,
                      std::vector<ChamberCap>& caps) {
   std::vector<Triangle> triangles;

@@ -23,7 +23,7 @@ void add_faces(const Compilation& c, const ActuatorSpec& spec, const std::vector
   }
 }
 
-// What of a cavity's boundary is not the body's cannot move.
+// Parts of a cavity's boundary that do not belong to the body cannot move.
 void check_contact(Compilation& c, const ActuatorSpec& spec, const ChamberDrive& chamber) {
   std::set<Index> vertices;
   for (const CavityFace& face : chamber.cavity)
@@ -52,7 +52,7 @@ bool lies_in(const EmptySpace& space, const std::pair<Index, Index>& vertices) {
 }
 
 void take_only_space(Compilation& c, const ActuatorSpec& spec, Actuator& actuator) {
-  constexpr std::size_t most_named = 5;
+  constexpr std::size_t max_named = 5;
   const std::vector<EmptySpace>& all = empty_spaces(c);
   std::vector<EmptySpace> spaces;
   std::vector<std::size_t> numbers;
@@ -66,9 +66,9 @@ void take_only_space(Compilation& c, const ActuatorSpec& spec, Actuator& actuato
   if (spaces.empty()) refuse(spec, "needs a region or a surface, since " + body + " encloses no empty space" + cure);
   if (spaces.size() > 1) {
     std::string text;
-    for (std::size_t i = 0; i < std::min(spaces.size(), most_named); ++i)
+    for (std::size_t i = 0; i < std::min(spaces.size(), max_named); ++i)
       text += (i == 0 ? "" : ", ") + text_of(spaces[i]);
-    if (spaces.size() > most_named) text += " and " + std::to_string(spaces.size() - most_named) + " more";
+    if (spaces.size() > max_named) text += " and " + std::to_string(spaces.size() - max_named) + " more";
     refuse(spec, "needs a region or a surface, since " + body + " encloses " + std::to_string(spaces.size()) +
                      " empty spaces, " + text + cure);
   }

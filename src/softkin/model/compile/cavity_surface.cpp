@@ -8,13 +8,13 @@ namespace softkin {
 
 namespace {
 
-constexpr double least_size = 0.01, most_size = 3;  // of a surface's diagonal, over the body's
-constexpr double least_alike = 0.8;                 // of the smaller volume over the larger one
-constexpr double most_apart = 0.25;                 // of the distance, over the mean edge
-constexpr double most_aside = 0.15;  // of the distance, over 6 volumes / area: the edge of a cube, a ball's diameter
-constexpr double most_filled = 0.1, noted_filled = 0.001;  // of the volume
-constexpr double finest = 0.1;                             // edges of an embedded surface, over those of elements
-constexpr std::size_t most_triangles = 500000;
+constexpr double min_size = 0.01, max_size = 3;  // of a surface's diagonal, over the body's
+constexpr double min_alike = 0.8;                // of the smaller volume over the larger one
+constexpr double max_apart = 0.25;               // of the distance, over the mean edge
+constexpr double max_aside = 0.15;  // of the distance, over 6 volumes / area: the edge of a cube, a ball's diameter
+constexpr double max_filled = 0.1, noted_filled = 0.001;  // of the volume
+constexpr double finest = 0.1;                            // edges of an embedded surface, over those of elements
+constexpr std::size_t max_triangles = 500000;
 
 std::string text_of(const Shell& shell) {
   return number(std::abs(shell.volume)) + " mm^3 around " + point_text(shell.center) + " mm";
@@ -91,12 +91,12 @@ std::optional<Match> matching_space(Compilation& c, const TriangleSurface& surfa
   for (std::size_t i = 0; i < spaces.size(); ++i) {
     const EmptySpace& space = spaces[i];
     const auto [low, high] = std::minmax(space.volume, shell.volume);
-    if (low < least_alike * high || !space.bounds.intersects(shell.bounds)) continue;
+    if (low < min_alike * high || !space.bounds.intersects(shell.bounds)) continue;
     const double edge = std::max(mean_edge(surface.vertices, triangles), mean_edge(c.model.rest, space.triangles));
     const double size = 6 * space.volume / area_of(c.model.rest, space.triangles);
     const double apart = std::max(distance(surface.vertices, triangles, SurfaceTree(c.model.rest, space.triangles)),
                                   distance(c.model.rest, space.triangles, SurfaceTree(surface.vertices, triangles)));
-    const Match match{i, apart, std::min(most_apart * edge, most_aside * size)};
+    const Match match{i, apart, std::min(max_apart * edge, max_aside * size)};
     if (!best || std::pair(!match.is_near(), apart) < std::pair(!best->is_near(), best->distance)) best = match;
   }
   return best;
@@ -132,7 +132,7 @@ void check_size(const Compilation& c, const ActuatorSpec& spec, const TriangleSu
   Bounds bounds;
   for (Index v = 0; v < surface.vertices.rows(); ++v) bounds.extend(vertex_at(surface.vertices, v));
   const double body = diagonal_of(c, spec.robot), diagonal = bounds.diagonal().norm(), ratio = diagonal / body;
-  if (ratio < least_size || ratio > most_size)
+  if (ratio < min_size || ratio > max_size)
     refuse(spec, "has a surface of " + number(diagonal) + " mm from corner to corner, " + number(ratio, 3) +
                      " times the body's " + number(body) +
                      " mm: it is of another unit; name that of its file, `surface: {file: F, unit: mm}`");
@@ -141,7 +141,7 @@ void check_size(const Compilation& c, const ActuatorSpec& spec, const TriangleSu
 /// A surface well inside an empty space would push at walls that are elsewhere.
 void refuse_inside_space(Compilation& c, const ActuatorSpec& spec, const Shell& shell) {
   for (const EmptySpace& space : empty_spaces(c)) {
-    if (shell.volume >= least_alike * space.volume || !space.bounds.contains(shell.center)) continue;
+    if (shell.volume >= min_alike * space.volume || !space.bounds.contains(shell.center)) continue;
     if (!SurfaceTree(c.model.rest, space.triangles).contains(shell.center)) continue;
     refuse(spec, "has a surface of " + text_of(shell) + " inside an empty space of the body of " +
                      softkin::text_of(space) +
@@ -164,8 +164,8 @@ double filled_volume(const Compilation& c, const SurfaceTree& tree) {
   return filled;
 }
 
-std::string percent(double share) {
-  return number(100 * share, 3) + " %";
+std::string percent(double fraction) {
+  return number(100 * fraction, 3) + " %";
 }
 
 }  // namespace
@@ -213,7 +213,7 @@ ChamberWall checked_wall(const Compilation& c, const ActuatorSpec& spec, const s
 void check_filling(Compilation& c, const ActuatorSpec& spec, const TriangleSurface& surface) {
   const double filled = filled_volume(c, SurfaceTree(surface.vertices, surface.triangles)),
                volume = enclosed_volume(surface.vertices, surface.triangles);
-  if (filled > most_filled * volume)
+  if (filled > max_filled * volume)
     refuse(spec, "has a surface around " + number(volume) + " mm^3, of which " +
                      percent(std::min(1.0, filled / volume)) +
                      " are elements of the body or of another chamber, which resist inside: make them a region and "
@@ -252,7 +252,7 @@ void embed_surface(Compilation& c, const ActuatorSpec& spec, const TriangleSurfa
     try {
       surface = refined(
           std::move(surface), [&](const Vec3& middle) { return finest * body.embedder.edge_near(middle); },
-          most_triangles);
+          max_triangles);
     } catch (const InvalidInput& error) {
       refuse(spec, std::string("has a surface that cuts through too many elements: ") + error.what() +
                        "; mesh the chamber and name it as `region` or `void`");
@@ -273,7 +273,7 @@ void embed_surface(Compilation& c, const ActuatorSpec& spec, const TriangleSurfa
     if (!(distance > 1e-6 * c.model.diagonal_mm)) continue;
     farthest = std::max(farthest, distance);
     ++outside;
-    if (const double most = most_outside(body, c.model.rest, vertex); distance > most)
+    if (const double most = max_outside(body, c.model.rest, vertex); distance > most)
       refuse(spec, "has a surface whose point " + point_text(vertex) + " mm is " + number(distance) +
                        " mm from the body, " + too_far_text(most) +
                        ": let the surface run along the body, or check its unit");

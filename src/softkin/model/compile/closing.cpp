@@ -172,7 +172,7 @@ class RimCloser {
     return planes[best];
   }
 
-  // Where the rim goes from one plane into another, the polygons of both go on along the line in which the planes
+  // Where the rim passes from one plane into another, the polygons of both continue along the line in which the planes
   // intersect: from there to where the rim comes back, or to the corner in which three planes meet.
 
   using Line = std::pair<std::size_t, std::size_t>;  // two planes, the first one first
@@ -223,14 +223,15 @@ class RimCloser {
             corners_.push_back({{p, q, r}});
   }
 
-  /// 1 or -1 where the line passes through the corner: which way a polygon that passes there once goes along it; else 0
+  /// Returns 1 or -1 where the line passes through the corner, the sense in which a polygon that passes the corner once
+  /// runs along the line; else 0.
   static int sign_at(const Corner& corner, const Line& line) {
     const auto& [p, q, r] = corner.planes;
     if (line == Line(p, q) || line == Line(q, r)) return 1;
     return line == Line(p, r) ? -1 : 0;
   }
 
-  /// What goes along a line to its corners must be what turns into it.
+  /// Counts how often the polygon passes each corner: the passes along a line must balance the turns into it.
   bool count_passes() {
     for (std::size_t round = 0; round <= 2 * corners_.size(); ++round) {
       bool found = false;

@@ -20,7 +20,7 @@ struct ClosingPolygon {
   std::vector<Index> nodes;     // on the edge from each vertex to the next one; -1: straight
 };
 
-/// What closes the openings of a surface.
+/// The polygons that close the openings of a surface.
 struct ClosedRim {
   std::vector<ClosingPolygon> polygons;
   std::vector<Vec3> corners;           // where three planes meet inside the surface [mm]; no vertices of the mesh
@@ -38,8 +38,8 @@ struct ClosedRim {
 [[nodiscard]] ClosedRim close_rim(const Points& vertices, const std::vector<RimEdge>& rim,
                                   const std::vector<std::array<bool, 3>>& held, double tolerance);
 
-/// A polygon as faces whose normals point out of what the surface encloses. quadratic: as of order 2. Their area, as a
-/// vector, is exact also where the polygon is not convex: faces may lie on each other and have opposite normals.
+/// Returns a polygon as faces whose normals point out of the enclosed space. quadratic: as of order 2. Their area, as a
+/// vector, is exact also where the polygon is not convex: faces may overlap and have opposite normals.
 [[nodiscard]] std::vector<CavityFace> faces_of(const ClosingPolygon& polygon, bool quadratic);
 
 }  // namespace softkin

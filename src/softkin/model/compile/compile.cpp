@@ -34,7 +34,7 @@ EmbeddedPoint embed_inside(Compilation& c, const Vec3& point, const PointRef& re
     throw InvalidInput(origin, what + ": " + error.what());
   }
   const std::string distance = number(embedded.distance_mm);
-  if (const double most = most_outside(body, c.model.rest, point); embedded.distance_mm > most)
+  if (const double most = max_outside(body, c.model.rest, point); embedded.distance_mm > most)
     throw InvalidInput(origin, what + " is " + distance + " mm from the mesh, " + too_far_text(most) +
                                    ": move it to the body, mesh what holds it, or check the unit");
   if (embedded.distance_mm > 1e-6 * c.model.diagonal_mm)
@@ -44,8 +44,8 @@ EmbeddedPoint embed_inside(Compilation& c, const Vec3& point, const PointRef& re
 
 }  // namespace
 
-std::string too_far_text(double most_mm) {
-  return "farther than the " + number(most_mm) + " mm to which its nearest element can carry it";
+std::string too_far_text(double max_mm) {
+  return "farther than the " + number(max_mm) + " mm to which its nearest element can carry it";
 }
 
 EmbeddedPoint embed_point(Compilation& c, const PointRef& reference, const std::string& what) {

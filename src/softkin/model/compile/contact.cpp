@@ -10,8 +10,8 @@ namespace softkin {
 
 namespace {
 
-constexpr double default_distance = 5e-4, most_distance = 0.05;  // over the robot's diagonal
-constexpr double least_area = 0.01;  // of a vertex, over the mean of the robot's: nothing slips past small ones
+constexpr double default_distance = 5e-4, max_distance = 0.05;  // over the robot's diagonal
+constexpr double min_area = 0.01;  // of a vertex, over the mean of the robot's: nothing slips past small ones
 constexpr const char* robot_name = robot_part_name;
 
 bool is_obstacle(const ContactSpec& contact, const std::string& name) {
@@ -37,7 +37,7 @@ Index robot_of_region(const Compilation& c, const std::string& region, const Ori
   if (first != last)
     throw InvalidInput(origin, "region '" + region + "' is of robot '" + c.spec.robots[first].name +
                                    "' and of robot '" + c.spec.robots[last].name +
-                                   "': what touches is of one of them; name a region of each");
+                                   "': contacts are of one of them; name a region of each");
   return first;
 }
 
@@ -81,15 +81,15 @@ void check_pairs(const Compilation& c, const ContactSpec& contact) {
 
 double distance_of(const ContactSpec& spec, double diagonal) {
   const double distance = spec.distance_mm.value_or(default_distance * diagonal);
-  if (!(distance < most_distance * diagonal))
+  if (!(distance < max_distance * diagonal))
     throw InvalidInput(spec.origin, "contact distance " + number(distance) +
                                         " mm is too large: it must be below a twentieth of the robot's diagonal, " +
-                                        number(most_distance * diagonal) + " mm");
+                                        number(max_distance * diagonal) + " mm");
   return distance;
 }
 
-/// Smallest at rest, of what the body is made of [MPa]; of sheets beside it that over the robot's diagonal which they
-/// resist with in their plane.
+/// Returns the smallest modulus at rest of the materials of the body [MPa]; for sheets, their stiffness in the plane
+/// divided by the robot's diagonal.
 double softest(const Compilation& c) {
   const Model& model = c.model;
   double least = std::numeric_limits<double>::infinity();
@@ -197,7 +197,7 @@ std::vector<EdgeWithNode> edges_of_faces(const std::vector<Triangle>& triangles)
   return edges;
 }
 
-/// What a uniform pressure on the triangles gives to each vertex of the robot, over the pressure; returns the mean.
+/// Computes the area for which each vertex of the robot carries a uniform pressure on the triangles; returns the mean.
 double spread_area(Model& model) {
   ContactModel& contact = model.contact;
   contact.area.assign(model.rest.rows(), 0);
@@ -211,7 +211,7 @@ double spread_area(Model& model) {
   }
   sort_unique(vertices);
   const double mean = total / static_cast<double>(vertices.size());
-  for (const Index v : vertices) contact.area[v] = std::max(contact.area[v], least_area * mean);
+  for (const Index v : vertices) contact.area[v] = std::max(contact.area[v], min_area * mean);
   return mean;
 }
 
@@ -273,7 +273,7 @@ void compile_contact(Compilation& c) {
   add_robot_parts(c, spec);
   if (!c.regions.edges().empty()) contact.edges = edges_of_faces(contact.triangles);
   const double mean = spread_area(c.model);
-  add_surroundings(c, spec, least_area * mean);
+  add_surroundings(c, spec, min_area * mean);
   set_pairs(contact, spec);
 }
 

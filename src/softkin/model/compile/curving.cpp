@@ -10,10 +10,10 @@ namespace softkin {
 
 namespace {
 
-constexpr double least_loss = 0.02;      // of a section
-constexpr double most_doubt = 0.3;       // of what all sections lose
+constexpr double min_loss = 0.02;        // of a section
+constexpr double max_doubt = 0.3;        // of what all sections lose
 constexpr int slab_count = 10;           // across the robot's longest side
-constexpr double least_slab = 0.03;      // of the volume in a slab that counts
+constexpr double min_slab = 0.03;        // of the volume in a slab that counts
 constexpr double still_straight = 1e-3;  // a node's distance from the middle, over its edge's length
 
 /// The volume of all elements with their curved edges [mm^3].
@@ -32,7 +32,7 @@ const char* word_of(const GivenSurface& surface) {
 std::string held_text(const CurvedEdges& done) {
   if (done.held_back == 0) return ".";
   return "; " + counted(done.held_back, "node was", "nodes were") + " held back lest elements fold, the farthest at " +
-         decimal(100 * done.least_share, 0) + " % of its way.";
+         decimal(100 * done.min_fraction, 0) + " % of its path.";
 }
 
 /// The mesh's regions, and those that a scene makes of lists of elements; shapes cut a mesh in steps.
@@ -72,8 +72,8 @@ std::array<Slab, slab_count> slabs_of(const Model& model, const Points& position
   return all;
 }
 
-/// By what share of itself the slab that changes most would grow with round edges; 0 where that is not sure: where the
-/// surface has hollows that the mesh is too coarse to tell the depth of.
+/// Returns the largest relative growth of a slab with curved edges; 0 where it is uncertain, as where the mesh is too
+/// coarse to determine the depth of hollows of the surface.
 double sure_gain(const Compilation& c) {
   const Model& model = c.model;
   const SmoothBulges bulges =
@@ -92,9 +92,9 @@ double sure_gain(const Compilation& c) {
     gains += std::abs(likely[s].gain);
     doubt += std::abs(most[s].gain - likely[s].gain);
   }
-  if (doubt > most_doubt * gains) return 0;
+  if (doubt > max_doubt * gains) return 0;
   for (const auto& [volume, gain] : likely)
-    if (volume > least_slab * whole && std::abs(gain) > std::abs(largest) * volume) largest = gain / volume;
+    if (volume > min_slab * whole && std::abs(gain) > std::abs(largest) * volume) largest = gain / volume;
   return largest;
 }
 
@@ -127,8 +127,8 @@ CurvedEdges curve_mesh(const RobotSpec& spec, Mesh& mesh, std::vector<std::strin
                   number(done.farthest_mm, 3) + " mm; the volume of all elements changed by " +
                   number(100 * (curved_volume(mesh) / before - 1), 3) + " %" + held_text(done));
   if (done.undetermined > 0)
-    notes.push_back("The mesh is too coarse to tell how the surface runs at " + counted(done.undetermined, "edge") +
-                    ", such as around " + point_text(done.undetermined_at) +
+    notes.push_back("The mesh is too coarse to determine how the surface runs at " +
+                    counted(done.undetermined, "edge") + ", such as around " + point_text(done.undetermined_at) +
                     " mm, where it turns from hollow to full within an element: refine there.");
   return done;
 }
@@ -138,11 +138,11 @@ void doubt_straight_edges(Compilation& c) {
   if (model.formulation != Formulation::physical || model.elements.edge_nodes.empty()) return;
   if (c.spec.mesh_options.curve || c.spec.mesh_options.curved || !has_straight_edges(c.mesh)) return;
   const double gain = sure_gain(c);
-  if (!(std::abs(gain) > least_loss)) return;
-  const std::string share = decimal(100 * std::abs(gain), 0) + " %";
+  if (!(std::abs(gain) > min_loss)) return;
+  const std::string fraction = decimal(100 * std::abs(gain), 0) + " %";
   model.warnings.push_back(
       "The edges are straight where the surface through the vertices is round: sections of the body are about " +
-      share +
+      fraction +
       (gain > 0 ? " too small, and bend by twice that too easily" : " too large, and bend by twice that too little") +
       "; take 'mesh: {file: F, order: 2, curve: true}', or a mesh with curved edges (Gmsh: "
       "gmsh.model.mesh.setOrder(2)).");

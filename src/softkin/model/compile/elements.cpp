@@ -94,7 +94,7 @@ void refuse(const Compilation& c, const std::string& one, const std::string& man
 
 /// Fills in the elements of a kind and returns how many it reversed.
 template <class Element>
-std::size_t orient(Compilation& c, const std::vector<bool>& left_out, const Kind<Element>& kind, double least_volume) {
+std::size_t orient(Compilation& c, const std::vector<bool>& left_out, const Kind<Element>& kind, double min_volume) {
   std::size_t reversed = 0;
   Refused empty, folded;
   kind.at.assign(kind.mesh_elements.size(), -1);
@@ -103,7 +103,7 @@ std::size_t orient(Compilation& c, const std::vector<bool>& left_out, const Kind
     Element element = kind.mesh_elements[i];
     double volume = signed_volume(c.mesh.vertices, element);
     const double edge = longest_edge(c.mesh.vertices, element);
-    if (!(std::abs(volume) > std::max(least_volume, flat_volume * edge * edge * edge))) {
+    if (!(std::abs(volume) > std::max(min_volume, flat_volume * edge * edge * edge))) {
       empty.add(static_cast<Index>(i));
       continue;
     }
@@ -144,7 +144,7 @@ void take_edge_nodes(const Compilation& c, const std::vector<Tetrahedron>& eleme
     volumes[e] = shape_integrals(positions).sum();
     if (has_stray_node(positions))
       stray.add(of[e]);
-    else if (!(least_jacobian(positions) > 0))
+    else if (!(min_jacobian(positions) > 0))
       folded.add(of[e]);
   }
   refuse(c, "tetrahedron", "tetrahedra", stray,
@@ -235,20 +235,20 @@ void compile_elements(Compilation& c) {
   model.held.at = mesh.vertices;
   // below this a volume is the rounding of the coordinates
   const double diagonal = (model.rest.colwise().maxCoeff() - model.rest.colwise().minCoeff()).norm();
-  const double least_volume = 1e-15 * diagonal * diagonal * diagonal;
+  const double min_volume = 1e-15 * diagonal * diagonal * diagonal;
   const std::size_t reversed =
       orient(c, not_body,
              Kind<Tetrahedron>{"tetrahedron", "tetrahedra", mesh.tetrahedra, model.elements.tetrahedra,
                                model.elements.tetrahedron_volumes, c.tetrahedron_at, c.tetrahedron_of},
-             least_volume) +
+             min_volume) +
       orient(c, not_chamber,
              Kind<Tetrahedron>{"tetrahedron", "tetrahedra", mesh.tetrahedra, c.chamber_tetrahedra, c.chamber_volumes,
                                c.chamber_at, c.chamber_of},
-             least_volume) +
+             min_volume) +
       orient(c, void_prisms,
              Kind<Prism>{"prism", "prisms", mesh.prisms, model.elements.prisms, model.elements.prism_volumes,
                          c.prism_at, c.prism_of},
-             least_volume);
+             min_volume);
   if (model.elements.tetrahedra.empty() && model.elements.prisms.empty() &&
       !(mesh.tetrahedra.empty() && mesh.prisms.empty()))
     throw InvalidInput(c.origin, std::string("every element of the mesh is void") +

@@ -53,7 +53,8 @@ EmbeddedPoint normalised(EmbeddedPoint embedded) {
   return embedded;
 }
 
-/// Where the way from the element's middle to the point leaves the element; the point itself where it is inside.
+/// Returns where the line from the element's middle to the point leaves the element; the point itself where it is
+/// inside.
 Barycentric drawn_inside(const Barycentric& l) {
   const Barycentric middle = Barycentric::Constant(0.25);
   const double least = l.minCoeff();
@@ -158,10 +159,10 @@ EmbeddedPoint Embedder::embed_in(Index element, const Vec3& point) const {
 }
 
 std::vector<Embedder::Piece> Embedder::pieces(const Vec3& from, const Vec3& to) const {
-  constexpr double inside = -1e-9, beyond = 1e-7, outside = 0.125;  // a coordinate; shares of the longest edge
+  constexpr double inside = -1e-9, beyond = 1e-7, outside = 0.125;  // a coordinate; fractions of the longest edge
   std::vector<Piece> pieces;
   const double length = (to - from).norm();
-  const auto at = [&](double share) -> Vec3 { return from + share * (to - from); };
+  const auto at = [&](double fraction) -> Vec3 { return from + fraction * (to - from); };
   for (double begin = 0; begin < 1;) {
     Nearest near = nearest(at(begin));
     const double edge = edge_of(near.element) / length;
@@ -212,9 +213,9 @@ double Embedder::edge_near(const Vec3& point) const {
 
 TetrahedronWeights Embedder::quadratic_weights(Index element, const Vec3& point, Barycentric coordinates,
                                                double& distance) const {
-  constexpr int most_iterations = 50;
+  constexpr int max_iterations = 50;
   const TetrahedronNodes nodes = nodes_of(vertices_, tetrahedra_[element], edge_nodes_[element]);
-  for (int i = 0; i < most_iterations; ++i) {
+  for (int i = 0; i < max_iterations; ++i) {
     const Barycentric inside = drawn_inside(coordinates);
     const Eigen::Matrix<double, 10, 4> slope = quadratic_slope(inside);
     const TetrahedronWeights weights = quadratic_shape(inside) + slope * (coordinates - inside);

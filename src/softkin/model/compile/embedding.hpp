@@ -7,8 +7,8 @@
 
 namespace softkin {
 
-/// Finds, for a point, the element that carries it along. Prisms count as three tetrahedra each, split along the
-/// diagonals from the smallest vertex index, so that neighbours agree.
+/// Finds the element with which a point moves. Prisms count as three tetrahedra each, split along the diagonals from
+/// the smallest vertex index, so that neighbours agree.
 class Embedder {
  public:
   /// vertices    #V by 3 [mm]; elements with positive volume
@@ -26,13 +26,13 @@ class Embedder {
   ///         curved that no coordinates in it give the point
   [[nodiscard]] EmbeddedPoint embed(const Vec3& point) const;
 
-  /// A piece of a straight line, from and to these shares of it.
+  /// A piece of a straight line, between two fractions of its length.
   struct Piece {
     Index element = -1;
     double begin = 0, end = 0;
   };
-  /// The pieces of a straight line of which each is carried along by one element, in order: cut where it leaves an
-  /// element, by its corners; outside of all in pieces of an eighth of the nearest one's longest edge.
+  /// Returns the pieces of a straight line that move with one element each, in order: cut where the line leaves an
+  /// element, by its corners; outside of all in pieces of an eighth of the nearest element's longest edge.
   [[nodiscard]] std::vector<Piece> pieces(const Vec3& from, const Vec3& to) const;
   /// As embed(), by the element of a piece.
   [[nodiscard]] EmbeddedPoint embed_in(Index element, const Vec3& point) const;

@@ -11,10 +11,10 @@ namespace softkin {
 
 namespace {
 
-constexpr double shortest_mm = 1e-9;     // between two corners
-constexpr double unstretchable = 1e4;    // E A of a fibre that does not stretch, over E l^2 of the softest material
-constexpr int corners_per_turn = 120;    // a helix is shorter by 1.1e-4 through them
-constexpr double most_corners = 100000;  // of a helix
+constexpr double shortest_mm = 1e-9;    // between two corners
+constexpr double unstretchable = 1e4;   // E A of a fibre that does not stretch, over E l^2 of the softest material
+constexpr int corners_per_turn = 120;   // a helix is shorter by 1.1e-4 through them
+constexpr double max_corners = 100000;  // of a helix
 
 /// Curves of sensors are cut as fibres are, and have none of their stiffness.
 bool is_sensor(const FibreSpec& spec) {
@@ -34,7 +34,7 @@ std::vector<Vec3> corners_of(const FibreSpec& spec, const Helix& helix) {
   if (!(helix.pitch >= 0) || !std::isfinite(helix.pitch)) refuse_fibre(spec, "needs a pitch of 0 or more");
   if (!helix.start.allFinite() || !helix.axis.allFinite() || !(helix.axis.norm() > 0))
     refuse_fibre(spec, "needs an axis with a direction");
-  if (helix.turns * corners_per_turn > most_corners) refuse_fibre(spec, "has too many turns to follow");
+  if (helix.turns * corners_per_turn > max_corners) refuse_fibre(spec, "has too many turns to follow");
   const Vec3 along = helix.axis.normalized();
   const Vec3 across = helix.first - helix.first.dot(along) * along;
   if (!(across.norm() > 0) || !across.allFinite()) refuse_fibre(spec, "begins on its axis");
@@ -51,8 +51,8 @@ std::vector<Vec3> corners_of(const FibreSpec& spec, const Helix& helix) {
 }
 
 std::vector<Vec3> corners_of(const FibreSpec& spec) {
-  if (const auto* helix = std::get_if<Helix>(&spec.way)) return corners_of(spec, *helix);
-  const auto& points = std::get<std::vector<Vec3>>(spec.way);
+  if (const auto* helix = std::get_if<Helix>(&spec.path)) return corners_of(spec, *helix);
+  const auto& points = std::get<std::vector<Vec3>>(spec.path);
   if (points.size() < 2) refuse_fibre(spec, "needs at least two points");
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (!points[i].allFinite()) refuse_fibre(spec, "has a point that is not finite");
@@ -63,7 +63,7 @@ std::vector<Vec3> corners_of(const FibreSpec& spec) {
   return points;
 }
 
-/// What carries a fibre along: its region's elements, or all of its robot's.
+/// The elements with which a fibre moves: those of its region, or all of its robot.
 class Carrier {
  public:
   Carrier(Compilation& c, const FibreSpec& spec) : whole_(body_of(c, spec.robot)) {
@@ -93,7 +93,8 @@ class Carrier {
   std::unique_ptr<const Embedder> own_;
 };
 
-/// Between two points that one element carries along: how its vertices stretch it there, by 1 at rest.
+/// Returns the place between two points of one element: its stretch, 1 at rest, as a function of the element's
+/// vertices.
 FibrePlace place_between(const Points& rest, const EmbeddedPoint& a, const EmbeddedPoint& b, double length_mm) {
   FibrePlace place{{}, {}, {}, length_mm};
   const double apart = (b.at(rest) - a.at(rest)).norm();
@@ -141,7 +142,7 @@ void check_numbers(const FibreSpec& spec, const std::set<std::string>& names) {
                                         "' needs a stiffness above 0 N, Young's modulus times the area of its section");
 }
 
-/// What a fibre that does not stretch is held with [N].
+/// Returns the stiffness of a fibre that does not stretch [N].
 double unstretchable_N(const Compilation& c, const Embedder& embedder, const std::vector<Vec3>& corners) {
   double softest = std::numeric_limits<double>::infinity(), longest = 0;
   for (const Material& material : c.model.elements.materials)
@@ -150,7 +151,7 @@ double unstretchable_N(const Compilation& c, const Embedder& embedder, const std
   return unstretchable * softest * longest * longest;
 }
 
-/// Where a fibre is farthest outside what carries it.
+/// The point of a fibre that is farthest outside the elements with which it moves.
 struct Outside {
   Vec3 point = Vec3::Zero();
   double distance_mm = 0;
@@ -175,7 +176,7 @@ Outside cut(const Compilation& c, const Embedder& embedder, const std::vector<Ve
   return outside;
 }
 
-Fibre fibre_of(Compilation& c, const FibreSpec& spec, std::vector<std::pair<double, std::string>>& told) {
+Fibre fibre_of(Compilation& c, const FibreSpec& spec, std::vector<std::pair<double, std::string>>& reported) {
   if (body_of(c, spec.robot).embedder.empty())
     refuse_fibre(spec, "needs a body to run in, but every element belongs to a chamber");
   const Carrier carrier(c, spec);
@@ -189,11 +190,11 @@ Fibre fibre_of(Compilation& c, const FibreSpec& spec, std::vector<std::pair<doub
     refuse_fibre(spec, std::string("runs where ") + error.what());
   }
   const auto& [point, distance] = outside;
-  if (const double most = most_outside(carrier.whole(), c.model.rest, point); distance > most)
+  if (const double most = max_outside(carrier.whole(), c.model.rest, point); distance > most)
     refuse_fibre(spec, "runs " + number(distance) + " mm from the elements that carry it, " + too_far_text(most) +
                            ", at (" + number(point[0]) + ", " + number(point[1]) + ", " + number(point[2]) +
                            ") mm: move it into the body or onto it, or check the unit");
-  told.push_back({distance, spec.name});
+  reported.push_back({distance, spec.name});
   return fibre;
 }
 
@@ -201,7 +202,7 @@ Fibre fibre_of(Compilation& c, const FibreSpec& spec, std::vector<std::pair<doub
 
 std::vector<FibrePlace> places_along(Compilation& c, const std::string& name, const std::vector<Vec3>& points,
                                      const std::string& robot, const Origin& origin) {
-  FibreSpec spec{.name = name, .way = points, .stiffness_N = 0.0, .region = {}, .robot = robot, .origin = origin};
+  FibreSpec spec{.name = name, .path = points, .stiffness_N = 0.0, .region = {}, .robot = robot, .origin = origin};
   std::vector<std::pair<double, std::string>> outside;
   std::vector<FibrePlace> places = fibre_of(c, spec, outside).places;
   if (outside.front().first > 1e-6 * c.model.diagonal_mm)

@@ -95,7 +95,7 @@ void note_rest(Compilation& c, const Actuator& actuator) {
        : actuator.control == Control::filling
            ? std::string(control_name(actuator)) + " at rest, " + command_text(actuator, actuator.rest)
            : "rest ratio 1") +
-      ": where none is asked for, " + number(std::clamp(actuator.rest, actuator.low, actuator.high)) + " is taken.");
+      ": where none is requested, " + number(std::clamp(actuator.rest, actuator.low, actuator.high)) + " is taken.");
 }
 
 }  // namespace softkin

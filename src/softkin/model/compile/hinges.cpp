@@ -10,8 +10,8 @@ namespace softkin {
 
 namespace {
 
-/// Elements that share faces, and rigid regions, move as blocks; where blocks share a vertex or an edge alone they turn
-/// about it.
+/// Elements with common faces, and rigid regions, move as blocks; blocks with only a common vertex or edge turn about
+/// it.
 class Blocks {
  public:
   explicit Blocks(const Model& model)
@@ -25,7 +25,7 @@ class Blocks {
 
   [[nodiscard]] std::size_t count() const { return blocks_.size(); }
 
-  /// Per vertex that several blocks hold: these.
+  /// Returns, for each vertex of several blocks, these blocks.
   [[nodiscard]] std::map<Index, std::set<Index>> hinges() {
     std::vector<Index> first(model_.rest.rows(), -1);
     std::map<Index, std::set<Index>> all;
@@ -54,19 +54,19 @@ class Blocks {
   /// visit(corners ascending, element): of every face; of a quad the three least.
   template <class Visit>
   void each_face(const Visit& visit) const {
-    const auto tell = [&](auto corners, std::size_t element) {
+    const auto describe = [&](auto corners, std::size_t element) {
       std::sort(corners.begin(), corners.end());
       visit(corners[0], corners[1], corners[2], element);
     };
     for (std::size_t e = 0; e < model_.elements.tetrahedra.size(); ++e) {
       const Tetrahedron& t = model_.elements.tetrahedra[e];
-      for (int i = 0; i < 4; ++i) tell(std::array{t[(i + 1) % 4], t[(i + 2) % 4], t[(i + 3) % 4]}, e);
+      for (int i = 0; i < 4; ++i) describe(std::array{t[(i + 1) % 4], t[(i + 2) % 4], t[(i + 3) % 4]}, e);
     }
     for (std::size_t e = 0; e < model_.elements.prisms.size(); ++e) {
       const Prism& p = model_.elements.prisms[e];
       const std::size_t element = model_.elements.tetrahedra.size() + e;
-      for (const int i : {0, 3}) tell(std::array{p[i], p[i + 1], p[i + 2]}, element);
-      for (int i = 0; i < 3; ++i) tell(std::array{p[i], p[(i + 1) % 3], p[i + 3], p[(i + 1) % 3 + 3]}, element);
+      for (const int i : {0, 3}) describe(std::array{p[i], p[i + 1], p[i + 2]}, element);
+      for (int i = 0; i < 3; ++i) describe(std::array{p[i], p[(i + 1) % 3], p[i + 3], p[(i + 1) % 3 + 3]}, element);
     }
   }
 
@@ -186,14 +186,14 @@ std::string hinge_text(const std::vector<Index>& shared) {
 }  // namespace
 
 void check_hinges(const Model& model, const Origin& origin) {
-  constexpr std::size_t most_blocks = 200;
+  constexpr std::size_t max_blocks = 200;
   if (model.formulation != Formulation::physical) return;
   Blocks blocks(model);
   if (blocks.count() <= 1) return;
   const std::map<Index, std::set<Index>> hinges = blocks.hinges();
   if (hinges.empty()) return;  // parts apart, each held
   const std::map<Index, Place> places = places_of(model, blocks);
-  if (places.size() > most_blocks)
+  if (places.size() > max_blocks)
     throw InvalidInput(origin, "the body falls into " + std::to_string(places.size()) +
                                    " pieces that hang together by single vertices or edges, the first of them " +
                                    std::to_string(hinges.begin()->first) + " (from 0): mend the mesh there");

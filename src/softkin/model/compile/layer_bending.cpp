@@ -61,12 +61,12 @@ struct JointSide {
   double moment = 0;    // at rest [N]
   Eigen::Vector2d along = Eigen::Vector2d::Zero();
   Vec3 normal = Vec3::Zero(), edge = Vec3::Zero();
-  double stretch = 0;  // length of the edge there per share of it [mm]
+  double stretch = 0;  // length of the edge per fraction of it at this point [mm]
 
-  JointSide(const LayerSpec& spec, const Beside& beside, double share, const CavityFace& face, const Mat3& bending,
+  JointSide(const LayerSpec& spec, const Beside& beside, double fraction, const CavityFace& face, const Mat3& bending,
             const Points& rest) {
     std::array<double, 3> at{};
-    at[beside.corner] = beside.ascending ? 1 - share : share;
+    at[beside.corner] = beside.ascending ? 1 - fraction : fraction;
     at[(beside.corner + 1) % 3] = 1 - at[beside.corner];
     const TrianglePoint point = triangle_point(at[1], at[2], 0);
     side.vertices = nodes_of(face);
@@ -88,14 +88,14 @@ struct JointSide {
   }
 };
 
-/// Its height above an edge between corners, were it flat [mm].
+/// Returns the height of a face above an edge between corners, as if it were flat [mm].
 double height_above(const CavityFace& face, std::size_t corner, const Points& rest) {
   const Vec3 a = vertex_at(rest, face.corners[corner]), b = vertex_at(rest, face.corners[(corner + 1) % 3]),
              c = vertex_at(rest, face.corners[(corner + 2) % 3]);
   return (b - a).cross(c - a).norm() / (b - a).norm();
 }
 
-/// What holds two faces in line, at two points of their edge.
+/// Adds the joints that keep the angle between two faces, at two points of their edge.
 class Joints {
  public:
   Joints(const LayerSpec& spec, const Points& rest, const std::vector<bool>& held, const Mat3& bending, Layer& layer)
@@ -105,8 +105,8 @@ class Joints {
     if (held_[one.face] && held_[other.face]) return;
     if (held_[one.face]) return add(other, one);
     constexpr double gauss = 0.28867513459481287;  // of the edge, from its middle
-    for (const double share : {0.5 - gauss, 0.5 + gauss}) {
-      const JointSide first = side_of(one, share), second = side_of(other, share);
+    for (const double fraction : {0.5 - gauss, 0.5 + gauss}) {
+      const JointSide first = side_of(one, fraction), second = side_of(other, fraction);
       LayerJoint joint{{first.side, second.side}, {}};
       BendingJoint& own = joint.joint;
       own.along = first.along;
@@ -118,7 +118,7 @@ class Joints {
       own.moment = {own.upwards[0] * first.moment, own.upwards[1] * second.moment};
       const double one_side = first.rigidity / height_above(layer_.faces[one.face], one.corner, rest_);
       if (held_[other.face]) {
-        own.share = {1, 0};
+        own.fraction = {1, 0};
         own.penalty = clamp_penalty * one_side;
       } else {
         own.penalty =
@@ -129,8 +129,8 @@ class Joints {
   }
 
  private:
-  [[nodiscard]] JointSide side_of(const Beside& beside, double share) const {
-    return {spec_, beside, share, layer_.faces[beside.face], bending_, rest_};
+  [[nodiscard]] JointSide side_of(const Beside& beside, double fraction) const {
+    return {spec_, beside, fraction, layer_.faces[beside.face], bending_, rest_};
   }
 
   const LayerSpec& spec_;

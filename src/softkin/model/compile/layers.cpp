@@ -14,9 +14,9 @@ namespace softkin {
 namespace {
 
 constexpr double to_newtons_per_mm3 = 1e-9;  // of kg/m^3 by m/s^2
-constexpr double least_across = 1e-3;        // of a direction, along a face
+constexpr double min_across = 1e-3;          // of a direction, along a face
 constexpr double finest_of_edge = 0.5;       // of an element's edge: triangles of a surface that elements carry along
-constexpr std::size_t most_layer_triangles = 200000;
+constexpr std::size_t max_layer_triangles = 200000;
 
 [[noreturn]] void refuse_layer(const LayerSpec& spec, const std::string& what) {
   throw InvalidInput(spec.origin, "layer '" + spec.name + "' " + what);
@@ -112,7 +112,7 @@ std::vector<LayerPlace> carried_places(Compilation& c, const LayerSpec& spec, Tr
   try {
     surface = refined(
         std::move(surface), [&](const Vec3& middle) { return finest_of_edge * body.embedder.edge_near(middle); },
-        most_layer_triangles);
+        max_layer_triangles);
     for (Index i = 0; i < surface.vertices.rows(); ++i)
       points.push_back(body.embedder.embed(vertex_at(surface.vertices, i)));
   } catch (const InvalidInput& error) {
@@ -122,7 +122,7 @@ std::vector<LayerPlace> carried_places(Compilation& c, const LayerSpec& spec, Tr
   for (Index i = 0; i < embedded.rows(); ++i) {
     const Vec3 vertex = vertex_at(surface.vertices, i);
     const double distance = points[i].distance_mm;
-    if (const double most = most_outside(body, c.model.rest, vertex); distance > most)
+    if (const double most = max_outside(body, c.model.rest, vertex); distance > most)
       refuse_layer(spec, "has a point, " + point_text(vertex) + " mm, that is " + number(distance) +
                              " mm from the body, " + too_far_text(most) + ": check its unit");
     embedded.row(i) = points[i].at(c.model.rest).transpose();
@@ -207,7 +207,7 @@ LayerFrame::LayerFrame(const LayerSpec& spec, const TrianglePoint& point, const 
     along = Vec3::Unit(axis);
   }
   along = (along.normalized() - along.normalized().dot(normal) * normal).eval();
-  if (along.norm() < least_across)
+  if (along.norm() < min_across)
     refuse_layer(spec, "has a direction that stands across one of its faces: no direction in it follows");
   axes << along.normalized(), normal.cross(along.normalized());
   Eigen::Matrix2d jacobian;

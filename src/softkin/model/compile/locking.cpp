@@ -8,10 +8,10 @@ namespace softkin {
 
 namespace {
 
-constexpr std::size_t most_samples = 300;  // of thousands of faces: the mean holds to a few percent
-constexpr double least_excess = 0.1;       // elastic constants are hardly known better than that
-constexpr double mixed_ratio = 1.0 / 3;    // Poisson's, of what mixed elements leave to their strains (physical::split)
-constexpr double worthwhile = 0.7;         // of the excess, that mixed elements must not leave
+constexpr std::size_t max_samples = 300;  // of thousands of faces: the mean holds to a few percent
+constexpr double min_excess = 0.1;        // elastic constants are hardly known better than that
+constexpr double mixed_ratio = 1.0 / 3;   // Poisson's, of what mixed elements leave to their strains (physical::split)
+constexpr double worthwhile = 0.7;        // of the excess, that mixed elements must not leave
 
 struct Wall {
   double compliance = 0;                // in bending, of a piece of unit length
@@ -41,7 +41,7 @@ std::vector<Wall> walls_of(const Model& model) {
   const auto is_rigid = [&rigid](Index v) { return rigid[v]; };
   std::vector<Wall> walls;
   for (const WallSample& sample :
-       wall_samples(model.rest, model.elements.tetrahedra, model.elements.prisms, most_samples)) {
+       wall_samples(model.rest, model.elements.tetrahedra, model.elements.prisms, max_samples)) {
     const std::size_t element = sample.element;
     const Tetrahedron& corners = model.elements.tetrahedra[element];
     if (std::all_of(corners.begin(), corners.end(), is_rigid)) continue;
@@ -71,10 +71,10 @@ void doubt_linear_tetrahedra(Compilation& c) {
   if (model.formulation != Formulation::physical || model.elements.tetrahedra.empty() ||
       !model.elements.edge_nodes.empty())
     return;
-  // thin and soft walls bend: what they give way by adds up, as in a chain of springs
+  // thin and soft walls bend: their compliances add up, as of springs in series
   const std::vector<Wall> walls = walls_of(model);
   const double excess = excess_of(walls, &Wall::excess), as_mixed = excess_of(walls, &Wall::excess_mixed);
-  if (!(excess > least_excess)) return;
+  if (!(excess > min_excess)) return;
   double whole = 0, across2 = 0;
   for (const Wall& wall : walls) {
     whole += wall.compliance;

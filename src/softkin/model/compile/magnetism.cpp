@@ -9,9 +9,9 @@ namespace softkin {
 namespace {
 
 // [mT]; the strongest magnets that there are have 1,500, and what has less than the other was given in tesla
-constexpr double most_remanence = 2000, least_remanence = 1;
-constexpr Index most_points = 1000;  // splines through so many take a second
-constexpr double ungiven = 1e-9;     // of a grid's step, rounding
+constexpr double max_remanence = 2000, min_remanence = 1;
+constexpr Index max_points = 1000;  // splines through so many take a second
+constexpr double ungiven = 1e-9;    // of a grid's step, rounding
 
 Vec3 unit(const ActuatorSpec& spec, const Vec3& vector, const std::string& what) {
   if (!vector.allFinite() || !(vector.norm() > 0))
@@ -51,8 +51,8 @@ struct CheckedField {
     for (int axis = 0; axis < 3; ++axis) {
       if (field.counts[axis] < 4 || !(field.step[axis] > 0) || !std::isfinite(field.step[axis]))
         refuse(spec, "needs a grid of at least 4 points along every axis, that ascend");
-      if (field.counts[axis] > most_points)
-        refuse(spec, "needs a grid of at most " + std::to_string(most_points) + " points along an axis, not " +
+      if (field.counts[axis] > max_points)
+        refuse(spec, "needs a grid of at most " + std::to_string(max_points) + " points along an axis, not " +
                          std::to_string(field.counts[axis]));
       points *= field.counts[axis];
     }
@@ -125,7 +125,7 @@ bool magnetise(const Compilation& c, Magnetism& magnetism) {
   return any;
 }
 
-/// Refuses a grid that does not hold what is magnetic.
+/// Refuses a grid that does not contain all magnetic elements.
 void check_grid(const Compilation& c, const Magnetism& magnetism, const FieldSource& source, const Origin& origin) {
   const auto* grid = std::get_if<GridField>(&source.field);
   if (grid == nullptr) return;
@@ -152,7 +152,7 @@ void check_grid(const Compilation& c, const Magnetism& magnetism, const FieldSou
 void doubt_remanence(Model& model, const Magnetism& magnetism) {
   double most = 0;
   for (const Vec3& remanence : magnetism.remanence) most = std::max(most, remanence.norm());
-  if (most > most_remanence || (most > 0 && most < least_remanence))
+  if (most > max_remanence || (most > 0 && most < min_remanence))
     model.warnings.push_back("The remanence is up to " + number(most, 4) +
                              " mT; magnets have up to 1,500 mT: is it in mT?");
 }

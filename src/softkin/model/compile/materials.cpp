@@ -241,7 +241,7 @@ std::string other_sets(const NamedMaterial& named) {
   return text;
 }
 
-/// What is said of a material of the table: how much its sources differ.
+/// Returns the note on a material of the table: how much its sources differ.
 std::string note_of(const NamedMaterial& named, const std::string& regions) {
   double own = 0, least = 0, most = 0;
   for (const NamedMaterial::Set& set : named.sets) {

@@ -4,15 +4,15 @@
 
 namespace softkin {
 
-/// What the factor of a robot's stiffness matrix takes, about.
+/// The approximate size of the factor of a robot's stiffness matrix.
 struct MemoryNeed {
   double unknowns = 0;  // three of every vertex of an element
-  double values = 0;    // numbers of the factor, and those that wait meanwhile
+  double values = 0;    // entries of the factor and of the update matrices stored meanwhile
 };
 
 /// Estimates the factor by nested dissection: elements are halved at the median of their centroids along the longest
-/// axis again and again, and the vertices that two halves share are eliminated after both. It takes about 1e-6 s for
-/// each vertex of each element.
+/// axis recursively, and the common vertices of two halves are eliminated after both. It takes about 1e-6 s for each
+/// vertex of each element.
 ///
 /// vertices    #V by 3, at rest [mm]
 /// tetrahedra, edge_nodes, prisms  as of a Mesh

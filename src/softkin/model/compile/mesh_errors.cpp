@@ -64,7 +64,8 @@ void refuse_errors_of(Compilation& c, const RobotPart& robot, const IndexRange& 
 
 void refuse_mesh_errors(Compilation& c) {
   const Model& model = c.model;
-  if (!share_a_side(model.elements.tetrahedra, c.chamber_tetrahedra, model.elements.prisms, model.rest.rows())) return;
+  if (!have_common_side(model.elements.tetrahedra, c.chamber_tetrahedra, model.elements.prisms, model.rest.rows()))
+    return;
   std::vector<RobotPart> robots = c.spec.robots;
   if (robots.empty())
     robots.push_back({"", "", 0, 0, 0, c.spec.mesh_options.origin, c.spec.mesh_options.accept_errors});

@@ -66,7 +66,7 @@ class MisplacedParts {
       if (const auto* cable = actuator.as<CableSpec>())
         if (const auto points = coordinates(cable->points)) doubt_path("cable '" + actuator.name + "'", *points);
     for (const FibreSpec& fibre : spec.fibres)
-      if (const auto* points = std::get_if<std::vector<Vec3>>(&fibre.way))
+      if (const auto* points = std::get_if<std::vector<Vec3>>(&fibre.path))
         doubt_path("fibre '" + fibre.name + "'", *points);
     for (const auto& sensor : spec.sensors)
       if (sensor->kind == SensorKind::length) doubt_path("sensor '" + sensor->name + "'", sensor->points);

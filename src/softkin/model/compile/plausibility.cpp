@@ -20,7 +20,7 @@ struct Range {
   [[nodiscard]] bool holds(double value) const { return value >= least && value <= most; }
 };
 
-// What the robots of this field have, with room on both sides. Beyond it a number is not refused but asked about.
+// Usual values of soft robots, with a margin on both sides. Numbers outside of them are not refused, but warned of.
 constexpr Range sizes_mm{1, 1e4}, usual_sizes_mm{5, 3000};
 // 0.1 m/s^2 is less than on any moon that has been landed on, 100 m/s^2 four times Jupiter's
 constexpr Range gravities{0.1, 100}, usual_gravities{1, 30};

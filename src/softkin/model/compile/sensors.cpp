@@ -14,7 +14,7 @@ TurningSection section_of(Compilation& c, const SensorSpec& spec, const std::str
   const EmbeddedPoint mean = embed_point(c, {region, spec.origin}, "sensor '" + spec.name + "'");
   if (!span_plane(c.model.rest, mean.vertices))
     refuse_sensor(spec,
-                  "has the section '" + region + "', whose vertices are on a line: it cannot be told how it turns");
+                  "has the section '" + region + "', whose vertices are on a line: its rotation is not determined");
   const Vec3 middle = mean.at(c.model.rest);
   std::vector<Vec3> arms;
   for (const Index v : mean.vertices) arms.push_back(vertex_at(c.model.rest, v) - middle);

@@ -14,7 +14,7 @@ namespace softkin {
 
 namespace {
 
-/// What turns is held by one entry: where another would hold it changes with the angle.
+/// Refuses a vertex that turns and that another support holds too, as its place would depend on the angle.
 void check_turned(const Compilation& c, const FixedSpec& spec, const std::vector<Index>& vertices) {
   for (const Index v : vertices) {
     const bool held =
@@ -95,7 +95,7 @@ void check_held(const Compilation& c, const RigidSpec& spec, const RigidRegion& 
   }
 }
 
-/// What holds a rigid region bears all of it.
+/// Assigns all vertices of a held rigid region to one support.
 void bear(Model& model, const RigidRegion& rigid) {
   Index bearer = -1;
   for (const Index v : rigid.vertices)
@@ -256,7 +256,7 @@ void compile_supports(Compilation& c) {
 }
 
 void check_anchoring(const Model& model, const Origin& origin) {
-  constexpr std::size_t most_named = 5;
+  constexpr std::size_t max_named = 5;
   Parts parts = connected_parts(model);
   std::map<Index, std::vector<Index>> members;
   for (Index v = 0; v < model.rest.rows(); ++v)
@@ -265,11 +265,11 @@ void check_anchoring(const Model& model, const Origin& origin) {
   std::size_t loose = 0;
   for (const auto& [root, vertices] : members) {
     const std::string freedom = freedom_of(model, vertices);
-    if (freedom.empty() || ++loose > most_named) continue;
+    if (freedom.empty() || ++loose > max_named) continue;
     text += (loose == 1 ? "" : "; ") + std::string(members.size() == 1 ? "the robot" : "a part") + " of " + freedom;
   }
   if (loose == 0) return;
-  if (loose > most_named) text += "; and " + counted(loose - most_named, "more part", "more parts");
+  if (loose > max_named) text += "; and " + counted(loose - max_named, "more part", "more parts");
   throw InvalidInput(origin, text + (loose == 1 ? ": fix more of it, or connect it to a part that is held"
                                                 : ": fix more of them, or connect them to a part that is held"));
 }

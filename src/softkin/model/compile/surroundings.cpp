@@ -14,11 +14,11 @@ namespace {
 
 constexpr double finest_sagitta = 0.1;       // over the distance
 constexpr double halfspace_diagonals = 100;  // that its triangle reaches to every side
-constexpr double most_diagonals = 1e6;       // from the origin
+constexpr double max_diagonals = 1e6;        // from the origin
 constexpr double kilograms = 1e-9;           // of a mm^3 at 1 kg/m^3
 // of commands: so far that only numbers in a wrong unit are farther
-constexpr double most_way = 10;    // over the robot's diagonal
-constexpr double most_force = 10;  // over the softest modulus times the diagonal's square
+constexpr double max_path = 10;   // over the robot's diagonal
+constexpr double max_force = 10;  // over the softest modulus times the diagonal's square
 constexpr const char* axis_names = "xyz";
 
 std::string label(const ObstacleSpec& spec) {
@@ -78,7 +78,7 @@ std::string complaint_about_solid(const ObstacleShape& solid) {
   return "";
 }
 
-/// What obstacles and bodies have in common.
+/// Checks the settings that obstacles and bodies have in common.
 template <class Spec>
 void check_solid(const Spec& spec, const std::set<std::string>& regions, std::set<std::string>& names) {
   const std::string kind = label(spec).substr(0, label(spec).find(' '));
@@ -108,16 +108,16 @@ FacetedSurface facets_of(const Compilation& c, const Spec& spec) {
   return faceted(std::get<Halfspace>(spec.shape), bounds.center(), halfspace_diagonals * c.model.diagonal_mm);
 }
 
-/// Coordinates so far away that their rounding would show beside the robot, or that are no numbers.
+/// Refuses coordinates so far away that their rounding errors would matter at the robot's size, or that are no numbers.
 template <class Spec>
 void check_reach(const Compilation& c, const Spec& spec, const Points& vertices) {
-  const double most = most_diagonals * c.model.diagonal_mm;
+  const double most = max_diagonals * c.model.diagonal_mm;
   if (!(vertices.array().abs() <= most).all())
     refuse_solid(spec, "it reaches farther from the origin than a million of the robot's diagonals, " +
                            number(most, 3) + " mm: check its numbers and their unit");
 }
 
-/// Vertices of no element. fixed: they stay where they are, but for what is commanded
+/// Appends vertices of no element. fixed: they stay in place, apart from commanded motions
 void append_vertices(Model& model, const Points& vertices, bool fixed) {
   const Index first = model.rest.rows(), rows = first + vertices.rows();
   for (Points* points : {&model.rest, &model.held.at, &model.loads.dead}) points->conservativeResize(rows, 3);
@@ -154,7 +154,7 @@ Index add_part(Compilation& c, const Spec& spec, const FacetedSurface& made, Con
   return first;
 }
 
-/// A command to what surrounds the robot.
+/// Adds a command of an obstacle or a body.
 void add_command(Compilation& c, const std::string& name, Drive drive, double most, const Origin& origin) {
   Model& model = c.model;
   for (const Actuator& actuator : model.actuators)
@@ -178,7 +178,7 @@ void add_obstacle(Compilation& c, const ObstacleSpec& spec, double area) {
   c.model.contact.area.resize(c.model.rest.rows(), area);
   for (int axis = 0; axis < 3; ++axis)
     if (spec.motion[axis])
-      add_command(c, spec.name + "_" + axis_names[axis], MotionCommand{part, axis}, most_way * c.model.diagonal_mm,
+      add_command(c, spec.name + "_" + axis_names[axis], MotionCommand{part, axis}, max_path * c.model.diagonal_mm,
                   spec.origin);
 }
 
@@ -204,7 +204,7 @@ void weigh(Compilation& c, const BodySpec& spec, FreeBody& body, double volume) 
         body.center.weights[i] * body.mass_kg * c.spec.loads.gravity.transpose();
 }
 
-void add_body(Compilation& c, const BodySpec& spec, double least_area) {
+void add_body(Compilation& c, const BodySpec& spec, double min_area) {
   Model& model = c.model;
   FacetedSurface made = facets_of(c, spec);
   try {
@@ -230,7 +230,7 @@ void add_body(Compilation& c, const BodySpec& spec, double least_area) {
   body.center = mean_at(made.surface.vertices, first, center);
   for (Index v = first; v < model.rest.rows(); ++v) {
     body.vertices.push_back(v);
-    area[v] = std::max(area[v], least_area);
+    area[v] = std::max(area[v], min_area);
   }
   weigh(c, spec, body, volume);
   for (const Marker& marker : model.markers)
@@ -240,9 +240,9 @@ void add_body(Compilation& c, const BodySpec& spec, double least_area) {
   model.rigid.push_back({spec.name, body.vertices});
   model.bodies.push_back(std::move(body));
   add_command(c, spec.name + "_hold", HoldCommand{index}, 1, spec.origin);
-  const double most_N = most_force * model.contact.modulus_MPa * model.diagonal_mm * model.diagonal_mm;
+  const double max_N = max_force * model.contact.modulus_MPa * model.diagonal_mm * model.diagonal_mm;
   for (int axis = 0; axis < 3; ++axis)
-    add_command(c, spec.name + "_f" + axis_names[axis], ForceCommand{.body = index, .axis = axis}, most_N, spec.origin);
+    add_command(c, spec.name + "_f" + axis_names[axis], ForceCommand{.body = index, .axis = axis}, max_N, spec.origin);
 }
 
 }  // namespace
@@ -269,9 +269,9 @@ void check_surroundings(const Compilation& c, const ContactSpec& contact) {
   for (const ObstacleSpec& spec : contact.obstacles) check_solid(spec, regions, names);
 }
 
-void add_surroundings(Compilation& c, const ContactSpec& contact, double least_area) {
-  for (const BodySpec& spec : contact.bodies) add_body(c, spec, least_area);
-  for (const ObstacleSpec& spec : contact.obstacles) add_obstacle(c, spec, least_area);
+void add_surroundings(Compilation& c, const ContactSpec& contact, double min_area) {
+  for (const BodySpec& spec : contact.bodies) add_body(c, spec, min_area);
+  for (const ObstacleSpec& spec : contact.obstacles) add_obstacle(c, spec, min_area);
 }
 
 }  // namespace softkin

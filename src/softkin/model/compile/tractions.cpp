@@ -17,7 +17,7 @@ std::string title(const TractionSpec& spec) {
   return "traction '" + spec.name + "'";
 }
 
-/// The faces of the body that a region is, with normals outwards; a quad is the mean of its two ways to be triangles.
+/// Finds the faces of the body in a region, with normals outwards; a quad is the mean of its two triangulations.
 class BodyFaces {
  public:
   explicit BodyFaces(const Compilation& c)
@@ -30,7 +30,7 @@ class BodyFaces {
     return faces;
   }
 
-  /// wanted: becomes what is of the region, but not on the surface
+  /// wanted: becomes the faces of the region that are not on the surface
   [[nodiscard]] std::vector<LoadedFace> of(const RegionRef& where, std::set<std::vector<Index>>& wanted) const {
     const Region region = c_.regions.resolve(where);
     const bool named = region.dimension == 2;  // a group of faces: these; else all between its vertices
@@ -106,7 +106,7 @@ void add_dead(Model& model, const Vec3& traction_MPa, const LoadedFace& loaded) 
   const std::vector<Index> nodes = nodes_of(loaded.face);
   for (const TrianglePoint& point : triangle_points(nodes.size())) {
     const SurfaceEdges edges(point, nodes, model.rest);
-    const double area = loaded.share * point.weight * edges.u.cross(edges.v).norm();
+    const double area = loaded.fraction * point.weight * edges.u.cross(edges.v).norm();
     for (std::size_t i = 0; i < nodes.size(); ++i)
       model.loads.dead.row(nodes[i]) += area * point.shape[i] * traction_MPa.transpose();
   }
@@ -114,8 +114,8 @@ void add_dead(Model& model, const Vec3& traction_MPa, const LoadedFace& loaded) 
 
 }  // namespace
 
-LoadedFace loaded_face(const Compilation& c, const Triangle& corners, double share) {
-  return {face_of(c, corners), share};
+LoadedFace loaded_face(const Compilation& c, const Triangle& corners, double fraction) {
+  return {face_of(c, corners), fraction};
 }
 
 std::vector<LoadedFace> surface_faces(const Compilation& c, const RegionRef& where) {

@@ -6,9 +6,9 @@ namespace softkin {
 
 namespace {
 
-/// That a support turns what it holds by, either way [degrees]: ten times around, more than anything soft is twisted.
-constexpr double most_degrees = 3600;
-/// Vertices nearer to the axis than this share of the robot's diagonal do not turn.
+/// Largest angle of a support's turn, in either sense [degrees]: ten revolutions, more than a soft robot is twisted.
+constexpr double max_degrees = 3600;
+/// Vertices nearer to the axis than this fraction of the robot's diagonal do not turn.
 constexpr double on_axis = 1e-9;
 
 Vec3 mean_of_vertices(const Points& points, const std::vector<Index>& vertices) {
@@ -31,11 +31,11 @@ void add_turn(Compilation& c, const FixedSpec& spec, const Support& support) {
     throw InvalidInput(spec.where.origin, label(spec.where) + " " + what);
   };
   if (!std::all_of(spec.axes.begin(), spec.axes.end(), [](bool axis) { return axis; }))
-    fail("is turned, but not held along all of x, y and z: what slides along an axis cannot be told where to turn");
+    fail("is turned, but not held along all of x, y and z: a support that slides along an axis cannot be turned");
   const double length = rotation.axis.stableNorm();
   if (!(length > 0) || !std::isfinite(length)) fail("is turned about an axis that has no direction");
-  if (!(std::abs(rotation.degrees) <= most_degrees))
-    fail("is turned by " + number(rotation.degrees) + " degrees: at most " + number(most_degrees) + " either way");
+  if (!(std::abs(rotation.degrees) <= max_degrees))
+    fail("is turned by " + number(rotation.degrees) + " degrees: at most " + number(max_degrees) + " either way");
   if (rotation.about && !rotation.about->allFinite()) fail("is turned about a point that is not finite");
   SupportTurn turn{.support = support.name,
                    .axis = rotation.axis.stableNormalized(),
@@ -96,8 +96,8 @@ void add_turn_commands(Compilation& c) {
                                             "' has the name of an actuator: give one of them another name");
     command.drive = TurnCommand{static_cast<Index>(t)};
     command.control = Control::load;
-    command.low = -most_degrees;
-    command.high = most_degrees;
+    command.low = -max_degrees;
+    command.high = max_degrees;
     command.rest = turn.degrees;
     model.actuators.push_back(std::move(command));
   }

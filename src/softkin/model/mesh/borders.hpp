@@ -4,8 +4,8 @@
 
 namespace softkin {
 
-/// The lines along which a surface ends, by its edges of one triangle alone: closed ones begin and end with the same
-/// vertex. Where several meet, each goes on along any of them.
+/// Returns the border lines of a surface, by its edges of one triangle alone: closed ones begin and end with the same
+/// vertex. Where several meet, each continues along any of them.
 ///
 /// beside  of each triangle the vertices on its edges 01, 12, 20; -1: none
 [[nodiscard]] std::vector<std::vector<Index>> borders_of(const std::vector<Triangle>& triangles,

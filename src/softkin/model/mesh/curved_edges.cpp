@@ -41,7 +41,7 @@ class Curving {
         bulges.aim(nodes.find(low, high), Vec3::Zero(), plane_of(e));
     }
     bulges.go(surface_);
-    bulges.tell(result_);
+    bulges.describe(result_);
     return result_;
   }
 

@@ -8,9 +8,9 @@ namespace softkin {
 
 namespace {
 
-constexpr double least_quality = 0.1;    // Jacobian over that with straight edges
-constexpr double good_quality = 0.7;     // below it nodes inside make room
-constexpr double farthest_share = 0.24;  // of an edge's length; compile() refuses a node beyond a quarter
+constexpr double min_quality = 0.1;         // Jacobian over that with straight edges
+constexpr double good_quality = 0.7;        // below it nodes inside make room
+constexpr double farthest_fraction = 0.24;  // of an edge's length; compile() refuses a node beyond a quarter
 
 }  // namespace
 
@@ -40,13 +40,13 @@ Vec3 EdgeBulges::middle(const Node& node) const {
 }
 
 void EdgeBulges::place(Index node) {
-  mesh_.vertices.row(node) = (middle(nodes_[node]) + nodes_[node].share * nodes_[node].bulge).transpose();
+  mesh_.vertices.row(node) = (middle(nodes_[node]) + nodes_[node].fraction * nodes_[node].bulge).transpose();
 }
 
 /// No further than a quarter of the edge's length.
-Vec3 EdgeBulges::allowed(const Node& node, const Vec3& way) const {
-  const double most = farthest_share * (mesh_.vertices.row(node.low) - mesh_.vertices.row(node.high)).norm();
-  const Vec3 inside = way - way.dot(node.plane) * node.plane;
+Vec3 EdgeBulges::allowed(const Node& node, const Vec3& path) const {
+  const double most = farthest_fraction * (mesh_.vertices.row(node.low) - mesh_.vertices.row(node.high)).norm();
+  const Vec3 inside = path - path.dot(node.plane) * node.plane;
   return inside.norm() > most ? Vec3(most * inside.normalized()) : inside;
 }
 
@@ -58,7 +58,7 @@ void EdgeBulges::aim(Index node, const Vec3& bulge, const Vec3& plane) {
   aimed.aimed = !bulge.isZero(0);
 }
 
-bool EdgeBulges::may_give_way(const Node& node) const {
+bool EdgeBulges::may_yield(const Node& node) const {
   return !node.aimed && (!node.surface || !node.plane.isZero(0));
 }
 
@@ -69,10 +69,10 @@ double EdgeBulges::quality(Index element) const {
     nodes.col(0) *= -1;
     straight = -straight;
   }
-  return straight > 0 ? least_jacobian_bound(nodes) / straight : 1;  // one without volume is refused elsewhere
+  return straight > 0 ? min_jacobian_bound(nodes) / straight : 1;  // one without volume is refused elsewhere
 }
 
-/// What its elements lack in quality, summed up.
+/// Returns the sum of the missing quality of the elements around a node.
 double EdgeBulges::deficit_around(Index node, double wanted) const {
   double deficit = 0;
   for (std::size_t i = nodes_[node].begin; i < nodes_[node].end; ++i)
@@ -85,7 +85,7 @@ std::vector<Index> EdgeBulges::elements_below(double least) const {
   for (std::size_t t = 0; t < mesh_.tetrahedra.size(); ++t) {
     const EdgeNodes& nodes = mesh_.edge_nodes[t];
     const bool straight = std::all_of(nodes.begin(), nodes.end(),
-                                      [&](Index n) { return nodes_[n].share == 0 || nodes_[n].bulge.isZero(0); });
+                                      [&](Index n) { return nodes_[n].fraction == 0 || nodes_[n].bulge.isZero(0); });
     if (!straight && quality(t) < least) bad.push_back(t);
   }
   return bad;
@@ -101,7 +101,7 @@ Vec3 EdgeBulges::mean_bulge(Index node) const {
       const Node& near = nodes_[other];
       const bool touches = near.low == own.low || near.low == own.high || near.high == own.low || near.high == own.high;
       if (other == node || !touches) continue;
-      sum += near.share * near.bulge;
+      sum += near.fraction * near.bulge;
       ++count;
     }
   return count > 0 ? Vec3(sum / count) : sum;
@@ -112,7 +112,7 @@ void EdgeBulges::go_along(const std::vector<Index>& bad, const SmoothSurface& su
   for (const Index element : bad)
     for (const Index v : mesh_.edge_nodes[element]) {
       Node& node = nodes_[v];
-      if (!may_give_way(node) || !node.bulge.isZero(0)) continue;
+      if (!may_yield(node) || !node.bulge.isZero(0)) continue;
       node.bulge = allowed(node, surface.inner_bulge(node.low, node.high));
       place(v);
     }
@@ -120,13 +120,13 @@ void EdgeBulges::go_along(const std::vector<Index>& bad, const SmoothSurface& su
 
 void EdgeBulges::make_room(Index node, const SmoothSurface& surface, double wanted) {
   Node& own = nodes_[node];
-  if (!may_give_way(own)) return;
+  if (!may_yield(own)) return;
   const Vec3 mean = mean_bulge(node), inner = surface.inner_bulge(own.low, own.high);
   Vec3 best = own.bulge;
   double least = deficit_around(node, wanted);
-  for (const Vec3& way : {inner, mean, Vec3(2 * mean), Vec3(0.5 * (inner + mean)), Vec3(0.5 * mean), Vec3(0 * mean)}) {
+  for (const Vec3& path : {inner, mean, Vec3(2 * mean), Vec3(0.5 * (inner + mean)), Vec3(0.5 * mean), Vec3(0 * mean)}) {
     if (!(least > 0)) break;
-    own.bulge = allowed(own, way);
+    own.bulge = allowed(own, path);
     place(node);
     if (const double left = deficit_around(node, wanted); left < least) {
       least = left;
@@ -142,21 +142,21 @@ void EdgeBulges::make_room(Index node, const SmoothSurface& surface, double want
 /// wholly  to the middles: to come to an end where neighbours undo each other
 void EdgeBulges::hold_back(Index element, bool wholly) {
   const EdgeNodes& nodes = mesh_.edge_nodes[element];
-  std::array<double, 6> shares;
-  for (int e = 0; e < 6; ++e) shares[e] = nodes_[nodes[e]].share;
+  std::array<double, 6> fractions;
+  for (int e = 0; e < 6; ++e) fractions[e] = nodes_[nodes[e]].fraction;
   const auto draw = [&](double left) {
     for (int e = 0; e < 6; ++e) {
-      nodes_[nodes[e]].share = left * shares[e];
+      nodes_[nodes[e]].fraction = left * fractions[e];
       place(nodes[e]);
     }
   };
   constexpr int steps = 20;
   for (int step = wholly ? steps : 1; step <= steps; ++step) {
     draw(1 - static_cast<double>(step) / steps);
-    if (step == steps || quality(element) >= least_quality) break;
+    if (step == steps || quality(element) >= min_quality) break;
   }
-  for (const Index node : nodes)  // what never was to move is not held back
-    if (nodes_[node].bulge.isZero(0)) nodes_[node].share = 1;
+  for (const Index node : nodes)  // a node without a target does not count as held back
+    if (nodes_[node].bulge.isZero(0)) nodes_[node].fraction = 1;
 }
 
 void EdgeBulges::go(const SmoothSurface& surface) {
@@ -168,7 +168,7 @@ void EdgeBulges::go(const SmoothSurface& surface) {
     go_along(bad, surface);
     bad = elements_below(good_quality);
   }
-  for (const double wanted : {good_quality, least_quality}) {
+  for (const double wanted : {good_quality, min_quality}) {
     bad = elements_below(wanted);
     for (int sweep = 0; sweep < sweeps && !bad.empty(); ++sweep) {
       for (const Index element : bad)
@@ -178,23 +178,23 @@ void EdgeBulges::go(const SmoothSurface& surface) {
   }
   for (int round = 0; !bad.empty(); ++round) {
     for (const Index element : bad)
-      if (round >= rounds || quality(element) < least_quality) hold_back(element, round >= rounds);
-    bad = elements_below(least_quality);
+      if (round >= rounds || quality(element) < min_quality) hold_back(element, round >= rounds);
+    bad = elements_below(min_quality);
   }
 }
 
-void EdgeBulges::tell(CurvedEdges& result) const {
+void EdgeBulges::describe(CurvedEdges& result) const {
   constexpr double held = 1 - 1e-9;
   for (const Node& node : nodes_) {
     if (node.low < 0 || node.bulge.isZero(0)) continue;
-    result.farthest_mm = std::max(result.farthest_mm, node.share * node.bulge.norm());
+    result.farthest_mm = std::max(result.farthest_mm, node.fraction * node.bulge.norm());
     if (!node.aimed) {
       ++result.inside;
       continue;
     }
     ++result.moved;
-    if (node.share < held) ++result.held_back;
-    result.least_share = std::min(result.least_share, node.share);
+    if (node.fraction < held) ++result.held_back;
+    result.min_fraction = std::min(result.min_fraction, node.fraction);
   }
 }
 

@@ -5,26 +5,27 @@
 
 namespace softkin {
 
-/// The nodes of a mesh of order 2 on their way from the middles of the edges to where they should be.
+/// Moves the nodes of a mesh of order 2 from the middles of the edges to their targets on a surface.
 class EdgeBulges {
  public:
   /// Puts every node into the middle.
   explicit EdgeBulges(Mesh& mesh);
 
-  /// The way that a node on a surface should go, 0 to stay there [mm]; at most a quarter of its edge's length is gone.
+  /// Sets the intended displacement of a node on a surface, 0 to stay [mm]; at most a quarter of its edge's length is
+  /// used.
   ///
   /// plane  normal of the plane in which it may make room, if it is to stay in it; else 0
   void aim(Index node, const Vec3& bulge, const Vec3& plane);
-  /// Goes it, as far as no element folds; other nodes make room.
+  /// Moves the nodes as far as no element folds; other nodes make room.
   void go(const SmoothSurface& surface);
-  void tell(CurvedEdges& result) const;
+  void describe(CurvedEdges& result) const;
 
  private:
   struct Node {
     Index low = -1, high = -1;       // ends of its edge; -1: of none
     std::size_t begin = 0, end = 0;  // its elements in around_
     Vec3 bulge{0, 0, 0}, plane{0, 0, 0};
-    double share = 1;  // of the bulge
+    double fraction = 1;  // of the bulge
     bool surface = false, aimed = false;
   };
 
@@ -34,8 +35,8 @@ class EdgeBulges {
   [[nodiscard]] double deficit_around(Index node, double wanted) const;
   [[nodiscard]] Vec3 mean_bulge(Index node) const;
   [[nodiscard]] std::vector<Index> elements_below(double least) const;
-  [[nodiscard]] bool may_give_way(const Node& node) const;
-  [[nodiscard]] Vec3 allowed(const Node& node, const Vec3& way) const;
+  [[nodiscard]] bool may_yield(const Node& node) const;
+  [[nodiscard]] Vec3 allowed(const Node& node, const Vec3& path) const;
   void go_along(const std::vector<Index>& bad, const SmoothSurface& surface);
   void make_room(Index node, const SmoothSurface& surface, double wanted);
   void hold_back(Index element, bool wholly);

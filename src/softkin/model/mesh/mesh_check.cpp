@@ -13,8 +13,8 @@ namespace softkin {
 
 namespace {
 
-constexpr double least_volume = 1e-9;  // over the cube of the longest edge
-constexpr double same_vertex = 1e-9;   // over the diagonal of the bounding box
+constexpr double min_volume = 1e-9;   // over the cube of the longest edge
+constexpr double same_vertex = 1e-9;  // over the diagonal of the bounding box
 
 double determinant(const Vec3& a, const Vec3& b, const Vec3& c) {
   return a.dot(b.cross(c));
@@ -38,7 +38,7 @@ std::array<Vec3, K> corners_of(const Points& points, const std::array<Index, K>&
   return corners;
 }
 
-/// What the shape of one element amounts to; lengths relative to its longest edge.
+/// Measures of the shape of one element; lengths relative to its longest edge.
 struct Shape {
   double volume = 0;    // signed
   bool folded = false;  // the Jacobian changes its sign between the corners
@@ -82,7 +82,7 @@ Shape shape_of(const Points& points, const Prism& element) {
     const Vec3 up = p[foot + 3] - p[foot];
     const double jacobian = sign * determinant(next, previous, up);
     const double lengths = next.norm() * previous.norm() * up.norm();
-    if (jacobian < least_volume) shape.folded = true;
+    if (jacobian < min_volume) shape.folded = true;
     shape.quality = std::min(shape.quality, lengths > 0 ? 2 / std::sqrt(3.0) * jacobian / lengths : 0);
   }
   shape.quality = std::max(shape.quality, 0.0);
@@ -94,7 +94,7 @@ void check_shapes(const Points& points, const std::vector<Element>& elements, In
   for (std::size_t i = 0; i < elements.size(); ++i) {
     const Shape shape = shape_of(points, elements[i]);
     const Index element = first + static_cast<Index>(i);
-    if (std::abs(shape.volume) < least_volume || shape.folded)
+    if (std::abs(shape.volume) < min_volume || shape.folded)
       check.degenerate.push_back(element);
     else if (shape.volume < 0)
       check.negative.push_back(element);
@@ -226,7 +226,8 @@ class TopologyCheck {
     }
   }
 
-  /// Height of an element's mean over the plane of one of its faces, times the face's size: its sign tells the side.
+  /// Returns the height of an element's mean over the plane of one of its faces, times the face's size; the sign is the
+  /// side of the face.
   template <std::size_t K>
   double height_over(const std::array<Index, K>& face, Index element) const {
     Vec3 p[K], foot = Vec3::Zero(), mean = Vec3::Zero();
@@ -273,7 +274,7 @@ class TopologyCheck {
       for (const Index v : nodes) on_edge_[v] = true;
   }
 
-  /// Elements around a vertex belong together where they share another vertex.
+  /// Checks that the elements around a vertex are connected through further common vertices.
   void check_vertices() {
     std::vector<Index> seen_from(points_.rows(), -1), seen_by(seen_from);
     for (Index v = 0; v < points_.rows(); ++v) {
@@ -340,8 +341,8 @@ MeshCheck check_mesh(const Mesh& mesh) {
 
 namespace {
 
-/// Faces by their smallest vertex, each as the two numbers that tell the others and the sense in which they are passed.
-/// Sorting the few at a vertex is several times faster than sorting all faces.
+/// Faces by their smallest vertex, each as the two vertices that determine the others and the orientation. Sorting the
+/// few faces at a vertex is several times faster than sorting all faces.
 class FacesByVertex {
  public:
   explicit FacesByVertex(Index count) : starts_(count + 1) {}
@@ -373,8 +374,8 @@ std::uint64_t packed(Index a, Index b) {
   return static_cast<std::uint64_t>(a) << 32 | static_cast<std::uint32_t>(b);
 }
 
-/// From the smallest vertex on, in the sense of the face: its neighbours there, and of a quad that tells the face too,
-/// since two faces of sound elements that share three vertices are the same.
+/// Visits each face with its smallest vertex and the two neighbours of that in the face, in its orientation. They also
+/// determine a quad, as two faces of valid elements with three common vertices are the same.
 template <std::size_t N, std::size_t K, std::size_t M, class Visit>
 void visit_faces(const std::vector<std::array<Index, N>>& elements, const int (&faces)[M][K], const Visit& visit) {
   for (const std::array<Index, N>& element : elements)
@@ -389,8 +390,8 @@ void visit_faces(const std::vector<std::array<Index, N>>& elements, const int (&
 
 }  // namespace
 
-bool share_a_side(const std::vector<Tetrahedron>& tetrahedra, const std::vector<Tetrahedron>& more,
-                  const std::vector<Prism>& prisms, Index count) {
+bool have_common_side(const std::vector<Tetrahedron>& tetrahedra, const std::vector<Tetrahedron>& more,
+                      const std::vector<Prism>& prisms, Index count) {
   FacesByVertex triangles(count), quads(count);
   triangles.fill([&](const auto& visit) {
     visit_faces(tetrahedra, tetrahedron_faces, visit);

@@ -32,7 +32,7 @@ struct MeshCheck {
 /// duplicate or overlapping elements or nonmanifold faces among them, in a fraction of its time.
 ///
 /// count  of vertices
-[[nodiscard]] bool share_a_side(const std::vector<Tetrahedron>& tetrahedra, const std::vector<Tetrahedron>& more,
-                                const std::vector<Prism>& prisms, Index count);
+[[nodiscard]] bool have_common_side(const std::vector<Tetrahedron>& tetrahedra, const std::vector<Tetrahedron>& more,
+                                    const std::vector<Prism>& prisms, Index count);
 
 }  // namespace softkin

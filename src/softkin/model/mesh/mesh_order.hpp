@@ -10,9 +10,10 @@ namespace softkin {
 /// 1 or 2
 [[nodiscard]] int order_of(const Mesh& mesh);
 
-/// Why a mesh of so many tetrahedra, of which so many are of order 2, and prisms cannot be read or written, or "".
+/// Returns why a mesh of these numbers of tetrahedra, those of order 2 among them, and prisms cannot be read or
+/// written, or "".
 [[nodiscard]] std::string refusal_of_orders(std::size_t tetrahedra, std::size_t quadratic, std::size_t prisms);
-/// The same of a Mesh, or what has arrays of elements as it has.
+/// The same of a Mesh, or of a type with the same arrays of elements.
 template <class Elements>
 [[nodiscard]] std::string refusal_of_orders(const Elements& mesh) {
   return refusal_of_orders(mesh.tetrahedra.size(), mesh.edge_nodes.size(), mesh.prisms.size());

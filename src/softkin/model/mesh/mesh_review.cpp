@@ -38,10 +38,10 @@ double volume(const Points& vertices, const Element& element) {
 
 constexpr int triangle_edges[3][2] = {{0, 1}, {1, 2}, {2, 0}};
 
-/// The value below which a share of the values lies, by nearest rank; values are sorted. Of none 0.
-double percentile(const std::vector<double>& values, double share) {
+/// Returns the value below which a fraction of the sorted values lies, by nearest rank; 0 for no values.
+double percentile(const std::vector<double>& values, double fraction) {
   if (values.empty()) return 0;
-  const double rank = std::ceil(share * static_cast<double>(values.size()));
+  const double rank = std::ceil(fraction * static_cast<double>(values.size()));
   return values[static_cast<std::size_t>(std::max(rank, 1.0)) - 1];
 }
 
@@ -113,14 +113,14 @@ void add_to_parts(const Mesh& mesh, const std::vector<Element>& elements, const 
                   std::vector<PartMeasures>& parts) {
   for (const Element& element : elements) {
     PartMeasures& part = parts[part_of[element[0]]];
-    const double share = volume(mesh.vertices, element);
-    part.volume += share;
-    part.centroid += share * mean_position(mesh, element);
+    const double fraction = volume(mesh.vertices, element);
+    part.volume += fraction;
+    part.centroid += fraction * mean_position(mesh, element);
   }
 }
 
-constexpr std::size_t most_places = 5;
-constexpr double farthest = 0.25, even = 1e-3;  // of an edge's node from its middle, shares of its length
+constexpr std::size_t max_places = 5;
+constexpr double farthest = 0.25, even = 1e-3;  // of an edge's node from its middle, fractions of its length
 
 /// The edges of tetrahedra of order 2 that are wrong or uneven: vertices, an edge's ends first, then its node.
 struct EdgeCheck {
@@ -193,22 +193,22 @@ class Collector {
   void add(const Items& items, const PlaceOf& make_place) {
     MeshFinding& finding = findings_.back();
     finding.count += items.size();
-    for (std::size_t i = 0; i < items.size() && finding.first.size() < most_places; ++i)
+    for (std::size_t i = 0; i < items.size() && finding.first.size() < max_places; ++i)
       finding.first.push_back(make_place(members(items[i])));
   }
 
   MeshPlace place_of(std::span<const Index> elements) const {
     MeshPlace place{{}, {}, {}, Vec3::Zero()};
-    const auto share = static_cast<double>(elements.size());
+    const auto fraction = static_cast<double>(elements.size());
     const Index prisms_from = mesh_.tetrahedra.size();
     for (const Index element : elements) {
       const std::size_t i = element;
       if (element < prisms_from) {
         place.tetrahedra.push_back(element);
-        place.position += mean_position(mesh_, mesh_.tetrahedra[i]) / share;
+        place.position += mean_position(mesh_, mesh_.tetrahedra[i]) / fraction;
       } else {
         place.prisms.push_back(element - prisms_from);
-        place.position += mean_position(mesh_, mesh_.prisms[i - mesh_.tetrahedra.size()]) / share;
+        place.position += mean_position(mesh_, mesh_.prisms[i - mesh_.tetrahedra.size()]) / fraction;
       }
     }
     return place;
@@ -252,11 +252,11 @@ MeshMeasures measure_mesh(const Mesh& mesh, const MeshCheck& check) {
   for (const Quad& q : boundary.quads) measures.boundary += face_area(mesh.vertices, q);
   std::vector<double> quality = check.quality;
   std::sort(quality.begin(), quality.end());
-  const double shares[] = {0, 0.01, 0.5};
-  for (int i = 0; i < 3; ++i) measures.quality[i] = percentile(quality, shares[i]);
+  const double fractions[] = {0, 0.01, 0.5};
+  for (int i = 0; i < 3; ++i) measures.quality[i] = percentile(quality, fractions[i]);
   const std::vector<double> lengths = edge_lengths(mesh);
-  const double length_shares[] = {0, 0.5, 1};
-  for (int i = 0; i < 3; ++i) measures.edge_length[i] = percentile(lengths, length_shares[i]);
+  const double length_fractions[] = {0, 0.5, 1};
+  for (int i = 0; i < 3; ++i) measures.edge_length[i] = percentile(lengths, length_fractions[i]);
   const std::vector<QuadraticTriangle> triangles = quadratic_triangles(mesh);
   for (const Region& region : mesh.regions) measures.regions.push_back(measure_region(mesh, triangles, region));
   return measures;

@@ -105,12 +105,12 @@ FacetedSurface rounded(const Vec3& start, const Vec3& end, const Vec3& axis, dou
   return faceted;
 }
 
-/// The coarsest that is fine enough, or the finest of those with at most most_facets.
+/// The coarsest that is fine enough, or the finest of those with at most max_facets.
 FacetedSurface rounded(const Vec3& start, const Vec3& end, const Vec3& axis, double radius, double sagitta_mm) {
   const auto facets = [&](Index n) { return static_cast<std::size_t>(8 * n * n + (start != end ? 8 * n : 0)); };
   for (Index n = 2;; ++n) {
     FacetedSurface made = rounded(start, end, axis, radius, n);
-    if (made.sagitta_mm <= sagitta_mm || facets(n + 1) > most_facets) return made;
+    if (made.sagitta_mm <= sagitta_mm || facets(n + 1) > max_facets) return made;
   }
 }
 
@@ -149,7 +149,7 @@ FacetedSurface faceted(const Sphere& sphere, double sagitta_mm) {
 
 FacetedSurface faceted(const Cylinder& cylinder, double sagitta_mm) {
   Index k = 2;
-  const auto most = static_cast<Index>(most_facets / 16);
+  const auto most = static_cast<Index>(max_facets / 16);
   while (k < most && sagitta_of(cylinder.radius, 4 * k) > sagitta_mm) ++k;
   Turner turner(cylinder.end - cylinder.start);
   const Ring low = turner.ring(cylinder.start, cylinder.radius, k),

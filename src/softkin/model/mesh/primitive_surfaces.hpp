@@ -12,10 +12,10 @@ struct FacetedSurface {
   double sagitta_mm = 0;  // how far the facets are from the shape at most; 0: flat faces
 };
 
-inline constexpr std::size_t most_facets = 20000;
+inline constexpr std::size_t max_facets = 20000;
 
 // Shapes of which complaint_about() finds nothing to complain. Curved ones get as many facets as it takes to stay
-// within sagitta_mm > 0 of the shape, but at most most_facets.
+// within sagitta_mm > 0 of the shape, but at most max_facets.
 
 /// 12 triangles.
 [[nodiscard]] FacetedSurface faceted(const Box& box);

@@ -93,7 +93,7 @@ TetrahedronWeights shape_integrals(const TetrahedronNodes& nodes) {
   return integrals;
 }
 
-double least_jacobian(const TetrahedronNodes& nodes) {
+double min_jacobian(const TetrahedronNodes& nodes) {
   constexpr double degree_2 = 0.13819660112501051518;  // (5 - sqrt 5) / 20
   double least = std::numeric_limits<double>::infinity();
   const auto visit = [&](const Barycentric& l) { least = std::min(least, jacobian(nodes, l)); };
@@ -103,7 +103,7 @@ double least_jacobian(const TetrahedronNodes& nodes) {
   return least;
 }
 
-double least_jacobian_bound(const TetrahedronNodes& nodes) {
+double min_jacobian_bound(const TetrahedronNodes& nodes) {
   Mat3 at[4];  // the derivatives are linear: these at the corners say all of them
   for (int i = 0; i < 4; ++i) {
     const Eigen::Matrix<double, 3, 4> along = nodes.transpose() * quadratic_slope(Barycentric::Unit(i));

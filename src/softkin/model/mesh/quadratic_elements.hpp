@@ -26,13 +26,13 @@ using Barycentric = Eigen::Vector4d;
 
 /// The least determinant of d(position)/d(L_1, L_2, L_3) at the corners, the four points of the rule of degree 2 with
 /// which the energy is integrated, and those of shape_integrals [mm^3]; 6 volumes where the edges are straight.
-[[nodiscard]] double least_jacobian(const TetrahedronNodes& nodes);
+[[nodiscard]] double min_jacobian(const TetrahedronNodes& nodes);
 
 /// A bound from below of that determinant over the whole element [mm^3]: it is a cubic polynomial, which lies between
 /// the least and the largest of its 20 Bezier coefficients.
 ///
 /// source  A. Johnen, J.-F. Remacle, C. Geuzaine, Geometrical validity of curvilinear finite elements, 2013
-[[nodiscard]] double least_jacobian_bound(const TetrahedronNodes& nodes);
+[[nodiscard]] double min_jacobian_bound(const TetrahedronNodes& nodes);
 
 /// Nodes of a quadratic triangle: the corners, then those on its edges 01, 12, 20 [mm].
 using TriangleNodes = Eigen::Matrix<double, 6, 3>;

@@ -11,7 +11,7 @@ namespace softkin {
 
 namespace {
 
-/// An edge of a triangle: its ends, ascending, and whether the triangle passes it that way.
+/// An edge of a triangle: its ends, ascending, and whether the triangle passes it in that sense.
 struct Side {
   Index low, high, triangle;
   bool ascending;

@@ -6,32 +6,32 @@
 
 namespace softkin {
 
-/// A piece of a triangle surface: triangles that hang together by edges of two triangles.
+/// A piece of a triangle surface: triangles that are connected by edges of two triangles.
 struct Shell {
   std::vector<Index> triangles;  // of the surface, ascending
-  bool closed = true;            // every edge is passed as often one way as the other
+  bool closed = true;            // every edge is passed equally often in both senses
   double volume = 0;             // enclosed, positive where the normals point outwards [mm^3]
   Vec3 center{0, 0, 0};          // of the enclosed volume; of the vertices where there is none [mm]
   Bounds bounds;
 };
 
-/// The pieces of a surface, by their first triangles.
+/// Returns the pieces of a surface, in the order of their first triangles.
 [[nodiscard]] std::vector<Shell> shells_of(const Points& vertices, const std::vector<Triangle>& triangles);
 
-/// The triangles, turned so that neighbours agree and the normals of each piece point outwards.
+/// Returns the triangles, oriented so that neighbours agree and the normals of each piece point outwards.
 ///
 /// throws  InvalidInput where the surface has no triangle or names a vertex that is not there; naming the place [mm],
 ///         where it has a rim or an edge of more than two triangles, one side only, or encloses no volume
 [[nodiscard]] std::vector<Triangle> turned_outwards(const Points& vertices, std::vector<Triangle> triangles);
-/// The same where pieces may be flat, as an empty bag is: of these neighbours agree, and which side is outside is what
-/// the first triangle says.
+/// The same where pieces may be flat, as an empty bag: in these neighbours agree, and the first triangle determines the
+/// outer side.
 [[nodiscard]] std::vector<Triangle> turned_outwards_or_flat(const Points& vertices, std::vector<Triangle> triangles);
 
-/// The triangles, turned so that neighbours agree, of a surface that may be open.
+/// Returns the triangles of a surface that may be open, oriented so that neighbours agree.
 ///
-/// throws  InvalidInput as turned_outwards, but for a rim and for what encloses no volume
+/// throws  InvalidInput as turned_outwards, but not on a rim or on a surface that encloses no volume
 [[nodiscard]] std::vector<Triangle> turned_alike(const Points& vertices, std::vector<Triangle> triangles);
-/// The rim of a surface: edges of one triangle alone, from end to end as that triangle passes them.
+/// Returns the rim of a surface: edges of one triangle alone, from end to end as that triangle passes them.
 [[nodiscard]] std::vector<std::array<Index, 2>> rim_of(const std::vector<Triangle>& triangles);
 
 /// An empty space that elements enclose, bounded by a piece of their boundary.
@@ -42,7 +42,7 @@ struct EmptySpace {
   Bounds bounds;
 };
 
-/// Largest first. Elements may be oriented either way.
+/// Returns the empty spaces, the largest first. Elements may have either orientation.
 [[nodiscard]] std::vector<EmptySpace> empty_spaces_in(const Points& vertices,
                                                       const std::vector<Tetrahedron>& tetrahedra,
                                                       const std::vector<Prism>& prisms);

@@ -14,18 +14,18 @@ const double flat_cosine = std::cos(0.5 * radians);     // within this faces are
 const double flat_crease = std::cos(2 * radians);       // more is a crease between flat faces,
 const double flat_to_round = std::cos(25 * radians);    // and between a flat one and another
 const double parallel_sheets = std::cos(45 * radians);  // both sides of a wall
-constexpr double least_turn = 0.5;                      // cosine of 60 degrees, of a tangent against its chord
-constexpr double least_crossing = 0.17;                 // sine of the angle at which sheets cross in a line
+constexpr double min_turn = 0.5;                        // cosine of 60 degrees, of a tangent against its chord
+constexpr double min_crossing = 0.17;                   // sine of the angle at which sheets cross in a line
 
 /// Direction of a curve at the end of a chord: along one sheet or, where the other is given, where the two intersect.
 Vec3 tangent(const Vec3& chord, const Vec3& normal, const Vec3* other) {
   Vec3 along = chord - chord.dot(normal) * normal;
   if (other) {
     const Vec3 line = normal.cross(*other);
-    if (line.norm() > least_crossing) along = line.dot(chord) < 0 ? Vec3(-line) : line;
+    if (line.norm() > min_crossing) along = line.dot(chord) < 0 ? Vec3(-line) : line;
   }
   const double length = along.norm();
-  return along.dot(chord) >= least_turn * length && length > 0 ? Vec3(along / length) : chord;
+  return along.dot(chord) >= min_turn * length && length > 0 ? Vec3(along / length) : chord;
 }
 
 /// From the middle of a chord to that of an arc with these tangents at its ends: c / 4 (tan(a / 2) + tan(b / 2)) for
@@ -48,10 +48,10 @@ SmoothSurface::Bulge arc_bulge(const Vec3& chord, const Vec3& at_start, const Ve
 
 /// The arc between two places of one sheet with these normals.
 SmoothSurface::Bulge sheet_bulge(const Vec3& chord, const Vec3& at_start, const Vec3& at_end) {
-  constexpr double least_turning = 0.02, least_share = 0.3;
+  constexpr double min_turning = 0.02, min_fraction = 0.3;
   const Vec3 along = chord.normalized(), axis = at_start.cross(at_end);
   double in_plane = 1;
-  if (axis.norm() > least_turning) in_plane = std::max(least_share, axis.normalized().cross(along).norm());
+  if (axis.norm() > min_turning) in_plane = std::max(min_fraction, axis.normalized().cross(along).norm());
   return arc_bulge(chord, tangent(along, at_start, nullptr), tangent(along, at_end, nullptr), in_plane);
 }
 
@@ -108,7 +108,7 @@ double SmoothSurface::turned(Index half, Index other) const {
   return vertex_of(half) == vertex_of(other) ? -1 : 1;  // neighbours that agree pass their edge in opposite directions
 }
 
-/// Each half edge goes on in the one that turns least, if that is mutual.
+/// Pairs each half edge with the one at the smallest angle, if that is mutual.
 void SmoothSurface::pair_halves(double crease) {
   partner_.assign(halves_.size(), -1);
   for (std::size_t e = 0; e < edges(); ++e) {
@@ -175,7 +175,7 @@ void SmoothSurface::spread_sector(Index first) {
   sectors_.push_back(sector);
 }
 
-/// Those around a vertex about which all is flat, and what goes on from them in their plane.
+/// Finds the faces around a vertex with all faces in one plane, and those that continue them in their plane.
 void SmoothSurface::find_flat_faces() {
   flat_.assign(faces_.size(), false);
   std::vector<Index> reached;
@@ -261,8 +261,8 @@ std::vector<Index> SmoothSurface::neighbours(const Sector& sector) const {
   return found;
 }
 
-/// That of the paraboloid a x + b y + c x^2 + d x y + e y^2 through the vertex that fits those around it best, over the
-/// plane of the mean normal; where these do not tell, the one that turns it least.
+/// Returns the normal of the paraboloid a x + b y + c x^2 + d x y + e y^2 through the vertex that fits its neighbours
+/// best, over the plane of the mean normal; where they do not determine it, the one of minimum norm.
 ///
 /// source  F. Cazals, M. Pouget, Estimating differential quantities using polynomial fitting of osculating jets, 2005
 Vec3 SmoothSurface::fitted_normal(const Sector& sector, const Vec3& mean) const {
@@ -290,7 +290,7 @@ Vec3 SmoothSurface::fitted_normal(const Sector& sector, const Vec3& mean) const 
   if (!(std::hypot(fit[0], fit[1]) < steepest)) return mean;
   const Vec3 normal = (mean - fit[0] * u - fit[1] * v).normalized();
   for (std::size_t at = sector.begin; at < sector.end; ++at)
-    if (sign_[around_[at]] * normals_[around_[at] / 3].dot(normal) < least_turn) return mean;
+    if (sign_[around_[at]] * normals_[around_[at] / 3].dot(normal) < min_turn) return mean;
   return normal;
 }
 
@@ -312,7 +312,7 @@ SmoothSurface::Bulge SmoothSurface::bulge(std::size_t edge) const {
   const Vec3 chord = vertex_at(vertices_, high) - vertex_at(vertices_, low);
   if (!(chord.norm() > 0)) return {};
   const std::vector<Side> found = sides(edge);
-  if (edge_starts_[edge + 1] == edge_starts_[edge] + 1) return {};  // of one face: nothing tells
+  if (edge_starts_[edge + 1] == edge_starts_[edge] + 1) return {};  // of one face: it is not determined
   const Side& one = found[0];
   const Side* other = nullptr;  // of several the one that crosses most
   for (std::size_t s = 1; s < found.size(); ++s)

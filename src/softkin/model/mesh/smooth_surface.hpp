@@ -4,12 +4,12 @@
 
 namespace softkin {
 
-/// The surface that lies behind the faces of a mesh: smooth but for creases, through the mesh's vertices.
+/// The surface that the faces of a mesh approximate: smooth except at creases, through the mesh's vertices.
 ///
-/// Faces are those of one element and those between elements of different labels. Two faces at an edge are of one
-/// smooth sheet where the angle between their normals is at most the crease angle, but for flat faces, which are those
-/// around a vertex about which all is flat: between two of these any angle above 2 degrees is a crease, between one of
-/// these and another face any above 25. So chamfers and flat sides stay what they are.
+/// Faces are those of one element and those between elements of different labels. Two faces at an edge belong to one
+/// smooth sheet where the angle between their normals is at most the crease angle. Flat faces, those around a vertex
+/// with all faces in one plane, are an exception: between two of these any angle above 2 degrees is a crease, between
+/// one of these and another face any above 25. So chamfers and flat sides are preserved.
 class SmoothSurface {
  public:
   /// labels  of the tetrahedra: the boundary between two labels is a surface too
@@ -24,9 +24,9 @@ class SmoothSurface {
 
   /// From the middle of a chord to that of the edge on the smooth surface [mm].
   ///
-  /// likely  on an arc whose curvature is the harmonic mean of those that the surface's tangents at both ends tell; 0
-  ///         where they differ in sign, as where a groove of few elements meets its rim
-  /// most    of the larger one of both curvatures; far from the likely one where the mesh is too coarse to tell
+  /// likely  on an arc whose curvature is the harmonic mean of those by the surface's tangents at both ends; 0 where
+  ///         they differ in sign, as where a groove of few elements meets its rim
+  /// most    by the larger one of both curvatures; far from the likely one where the mesh is too coarse
   struct Bulge {
     Vec3 likely{0, 0, 0}, most{0, 0, 0};
   };
@@ -49,7 +49,7 @@ class SmoothSurface {
   [[nodiscard]] std::vector<Side> sides(std::size_t edge) const;
 
  private:
-  // Half edge and corner 3 f + i are those of face f at its i-th vertex: the edge goes on to the next one.
+  // Half edge and corner 3 f + i are those of face f at its i-th vertex: the edge leads to the next vertex.
   struct Half {
     Index low, high, id;
   };

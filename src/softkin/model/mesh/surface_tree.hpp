@@ -22,7 +22,7 @@ struct LineHit {
 [[nodiscard]] std::optional<LineHit> meet_plane(const Vec3& origin, const Vec3& direction, const Vec3& a, const Vec3& b,
                                                 const Vec3& c);
 
-/// A triangle surface that answers where a ray meets it and, if it is closed, what lies inside.
+/// A triangle surface for intersections with rays and, if it is closed, for whether a point is inside.
 class SurfaceTree {
  public:
   SurfaceTree(const Points& vertices, std::vector<Triangle> triangles);

@@ -13,9 +13,9 @@ struct WallSample {
   double along_mm = 0;      // side of the square of twice the face's area: extent of the element along the wall
 };
 
-/// Walls behind faces of tetrahedra on the boundary: of all these faces, or of so many that are spread evenly over
-/// them. Left out are places whose other side is not nearly parallel, which are edges and no walls. Elements must have
-/// positive volume; of order 2 the corners count.
+/// Returns the walls behind faces of tetrahedra on the boundary: of all these faces, or of at most `most` that are
+/// distributed evenly over them. Places whose other side is not nearly parallel are left out, as they are edges and no
+/// walls. Elements must have positive volume; of order 2 the corners count.
 [[nodiscard]] std::vector<WallSample> wall_samples(const Points& vertices, const std::vector<Tetrahedron>& tetrahedra,
                                                    const std::vector<Prism>& prisms, std::size_t most);
 
@@ -25,7 +25,7 @@ struct WallSample {
 ///            K / G = 2 (1 + nu) / (3 (1 - 2 nu))
 /// source     fitted to loaded bars of regular and free meshes, order 1 against order 2: within a factor of 2.5 up to a
 ///            Poisson's ratio of 0.45. Beyond, it depends on how elements meet, from a third to four times of it;
-///            elements much longer than the wall is thick are less stiff than it says
+///            elements much longer than the wall is thick are less stiff than it predicts
 [[nodiscard]] double bending_excess(const WallSample& wall, double poisson_ratio);
 
 }  // namespace softkin

@@ -5,26 +5,26 @@
 
 namespace softkin::physical {
 
-/// What an evaluation of the equations of equilibrium finds.
+/// Result of an evaluation of the equations of equilibrium.
 struct Balance {
-  Eigen::VectorXd force;       // of the unknowns, what is not in balance [N, N mm]
-  Eigen::VectorXd constraint;  // m: measure minus demand, 0 where not active [mm, mm^3]
+  Eigen::VectorXd force;       // residual in the unknowns [N, N mm]
+  Eigen::VectorXd constraint;  // m: measure minus its target, 0 where not active [mm, mm^3]
   double energy = 0;           // elastic and of contact, less the work of dead loads [mJ]
-  double load_energy = 0;      // of measures whose multipliers are given, and of what is sealed in chambers [mJ]
-  // m: of the measure that is demanded, by the multiplier, with the other sign; empty: none gives way [mm^3/MPa]
+  double load_energy = 0;      // of measures whose multipliers are given, and of fillings of sealed chambers [mJ]
+  // m: minus the derivative of the measure's target by the multiplier; empty: all are 0 [mm^3/MPa]
   Eigen::VectorXd compliance{};
-  Eigen::VectorXd slips{};       // of tendons that rub, see Tendons
-  Eigen::VectorXd growth{};      // m: of tensions where a demand changes, over what they are [-]; empty: none
+  Eigen::VectorXd slips{};       // of tendons with friction, see Tendons
+  Eigen::VectorXd growth{};      // m: relative change of tensions with the load state [-]; empty: none
   bool inverted = false;         // an element
   bool forbidden = false;        // inverted where the law has no energy
   std::uint64_t evaluation = 0;  // of the workspace
 };
 
-/// How well forces balance at an iterate [N].
+/// Residual of the forces at an iterate, and the elements' forces for comparison [N].
 struct Imbalance {
-  double residual = 0;  // on a vertex or a rigid region, the largest
-  double pull = 0;      // of the elements on a vertex, sum of magnitudes, the largest
-  double rounding = 0;  // what rounding of the positions may leave on a vertex
+  double residual = 0;  // the largest on a vertex or a rigid region
+  double pull = 0;      // the largest sum of magnitudes of the elements' forces on a vertex
+  double rounding = 0;  // possible residual on a vertex by rounding of the positions
 };
 
 }  // namespace softkin::physical

@@ -20,7 +20,7 @@ double von_mises(const Mat3& stress) {
 
 }  // namespace
 
-/// In a shape [MPa].
+/// Returns the corner pressures of a block in a shape [MPa].
 template <int K, int Q>
 CornerPressure Body::pressure_of(const Set<K, Q>& set, Index block, const Points& positions) const {
   CornerPressure pressure = set.corners.compliance[block];
@@ -42,7 +42,7 @@ void Body::store_miss(const Set<K, Q>& set, Index block, const PressureMiss& mis
     }
 }
 
-/// Behind the slots of the nodes among themselves.
+/// Stores the coupling behind the slots of the nodes among themselves.
 template <int K, int Q>
 void Body::store_coupling(const Set<K, Q>& set, Index block, const PressureCoupling<K>& coupling,
                           LargeVector<double>& slots) const {
@@ -80,7 +80,7 @@ void Body::store(const Set<K, Q>& set, Index block, const Shape<K>& pull, Scratc
     }
 }
 
-/// Adds what the elements pull with at every vertex.
+/// Adds the elements' forces at every vertex.
 void Body::add_pulls(const Scratch& scratch, Points& sums, Team& team) const {
   team.pieces(vertices_, [&](Index begin, Index end) {
     for (Index v = begin; v < end; ++v) {
@@ -94,9 +94,9 @@ void Body::add_pulls(const Scratch& scratch, Points& sums, Team& team) const {
   });
 }
 
-/// What every element pulls with, into the scratch.
-Body::Result Body::pull(const Demand& demand, const Points& positions, Scratch& scratch, Team& team) const {
-  change_elements(demand, scratch, team);
+/// Computes the forces of every element, into the scratch.
+Body::Result Body::pull(const LoadState& load_state, const Points& positions, Scratch& scratch, Team& team) const {
+  change_elements(load_state, scratch, team);
   std::size_t first = 0;
   Result result;
   each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {
@@ -119,7 +119,7 @@ Body::Result Body::pull(const Demand& demand, const Points& positions, Scratch& 
         }
         if constexpr (K == 6)  // the field is that in the layer itself, whatever its active stretch
           if (set.charged)
-            add_dielectric_force(set.blocks[b], set.permittivity[b], demand.actuation[set.actuator], shape, out);
+            add_dielectric_force(set.blocks[b], set.permittivity[b], load_state.actuation[set.actuator], shape, out);
         scratch.energies[first + b] = out.energy;
         scratch.inverted[first + b] = out.inverted;
         scratch.forbidden[first + b] = out.forbidden;
@@ -141,24 +141,25 @@ Body::Result Body::pull(const Demand& demand, const Points& positions, Scratch& 
   return result;
 }
 
-Body::Result Body::force(const Demand& demand, const Points& positions, Scratch& scratch, Points& gradient,
+Body::Result Body::force(const LoadState& load_state, const Points& positions, Scratch& scratch, Points& gradient,
                          Team& team) const {
-  const Result result = pull(demand, positions, scratch, team);
+  const Result result = pull(load_state, positions, scratch, team);
   gradient.setZero(vertices_, 3);
   add_pulls(scratch, gradient, team);
   return result;
 }
 
-void Body::evaluate(const Iterate& at, const Demand& demand, Term::Scratch& scratch, Sum& sum, Team& team) const {
+void Body::evaluate(const Iterate& at, const LoadState& load_state, Term::Scratch& scratch, Sum& sum,
+                    Team& team) const {
   auto& own = static_cast<Scratch&>(scratch);
-  const Result result = pull(demand, at.positions, own, team);
+  const Result result = pull(load_state, at.positions, own, team);
   sum.energy += result.energy;
   sum.inverted = sum.inverted || result.inverted;
   sum.forbidden = sum.forbidden || result.forbidden;
   add_pulls(own, sum.gradient, team);
 }
 
-void Body::add_change(const Demand& from, const Demand& to, const Points& positions, Term::Scratch& scratch,
+void Body::add_change(const LoadState& from, const LoadState& to, const Points& positions, Term::Scratch& scratch,
                       Points& force, Team& team) const {
   auto& own = static_cast<Scratch&>(scratch);
   Points before, after;
@@ -171,49 +172,49 @@ void Body::add_change(const Demand& from, const Demand& to, const Points& positi
   const auto changes = [&](Index a) { return from.actuation[a] != to.actuation[a]; };
   const bool stretched = std::any_of(ratios_.begin(), ratios_.end(), changes) ||
                          std::any_of(growths_.begin(), growths_.end(), changes) ||
-                         (from.share != to.share && prestretched());
+                         (from.load_factor != to.load_factor && prestretched());
   if (!stretched) return;
   constexpr double reach = 1e-4;  // of a central difference, over the change
-  Demand low = from, high = from;
+  LoadState low = from, high = from;
   low.actuation -= reach * (to.actuation - from.actuation);
   high.actuation += reach * (to.actuation - from.actuation);
-  for (const Index a : voltages_) low.actuation[a] = high.actuation[a] = from.actuation[a];  // the field was counted
-  low.share -= reach * (to.share - from.share);
-  high.share += reach * (to.share - from.share);
+  for (const Index a : voltages_) low.actuation[a] = high.actuation[a] = from.actuation[a];  // added above
+  low.load_factor -= reach * (to.load_factor - from.load_factor);
+  high.load_factor += reach * (to.load_factor - from.load_factor);
   (void)this->force(low, positions, own, before, team);
   (void)this->force(high, positions, own, after, team);
   force += (after - before) / (2 * reach);
 }
 
-void Body::add_derivative(Index command, const Demand& demand, const Points& positions, Term::Scratch& scratch,
+void Body::add_derivative(Index command, const LoadState& load_state, const Points& positions, Term::Scratch& scratch,
                           Points& force, Team& team) const {
   auto& own = static_cast<Scratch&>(scratch);
   Points there;
   if (charges(command)) {
     field_force(command, 1, positions, own, there, team);  // it goes with the square of the voltage
-    force += 2 * demand.actuation[command] * there;
+    force += 2 * load_state.actuation[command] * there;
   }
   const bool grows = std::find(growths_.begin(), growths_.end(), command) != growths_.end();
   if (!grows && std::find(ratios_.begin(), ratios_.end(), command) == ratios_.end()) return;
-  // central difference of fourth order; the force is smooth in the stretches, which go on by their slopes
-  const double reach = grows ? 1e-3 / fastest_growth(command, demand) : 1e-3 * demand.actuation[command];
+  // central difference of fourth order; the force is smooth in the stretches, which are extrapolated by their slopes
+  const double reach = grows ? 1e-3 / fastest_growth(command, load_state) : 1e-3 * load_state.actuation[command];
   if (!std::isfinite(reach)) return;  // at this temperature nothing grows
   const auto nudged_by = [&](double nudge) {
     own.nudged = command;
     own.nudge = nudge;
-    (void)this->force(demand, positions, own, there, team);
+    (void)this->force(load_state, positions, own, there, team);
     own.nudged = -1;
     return there;
   };
   force += (8 * (nudged_by(reach) - nudged_by(-reach)) - (nudged_by(2 * reach) - nudged_by(-2 * reach))) / (12 * reach);
 }
 
-/// The largest share of a stretch by which it changes with a command [1 per unit].
-double Body::fastest_growth(Index command, const Demand& demand) const {
+/// Returns the largest derivative of a stretch by a command, over the stretch [1 per unit].
+double Body::fastest_growth(Index command, const LoadState& load_state) const {
   double fastest = 0;
   each_set([&](const auto& set) {
     if (!set.growth || set.growth->actuator != command) return;
-    const double at = demand.actuation[command];
+    const double at = load_state.actuation[command];
     fastest = std::max(fastest, std::abs(set.growth->slope(at)) / set.growth->stretch(at));
   });
   return fastest;
@@ -248,9 +249,9 @@ double Body::largest_pull(const Scratch& scratch, Team& team) const {
   return *std::max_element(sums.begin(), sums.end());
 }
 
-void Body::stress(const Demand& demand, const Points& positions, Scratch& scratch, ElementStress& out,
+void Body::stress(const LoadState& load_state, const Points& positions, Scratch& scratch, ElementStress& out,
                   Team& team) const {
-  change_elements(demand, scratch, team);
+  change_elements(load_state, scratch, team);
   std::size_t count = 0;
   each(scratch, [&](const auto& set, const auto&) { count += set.elements.size(); });
   out.von_mises.resize(count);
@@ -268,7 +269,7 @@ void Body::stress(const Demand& demand, const Points& positions, Scratch& scratc
           add_viscous_stress<K, Q>(blocks[b], branches_of(set, b, scratch), shape, points);
         if constexpr (K == 6)
           if (set.charged)
-            add_maxwell_stress(set.blocks[b], set.permittivity[b], demand.actuation[set.actuator], shape, points);
+            add_maxwell_stress(set.blocks[b], set.permittivity[b], load_state.actuation[set.actuator], shape, points);
         for (Index l = 0; l < std::min<Index>(lanes, set.count - lanes * b); ++l) {
           const Index e = set.elements[lanes * b + l];
           const auto at_point = [&](int q) {
@@ -287,9 +288,9 @@ void Body::stress(const Demand& demand, const Points& positions, Scratch& scratc
   });
 }
 
-void Body::stiffness(const Demand& demand, const Points& positions, bool projected, Scratch& scratch,
+void Body::stiffness(const LoadState& load_state, const Points& positions, bool projected, Scratch& scratch,
                      LargeVector<double>& slots, Team& team) const {
-  change_elements(demand, scratch, team);
+  change_elements(load_state, scratch, team);
   each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {
     constexpr int matrices = K * (K + 1) / 2;
     const int others = set.matrices() - matrices;
@@ -307,9 +308,10 @@ void Body::stiffness(const Demand& demand, const Points& positions, bool project
           }
         if (set.viscous.branches > 0 && scratch.pulls_viscously())
           add_viscous_stiffness<K, Q>(blocks[b], branches_of(set, b, scratch), shape, projected, out);
-        if constexpr (K == 6)  // the field's has hardly anything that is positive
+        if constexpr (K == 6)  // the field's stiffness has hardly any positive part
           if (set.charged && !projected)
-            add_dielectric_stiffness(set.blocks[b], set.permittivity[b], demand.actuation[set.actuator], shape, out);
+            add_dielectric_stiffness(set.blocks[b], set.permittivity[b], load_state.actuation[set.actuator], shape,
+                                     out);
         const Index count = std::min<Index>(lanes, set.count - lanes * b);
         double* slot = slots.data() + 9 * (set.first_slot + static_cast<std::int64_t>(matrices + others) * lanes * b);
         for (Index l = 0; l < count; ++l, slot += 9 * others)

@@ -17,32 +17,32 @@
 
 namespace softkin::physical {
 
-/// The body of a robot in the physical formulation: elastic energy, that of the electric field in its layers under
-/// voltage, and their derivatives in the vertices; in those of pressures, too, where it has mixed elements. What grows
-/// has other elements at rest: their slopes and volumes change with the command.
+/// The body of a robot in the physical formulation: the elastic energy, the energy of the electric field in layers
+/// under voltage, and their derivatives by the positions of vertices and, for mixed elements, by the pressures. Growth
+/// changes the elements at rest: their shape function gradients and volumes depend on the command.
 class Body : public Term {
  public:
   /// pressures: of model's last vertices; null: it has none
   explicit Body(const Model& model, const Pressures* pressures = nullptr);
 
-  /// Blocks of a set whose elements at rest are what a command makes of them.
+  /// Blocks of a set whose elements at rest depend on a command.
   template <int K, int Q>
   struct Changed {
     std::vector<energy::ElasticBlock<K, Q>> blocks;
-    double stretch = 0;  // that they are at [-]; 0: not made yet
+    double stretch = 0;  // for which they were made [-]; 0: not made yet
   };
 
-  /// What evaluation needs beside the positions; nothing is allocated per call.
+  /// Memory of evaluations; nothing is allocated per call.
   struct Scratch : Term::Scratch {
     std::vector<double> pulls;                          // 3 per node of every element [N]
     std::vector<energy::Pack> energies;                 // per block of all sets [mJ]
     std::vector<energy::PackMask> inverted, forbidden;  // the same
     std::tuple<std::vector<Changed<4, 1>>, std::vector<Changed<10, 4>>, std::vector<Changed<6, 6>>> changed;
-    Index nudged = -1;  // an actuator whose stretches are those of so much more of its command, to first order
+    Index nudged = -1;  // actuator whose stretches include a perturbation of its command, to first order
     double nudge = 0;
     std::shared_ptr<const ViscousHistory> history;               // none: relaxed at rest
     double elapsed_s = std::numeric_limits<double>::infinity();  // since then; infinity: no branch pulls
-    std::vector<energy::BranchShares> shares;                    // of viscous sets, by block and branch, by then
+    std::vector<energy::BranchFractions> fractions;              // by block and branch of viscous sets
     std::vector<energy::Pack> rates;                             // the same: that time over their relaxation times
     std::vector<double> begun;                                   // the same: energy::begin_step() of them
 
@@ -55,44 +55,49 @@ class Body : public Term {
 
   /// Has an element Maxwell branches?
   [[nodiscard]] bool viscous() const { return branches_ > 0; }
-  /// What Maxwell branches remember, and the time since then [s], for all that is evaluated next. history: as flow()
-  /// gives it, or null
+  /// Sets the history of Maxwell branches and the time since then [s] for the evaluations that follow. history: as
+  /// returned by flow(), or null
   void set_time(std::shared_ptr<const ViscousHistory> history, double elapsed_s, Scratch& scratch, Team& team) const;
-  /// What they remember of a shape that the time ends with. lost_mJ: becomes the energy that they lose there
-  [[nodiscard]] std::shared_ptr<const ViscousHistory> flow(const Demand& demand, const Points& positions,
+  /// Returns the history after a time step that ends at this shape. lost_mJ: becomes the energy dissipated in it
+  [[nodiscard]] std::shared_ptr<const ViscousHistory> flow(const LoadState& load_state, const Points& positions,
                                                            Scratch& scratch, double& lost_mJ, Team& team) const;
-  /// Of a history, how many numbers.
+  /// The number of values in a history.
   [[nodiscard]] std::size_t remembered() const { return strains_; }
 
   struct Result {
     double energy = 0;       // [mJ]
-    bool inverted = false;   // is an element
-    bool forbidden = false;  // has one no energy where it is; energy and gradient are then meaningless
+    bool inverted = false;   // is an element inverted
+    bool forbidden = false;  // has an element no energy there; energy and gradient are then meaningless
   };
 
-  /// Energy and gradient (#V by 3 [N]). demand: of which the ratios and voltages of dea actuators are taken, and the
-  /// share of the prestretch of those under voltage.
-  Result force(const Demand& demand, const Points& positions, Scratch& scratch, Points& gradient, Team& team) const;
-  void evaluate(const Iterate& at, const Demand& demand, Term::Scratch& scratch, Sum& sum, Team& team) const override;
+  /// Computes energy and gradient (#V by 3 [N]). load_state: its ratios and voltages of dea actuators count, and its
+  /// load factor for the prestretch of those under voltage.
+  Result force(const LoadState& load_state, const Points& positions, Scratch& scratch, Points& gradient,
+               Team& team) const;
+  void evaluate(const Iterate& at, const LoadState& load_state, Term::Scratch& scratch, Sum& sum,
+                Team& team) const override;
 
-  /// To first order; of voltages alone exactly.
-  void add_change(const Demand& from, const Demand& to, const Points& positions, Term::Scratch& scratch, Points& force,
-                  Team& team) const override;
-  void add_derivative(Index command, const Demand& demand, const Points& positions, Term::Scratch& scratch,
+  /// The change is of first order; for voltages alone it is exact.
+  void add_change(const LoadState& from, const LoadState& to, const Points& positions, Term::Scratch& scratch,
+                  Points& force, Team& team) const override;
+  void add_derivative(Index command, const LoadState& load_state, const Points& positions, Term::Scratch& scratch,
                       Points& force, Team& team) const override;
 
-  /// Sum of the magnitudes of what the elements at a vertex pull there, the largest of all vertices [N]. After force().
+  /// The sum of the magnitudes of the elements' internal forces at a vertex, the largest of all vertices [N]. Call it
+  /// after force().
   [[nodiscard]] double largest_pull(const Scratch& scratch, Team& team) const;
 
-  /// Gradient of the energy of the electric field of a dea, #V by 3 [N], at a voltage [kV]: it goes with its square.
+  /// Gradient of the energy of the electric field of a dea, #V by 3 [N], at a voltage [kV]: it is proportional to the
+  /// square of the voltage.
   void field_force(Index actuator, double voltage_kV, const Points& positions, Scratch& scratch, Points& gradient,
                    Team& team) const;
 
-  /// Cauchy stress of every element, at that of its quadrature points where von Mises' is largest; of a layer under
-  /// voltage with Maxwell's.
-  void stress(const Demand& demand, const Points& positions, Scratch& scratch, ElementStress& out, Team& team) const;
+  /// Cauchy stress of every element, at the quadrature point with the largest von Mises stress; in a layer under
+  /// voltage it includes the Maxwell stress.
+  void stress(const LoadState& load_state, const Points& positions, Scratch& scratch, ElementStress& out,
+              Team& team) const;
 
-  /// Stresses are told with those of families of fibres, which must outlive the object.
+  /// Includes the stress of families of fibres in the reported stress. They must outlive the object.
   void add_stress_of(const FibreFamilies& families) { families_ = &families; }
 
   /// Adds every element as a clique.
@@ -102,15 +107,15 @@ class Body : public Term {
   [[nodiscard]] std::vector<std::int64_t> element_slots() const;
 
   /// Second derivatives into the slots of those cliques, 9 values each [N/mm].
-  void stiffness(const Demand& demand, const Points& positions, bool projected, Scratch& scratch,
+  void stiffness(const LoadState& load_state, const Points& positions, bool projected, Scratch& scratch,
                  LargeVector<double>& slots, Team& team) const;
-  void stiffness(const Iterate& at, const Demand& demand, bool projected, Term::Scratch& scratch,
+  void stiffness(const Iterate& at, const LoadState& load_state, bool projected, Term::Scratch& scratch,
                  LargeVector<double>& slots, Team& team) const override {
-    stiffness(demand, at.positions, projected, static_cast<Scratch&>(scratch), slots, team);
+    stiffness(load_state, at.positions, projected, static_cast<Scratch&>(scratch), slots, team);
   }
-  void tell(const Iterate& at, const Demand& demand, Term::Scratch& scratch, ElementDeformation& out,
-            Team& team) const override {
-    stress(demand, at.positions, static_cast<Scratch&>(scratch), out.stress, team);
+  void describe(const Iterate& at, const LoadState& load_state, Term::Scratch& scratch, ElementDeformation& out,
+                Team& team) const override {
+    stress(load_state, at.positions, static_cast<Scratch&>(scratch), out.stress, team);
   }
 
   /// Voltages and growths.
@@ -118,15 +123,15 @@ class Body : public Term {
     return charges(command) || std::find(growths_.begin(), growths_.end(), command) != growths_.end();
   }
 
-  /// Does the share of what is done to it at once change it: is a layer under voltage prestretched.
+  /// Does the load factor change the body: is a layer under voltage prestretched?
   [[nodiscard]] bool prestretched() const;
 
-  /// What the linear step lacks to turn the elements instead of shearing them (energy/turning.hpp), a pull for each
-  /// vertex: residual of a system with the matrix below.
+  /// Residual of the correction that makes a linear step rotate the elements instead of shearing them
+  /// (energy/turning.hpp), a force for each vertex; laplacian() is the matrix of that system.
   void turning(const Points& positions, const Points& step, Scratch& scratch, Points& residual, Team& team) const;
 
-  /// Sum over quadrature points of volume slope_a . slope_b: one coordinate, lower triangle. Vertices of no element
-  /// have a 1 on the diagonal.
+  /// Sum over quadrature points of volume gradient_a . gradient_b of the shape functions: one coordinate, lower
+  /// triangle. Vertices of no element have a 1 on the diagonal.
   [[nodiscard]] Eigen::SparseMatrix<double> laplacian() const;
 
  private:
@@ -140,7 +145,7 @@ class Body : public Term {
     Index changed = -1;     // place among Scratch's; -1: no command changes its elements
     bool charged = false;   // is it under voltage
     double prestretch = 1;  // then its stretch, which no command changes
-    bool mixed = false;     // tetrahedra with pressures; their law is what split() leaves
+    bool mixed = false;     // tetrahedra with pressures; their law is that of split()
     Index count = 0;
     Index first_pull = 0;         // element e, node i pulls at first_pull + K e + i
     std::int64_t first_slot = 0;  // of its matrices
@@ -157,7 +162,7 @@ class Body : public Term {
       Index first_miss = 0;                                                    // as first_pull, of these
     };
     Corners corners;
-    /// What its branches relax by.
+    /// Moduli and relaxation times of its Maxwell branches.
     struct Viscosity {
       int branches = 0;
       std::vector<energy::Pack> moduli, times;                          // by block: [MPa], [s]
@@ -165,15 +170,15 @@ class Body : public Term {
     };
     Viscosity viscous;
 
-    /// Numbers that a block remembers.
+    /// The number of history values of a block.
     [[nodiscard]] std::size_t strains_each() const {
       return viscous.branches > 0
                  ? std::size_t{6} * Q * energy::lanes * (static_cast<std::size_t>(viscous.branches) + 1)
                  : 0;
     }
-    /// Of an element.
+    /// The number of 3 by 3 matrices of an element.
     [[nodiscard]] int matrices() const { return mixed ? (K + 4) * (K + 5) / 2 : K * (K + 1) / 2; }
-    /// Of Scratch::begun.
+    /// The number of values of a block in Scratch::begun.
     [[nodiscard]] std::size_t begun_each() const {
       return std::size_t{energy::begun_entries} * Q * energy::lanes * static_cast<std::size_t>(viscous.branches);
     }
@@ -199,11 +204,11 @@ class Body : public Term {
     const std::size_t first = block * static_cast<std::size_t>(set.viscous.branches);
     const double* strains = scratch.history ? scratch.history->strains.data() + set.viscous.first_strain : nullptr;
     return {set.viscous.branches, set.viscous.moduli.data() + first,
-            scratch.shares.data() + set.viscous.first_branch + first,
+            scratch.fractions.data() + set.viscous.first_branch + first,
             strains ? strains + set.strains_each() * block : nullptr,
             scratch.begun.data() + set.viscous.first_begun + set.begun_each() * block};
   }
-  Result pull(const Demand& demand, const Points& positions, Scratch& scratch, Team& team) const;
+  Result pull(const LoadState& load_state, const Points& positions, Scratch& scratch, Team& team) const;
   void add_pulls(const Scratch& scratch, Points& sums, Team& team) const;
   template <int K, int Q>
   void store(const Set<K, Q>& set, Index block, const energy::Shape<K>& pull, Scratch& scratch) const;
@@ -218,9 +223,9 @@ class Body : public Term {
     return std::find(voltages_.begin(), voltages_.end(), command) != voltages_.end();
   }
   template <int K, int Q>
-  [[nodiscard]] double stretch_of(const Set<K, Q>& set, const Demand& demand, const Scratch& scratch) const;
-  [[nodiscard]] double fastest_growth(Index command, const Demand& demand) const;
-  void change_elements(const Demand& demand, Scratch& scratch, Team& team) const;
+  [[nodiscard]] double stretch_of(const Set<K, Q>& set, const LoadState& load_state, const Scratch& scratch) const;
+  [[nodiscard]] double fastest_growth(Index command, const LoadState& load_state) const;
+  void change_elements(const LoadState& load_state, Scratch& scratch, Team& team) const;
 
   /// visit(set, its blocks as the commands have changed them)
   template <class Visit>

@@ -10,7 +10,8 @@ using namespace energy;
 
 namespace {
 
-/// Elements along a curve through space that keeps neighbours together: their vertices share cache lines.
+/// Returns the elements in the order of a space-filling curve, so that neighbours have vertices in the same cache
+/// lines.
 template <class Element>
 std::vector<Index> spatial_order(const Points& rest, const std::vector<Element>& elements) {
   const Eigen::RowVector3d low = rest.colwise().minCoeff();
@@ -34,7 +35,7 @@ std::vector<Index> spatial_order(const Points& rest, const std::vector<Element>&
 
 }  // namespace
 
-/// Adds the pressures of an element to a set, into its lane and in advance into those behind.
+/// Adds the pressures of an element to a set, into its lane and in advance into later lanes.
 template <int K, int Q>
 void Body::set_pressures(Set<K, Q>& set, const ElasticLaw& law, const std::array<Index, 4>& vertices, int first_lane) {
   if (first_lane == 0) {
@@ -50,7 +51,7 @@ void Body::set_pressures(Set<K, Q>& set, const ElasticLaw& law, const std::array
   }
 }
 
-/// The set of such elements, begun where there is none yet.
+/// Returns the set of such elements; creates it if there is none yet.
 template <int K, int Q>
 Body::Set<K, Q>& Body::set_of(std::vector<Set<K, Q>>& sets, const Model& model, const ElementRole& role, Index grower,
                               bool mixed) {
@@ -149,7 +150,7 @@ Body::Body(const Model& model, const Pressures* pressures)
   number_pulls();
 }
 
-/// What of each set is where among that of all.
+/// Numbers the pulls, blocks and branches of each set among those of all.
 void Body::number_sets() {
   each_set([&]<int K, int Q>(Set<K, Q>& set) {
     set.first_pull = pulls_;
@@ -176,7 +177,7 @@ void Body::number_sets() {
   count_changed(prisms_);
 }
 
-/// Which pulls are at which vertex.
+/// Lists the pulls at each vertex.
 void Body::number_pulls() {
   const auto each_pull = [&](const auto& visit) {
     each_set([&]<int K, int Q>(Set<K, Q>& set) {
@@ -195,7 +196,7 @@ void Body::number_pulls() {
   each_pull([&](Index vertex, Index pull) { pull_order_[next[vertex]++] = pull; });
 }
 
-/// The permittivities of a set under voltage, whose elements are there.
+/// Sets the permittivities of a set under voltage, after its elements.
 void Body::add_field(const Model& model, Set<6, 6>& set) {
   const std::vector<double> permittivity = layer_permittivity(model, set.actuator);
   const Index tetrahedra = model.elements.tetrahedra.size();

@@ -22,9 +22,9 @@ void Bordered::set_factorised(const Iterate& at) {
 void Bordered::precondition(Columns& columns) {
   if (!columns.moves.isZero(0)) saddle_.solve(columns.moves, team_);
   if (saddle_.active().empty()) return;
-  const Eigen::MatrixXd asked =
+  const Eigen::MatrixXd requested =
       saddle_.scale().asDiagonal() * (saddle_.slopes().transpose() * columns.moves - columns.multipliers);
-  columns.multipliers = saddle_.scale().asDiagonal() * saddle_.schur().solve(asked);
+  columns.multipliers = saddle_.scale().asDiagonal() * saddle_.schur().solve(requested);
   columns.moves.noalias() -= saddle_.responses() * columns.multipliers;
 }
 
@@ -36,7 +36,7 @@ void Bordered::multiply(const Columns& columns, Columns& product) {
   if (compliance_.size() > 0) product.multipliers -= compliance_.asDiagonal() * columns.multipliers;
 }
 
-/// Columns gain from each other's directions, but each is made orthogonal to all: many are solved in blocks.
+/// Solves many columns in blocks: columns profit from each other's directions, but each is made orthogonal to all.
 linear::Remainder Bordered::solve(const Columns& right, double accuracy, int rounds, Columns& found,
                                   const Columns* guess) {
   constexpr Index most = 16;
@@ -62,8 +62,7 @@ linear::Remainder Bordered::solve(const Columns& right, double accuracy, int rou
   return worst;
 }
 
-/// Of multipliers beside moves, for one norm of both: that of the moves, and of those that would cost the multipliers'
-/// energy.
+/// Returns the weights of multipliers in a common norm with moves: a multiplier counts as moves of the same energy.
 Eigen::VectorXd Bordered::weights_of(const Columns& about, const Columns& right) const {
   const double squares = about.moves.squaredNorm();
   const double energy = std::abs(about.moves.cwiseProduct(right.moves - pulls() * about.multipliers).sum());
@@ -102,7 +101,7 @@ linear::Remainder Bordered::solve_block(const Columns& right, double accuracy, i
   };
   Eigen::MatrixXd left(size + count, begin.moves.cols()), x;
   join(begin, left);
-  double known = 1;  // what columns are over what the guess leaves of them, the least
+  double known = 1;  // the least ratio of a column to what the guess leaves of it
   if (guess != nullptr) {
     Eigen::MatrixXd all(left.rows(), left.cols());
     join(*guess, all);

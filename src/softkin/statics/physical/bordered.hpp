@@ -10,30 +10,31 @@ struct Columns {
   Eigen::MatrixXd moves, multipliers;  // of the unknowns, of the active measures
 };
 
-/// K X + P L = right.moves, G^T X - C L = right.multipliers with the stiffness K, the slopes G, their compliances C and
-/// what multipliers pull with, P, of one shape; P is G where no tendon rubs. Solved by Krylov's method with the factor
-/// that the workspace has, of a shape nearby, or of a lower precision.
+/// The equations K X + P L = right.moves, G^T X - C L = right.multipliers of one shape, with the stiffness K, the
+/// gradients G of the measures, their compliances C, and the forces P per unit of the multipliers; P is G if no tendon
+/// has friction. They are solved by a Krylov method with the factor in the workspace, which is of a nearby shape or of
+/// a lower precision.
 class Bordered {
  public:
   /// All must outlive the object.
   Bordered(const System& system, Workspace& work, Team& team)
       : system_(system), work_(work), saddle_(work.saddle), team_(team) {}
 
-  /// The equations of the last factorisation themselves.
+  /// Sets the equations of the last factorisation.
   void set_factorised(const Iterate& at);
 
-  /// The shape, at an iterate, with the balance of its evaluation. The measures must be those of the last
-  /// factorisation, or of couple(); the stiffness is that which was gathered last.
+  /// Sets the shape to an iterate, with the balance of its evaluation. The measures must be those of the last
+  /// factorisation, or of couple(); the stiffness is the one gathered last.
   void set(const Iterate& at, const Balance& balance);
 
-  /// accuracy  of each column, over the right-hand side, both as the factor answers
-  /// rounds    at most
-  /// guess     nearly the solution; null: none is known
-  /// returns   what is left; 1 or more where the constraints depend on each other or a number is not finite
+  /// accuracy  residual of each column over the right-hand side, both preconditioned by the factor
+  /// rounds    maximum number of iterations
+  /// guess     approximate solution; null: none
+  /// returns   the relative residual; 1 or more if the constraints depend on each other or a number is not finite
   linear::Remainder solve(const Columns& right, double accuracy, int rounds, Columns& found,
                           const Columns* guess = nullptr);
 
-  /// The step of a balance, as Saddle::step() says, from zero; change: of all multipliers.
+  /// Computes the step of a balance as Saddle::step() does, from zero; change: of all multipliers.
   linear::Remainder step(const Balance& balance, double accuracy, int rounds, Eigen::VectorXd& step,
                          Eigen::VectorXd& change);
 
@@ -50,7 +51,7 @@ class Bordered {
   Saddle& saddle_;
   Team& team_;
   const Iterate* at_ = nullptr;
-  Eigen::MatrixXd slopes_, pulls_;  // G; P where it is another
+  Eigen::MatrixXd slopes_, pulls_;  // G; P if it differs
   Eigen::VectorXd compliance_;      // C; no rows: 0
 };
 

@@ -3,7 +3,7 @@
 #include <softkin/statics/physical/body.hpp>
 #include <softkin/statics/physical/lanes.hpp>
 
-/// What commands make of elements at rest: the active stretch of layers, and growth.
+/// The effect of commands on elements at rest: active stretch of layers, and growth.
 
 namespace softkin::physical {
 
@@ -11,7 +11,7 @@ using namespace energy;
 
 namespace {
 
-/// Slopes of every element times a matrix of its own; in lanes without one as of the last.
+/// Multiplies the gradients of every element by a matrix of its own, and those of unused lanes by the last one.
 template <int K, int Q, class Matrix>
 void reshape(const std::vector<ElasticBlock<K, Q>>& from, Index count, std::vector<ElasticBlock<K, Q>>& to,
              const Matrix& matrix, Team& team) {
@@ -27,7 +27,7 @@ void reshape(const std::vector<ElasticBlock<K, Q>>& from, Index count, std::vect
 
 }  // namespace
 
-/// Of what grows along directions, those of the elements.
+/// Sets the directions of elements that grow along directions.
 void Body::add_directions(const Model& model) {
   for (const auto& each : model.growths) {
     const Growth& growth = *each;
@@ -49,22 +49,22 @@ void Body::add_directions(const Model& model) {
 }
 
 template <int K, int Q>
-double Body::stretch_of(const Set<K, Q>& set, const Demand& demand, const Scratch& scratch) const {
-  if (set.charged) return 1 + demand.share * (set.prestretch - 1);
+double Body::stretch_of(const Set<K, Q>& set, const LoadState& load_state, const Scratch& scratch) const {
+  if (set.charged) return 1 + load_state.load_factor * (set.prestretch - 1);
   const Index actuator = set.growth ? set.growth->actuator : set.actuator;
-  const double command = demand.actuation[actuator];
+  const double command = load_state.actuation[actuator];
   const double nudge = actuator == scratch.nudged ? scratch.nudge : 0;
   if (!set.growth) return command + nudge;
   return set.growth->stretch(command) + nudge * set.growth->slope(command);
 }
 
-/// F = F_e G: slopes become G^-T times those at rest, volumes det(G) times. Of a layer with
-/// G = diag(sqrt(ratio), sqrt(ratio), 1 / ratio) in its frame.
-void Body::change_elements(const Demand& demand, Scratch& scratch, Team& team) const {
+/// F = F_e G: gradients become G^-T times those at rest, volumes det(G) times. A layer has G = diag(sqrt(ratio),
+/// sqrt(ratio), 1 / ratio) in its frame.
+void Body::change_elements(const LoadState& load_state, Scratch& scratch, Team& team) const {
   each_set([&]<int K, int Q>(const Set<K, Q>& set) {
     if (set.changed < 0) return;
     Changed<K, Q>& changed = changed_of<K, Q>(scratch)[set.changed];
-    const double stretch = stretch_of(set, demand, scratch);
+    const double stretch = stretch_of(set, load_state, scratch);
     if (changed.stretch == stretch) return;
     changed.stretch = stretch;
     if (set.grower < 0) {

@@ -20,10 +20,9 @@ constexpr double touching = 1e-9;      // over the robot's diagonal: nearer than
 constexpr double too_close = 2;        // over the contact distance
 constexpr double advised = 2.2;        // gap over the distance to choose
 constexpr double neighbourhood = 6;    // along the surface, over the contact distance
-constexpr double facing_cosine = 0.5;  // between the way across and the normals
+constexpr double facing_cosine = 0.5;  // between the line across the gap and the normals
 
-/// What the checks share: the surfaces in a shape, at rest mostly, and which part each of their vertices and
-/// triangles is of.
+/// Data of all checks: the surfaces in a shape, at rest mostly, and the part of each of their vertices and triangles.
 class RestingSurfaces {
  public:
   RestingSurfaces(const Model& of, const Points& nodes)
@@ -62,7 +61,8 @@ class RestingSurfaces {
     return model.contact.pair(part(triangle), part(other)).touch;
   }
   [[nodiscard]] bool sheet(Index triangle) const { return model.contact.sheet(triangle); }
-  /// A sheet of a robot and more of that robot: where they lie on each other at rest they do not feel each other.
+  /// Are they a sheet and a surface of the same robot? Where these lie on each other at rest, contact between them is
+  /// excluded.
   [[nodiscard]] bool sheet_on_own(Index triangle, Index other) const {
     return (sheet(triangle) || sheet(other)) && solid(triangle) == solid(other);
   }
@@ -70,7 +70,7 @@ class RestingSurfaces {
   [[nodiscard]] bool kept_apart(Index triangle, Index other) const {
     return may_touch(triangle, other) && !sheet_on_own(triangle, other);
   }
-  /// Is a side as near to a triangle at rest as what does not feel each other is?
+  /// Is a side so near to a triangle at rest that contact between them is excluded?
   [[nodiscard]] bool near_at_rest(const contact::Ends& side, Index triangle) const {
     const contact::Corners& c = corners(triangle);
     double least = std::numeric_limits<double>::infinity();
@@ -126,7 +126,7 @@ std::string turned_text(const Vec3& normal) {
   return text + "]";
 }
 
-/// Vertices on the wrong side of half-spaces.
+/// Rejects vertices on the wrong side of half-spaces.
 void refuse_behind_planes(const RestingSurfaces& at) {
   const Model& model = at.model;
   for (std::size_t t = 0; t < at.surface.triangles.size(); ++t) {
@@ -170,8 +170,8 @@ std::optional<Vec3> crossing(const Vec3& from, const Vec3& to, const Vec3& a, co
   return from + hit->t * (to - from);
 }
 
-/// How far a translation has to take apart what crosses, about: the depth of the deepest vertex of either in the other;
-/// 0 where none is inside.
+/// Estimates the translation that separates two crossing surfaces: the depth of the deepest vertex of either in the
+/// other; 0 where none is inside.
 double depth_of(const Points& rest, const std::vector<Triangle>& one, const std::vector<Triangle>& other) {
   double deepest = 0;
   const auto look = [&](const std::vector<Triangle>& triangles, const std::vector<Triangle>& around) {
@@ -241,7 +241,7 @@ std::optional<Crossing> find_crossing(RestingSurfaces& at) {
   return found;
 }
 
-/// Surfaces without a gap that do not pass through each other.
+/// Rejects surfaces without a gap that do not pass through each other.
 void refuse_touching(RestingSurfaces& at) {
   const double least = touching * at.model.diagonal_mm;
   contact::Candidates near;
@@ -271,7 +271,7 @@ std::vector<Vec3> one_of_each(const Points& rest, const std::vector<Triangle>& t
   return points;
 }
 
-/// What does not cross is inside with all of a piece or with none.
+/// Rejects pieces inside a solid. One vertex of each is enough, as surfaces do not cross.
 void refuse_inside(const RestingSurfaces& at) {
   const Points& rest = at.points;
   struct Solid {
@@ -324,13 +324,13 @@ std::vector<Vec3> vertex_normals(const RestingSurfaces& at) {
   return normals;
 }
 
-/// Answers what is near along a surface.
+/// Finds distances along a surface.
 class SurfaceWalk {
  public:
   explicit SurfaceWalk(const RestingSurfaces& at)
       : at_(at), next_(contact::neighbours_of(at.surface, at.points.rows(), 1)) {}
 
-  /// Is the point of a triangle at most so far from the vertex, along edges to a corner and from there straight [mm]?
+  /// Is the point of a triangle within a length of the vertex, along edges to a corner and from there straight [mm]?
   [[nodiscard]] bool reaches(Index vertex, const contact::Corners& corners, const Vec3& point, double length) const {
     using Reached = std::pair<double, Index>;
     std::priority_queue<Reached, std::vector<Reached>, std::greater<>> waiting;
@@ -345,12 +345,12 @@ class SurfaceWalk {
       const std::size_t v = from;
       for (Index i = next_.begin[v]; i < next_.begin[v + 1]; ++i) {
         const Index to = next_.items[i];
-        const double way = gone + (at_.rest(to) - at_.rest(from)).norm();
-        if (way > length) continue;
-        const auto [known, fresh] = shortest.emplace(to, way);
-        if (!fresh && known->second <= way) continue;
-        known->second = way;
-        waiting.emplace(way, to);
+        const double motion = gone + (at_.rest(to) - at_.rest(from)).norm();
+        if (motion > length) continue;
+        const auto [known, fresh] = shortest.emplace(to, motion);
+        if (!fresh && known->second <= motion) continue;
+        known->second = motion;
+        waiting.emplace(motion, to);
       }
     }
     return false;
@@ -361,7 +361,7 @@ class SurfaceWalk {
   contact::Lists next_;  // of every vertex of the model those an edge away, itself included
 };
 
-/// Places of the robot that look at each other from too near.
+/// Rejects gaps of the robot that are too narrow for the contact distance.
 void refuse_narrow_gaps(RestingSurfaces& at) {
   const double distance = at.model.contact.distance_mm;
   contact::Candidates near;
@@ -379,9 +379,9 @@ void refuse_narrow_gaps(RestingSurfaces& at) {
     const contact::Separation separation = contact::vertex_triangle(x);
     const double apart = std::sqrt(separation.squared);
     if (!(apart < gap)) continue;
-    const Vec3 way = -separation.vector / apart;  // from the vertex to the triangle
+    const Vec3 motion = -separation.vector / apart;  // from the vertex to the triangle
     const Vec3 normal = (x.col(2) - x.col(1)).cross(x.col(3) - x.col(1)).normalized();
-    if (!(way.dot(normals[pair.first]) > facing_cosine && -way.dot(normal) > facing_cosine)) continue;
+    if (!(motion.dot(normals[pair.first]) > facing_cosine && -motion.dot(normal) > facing_cosine)) continue;
     const double edge =
         std::max({(x.col(2) - x.col(1)).norm(), (x.col(3) - x.col(2)).norm(), (x.col(1) - x.col(3)).norm()});
     if (!walk) walk.emplace(at);

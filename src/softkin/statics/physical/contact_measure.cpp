@@ -8,15 +8,16 @@ namespace softkin::physical {
 
 namespace {
 
-/// A vertex that carries pressure for less, over the area of a guard, is one.
+/// A vertex is a guard if it carries pressure for an area of less than this many guard areas.
 constexpr double guards_area = 2;
-/// Of the area around a vertex, what faces a force at least: along a surface no pressure tells anything.
-constexpr double least_facing = 0.05;
-/// Pressure below which a vertex does not count as touching, over the largest.
+/// Smallest fraction of the area around a vertex that counts as facing a force: a force along the surface determines no
+/// pressure.
+constexpr double min_facing = 0.05;
+/// Pressure below which a vertex does not count as in contact, over the largest.
 constexpr double faint = 0.01;
 constexpr double kPa_per_MPa = 1e3;
 
-/// A surface as forces on its vertices see it; vertices by their place in it.
+/// Converts forces on the vertices of a surface to pressures; vertices are numbered by their place in the surface.
 class PressedSurface {
  public:
   PressedSurface(const ContactSurfaces& surfaces, const Points& positions) : surfaces_(surfaces) {
@@ -29,14 +30,14 @@ class PressedSurface {
     for (std::size_t v = 0; v < surface.vertices.size(); ++v) place_[surface.vertices[v]] = v;
   }
 
-  /// Of a vertex of the model.
+  /// The place of a vertex of the model.
   [[nodiscard]] Index place(Index vertex) const { return place_[vertex]; }
   [[nodiscard]] Index size() const { return surfaces_.surface.vertices.size(); }
 
   struct Pressures {
     std::vector<double> pressure_MPa, area_mm2;  // of every vertex; area: 0 of guards and where nothing presses
   };
-  /// Of forces on the vertices [N].
+  /// Returns the pressures under forces on the vertices [N].
   [[nodiscard]] Pressures under(const Points& forces) const {
     Points borne = Points::Zero(size(), 3);
     std::vector<Index> guards;
@@ -44,7 +45,7 @@ class PressedSurface {
       const Vec3 force = forces.row(v);
       if (force.isZero(0)) continue;
       const bool passed =
-          visit_bearers(v, force, [&](Index by, double share) { borne.row(by) += share * force.transpose(); });
+          visit_bearers(v, force, [&](Index by, double fraction) { borne.row(by) += fraction * force.transpose(); });
       if (passed) guards.push_back(v);
     }
     Pressures out{std::vector<double>(size()), {}};
@@ -58,7 +59,7 @@ class PressedSurface {
     }
     for (const Index v : guards) {
       double mean = 0;
-      visit_bearers(v, forces.row(v), [&](Index by, double share) { mean += share * out.pressure_MPa[by]; });
+      visit_bearers(v, forces.row(v), [&](Index by, double fraction) { mean += fraction * out.pressure_MPa[by]; });
       out.pressure_MPa[v] = mean;
     }
     return out;
@@ -69,7 +70,7 @@ class PressedSurface {
     return surfaces_.vertex_area[place] < guards_area * surfaces_.guard_area;
   }
 
-  /// Corners of a triangle that share its area: those that are no guards, or all.
+  /// Finds the corners of a triangle among which its area is divided: those that are no guards, or all if all are.
   [[nodiscard]] int bearers(Index triangle, std::array<Index, 3>& out) const {
     int count = 0;
     for (const bool all : {false, true}) {
@@ -89,26 +90,26 @@ class PressedSurface {
     return std::max(0.0, -area_[triangle].dot(direction));
   }
 
-  /// visit(vertex, share) of those that bear a force on a vertex; returns whether they are others.
+  /// Calls visit(vertex, fraction) for the vertices that carry the force on a vertex; returns whether they are others.
   bool visit_bearers(Index v, const Vec3& force, const auto& visit) const {
-    std::map<Index, double> shares;
+    std::map<Index, double> fractions;
     if (is_guard(v)) {
       const Vec3 direction = force.normalized();
-      for (const bool any : {false, true}) {  // any: where nothing faces the force
+      for (const bool any : {false, true}) {  // any: where no triangle faces the force
         double sum = 0;
         visit_around(v, [&](Index t) {
           std::array<Index, 3> by{};
           const int count = bearers(t, by);
-          const double share = any ? 1 : facing(t, direction);
+          const double fraction = any ? 1 : facing(t, direction);
           for (int i = 0; i < count; ++i) {
             const Index other = by[i];
-            if (is_guard(other) || !(share > 0)) continue;
-            shares[other] += share / count;
-            sum += share / count;
+            if (is_guard(other) || !(fraction > 0)) continue;
+            fractions[other] += fraction / count;
+            sum += fraction / count;
           }
         });
         if (!(sum > 0)) continue;
-        for (auto& [other, share] : shares) visit(other, share / sum);
+        for (auto& [other, fraction] : fractions) visit(other, fraction / sum);
         return true;
       }
     }
@@ -125,7 +126,7 @@ class PressedSurface {
       seen += facing(t, direction) / count;
       all += area_[t].norm() / count;
     });
-    return std::max(seen, least_facing * all);
+    return std::max(seen, min_facing * all);
   }
 
   const ContactSurfaces& surfaces_;
@@ -155,7 +156,7 @@ Vec3 place_of(const Points& positions, const ContactPotential::Term& term, const
   return place;
 }
 
-/// What the terms between two parts add up to, on the first of them.
+/// The sum of the terms between two parts, as forces on the first one.
 struct PairSum {
   PairForces forces;
   Vec3 moment = Vec3::Zero(), pressed = Vec3::Zero();  // about the origin; places by their normal force
@@ -233,9 +234,9 @@ Points contact_changes(const ContactPotential& potential, const Points& position
   Points change = Points::Zero(positions.rows(), 3);
   contact::Hessian block;
   const auto add = [&](const contact::Nodes& nodes) {
-    contact::Gradient way;
-    for (int i = 0; i < 4; ++i) way.segment<3>(3 * i) = moves.row(nodes[i]).transpose();
-    const contact::Gradient pull = block * way;
+    contact::Gradient motion;
+    for (int i = 0; i < 4; ++i) motion.segment<3>(3 * i) = moves.row(nodes[i]).transpose();
+    const contact::Gradient pull = block * motion;
     for (int i = 0; i < 4; ++i) change.row(nodes[i]) += pull.segment<3>(3 * i).transpose();
   };
   for (const ContactPotential::Term& term : terms) {

@@ -41,7 +41,7 @@ bool same_robot(const ContactSurfaces& surfaces, const std::vector<Index>& a_par
   return robot(a_parts, a) >= 0 && robot(a_parts, a) == robot(b_parts, b);
 }
 
-/// Of n, how the separation's length changes with the points.
+/// Returns the gradient by the points of a separation's length, for its unit normal.
 contact::Gradient length_gradient(const Separation& separation, const Vec3& normal) {
   contact::Gradient out;
   for (int i = 0; i < 4; ++i) out.segment<3>(3 * i) = separation.weights[i] * normal;
@@ -72,7 +72,7 @@ void sort_candidates(Candidates& candidates) {
 
 namespace {
 
-/// Of the same robot what is nearer at rest than twice the reach.
+/// Returns the pairs of the same robot that are closer at rest than twice the reach.
 Candidates near_at_rest(const Points& rest, contact::BroadPhase& broad, Team& team, const ContactSurfaces& surfaces) {
   const contact::Surface& surface = surfaces.surface;
   const double near = 4 * surfaces.reach_mm * surfaces.reach_mm;
@@ -118,7 +118,7 @@ contact::Lists lying_together(const Points& rest, contact::BroadPhase& broad, Te
 
 namespace {
 
-/// Triangles and edges at vertices that lie on a vertex or on an end of an edge.
+/// Adds triangles and edges at vertices that lie on a vertex or on an end of an edge.
 void add_lying_together(const contact::Surface& surface, const contact::Lists& together, std::vector<Pair>& triangles,
                         std::vector<Pair>& edges) {
   if (together.items.empty()) return;
@@ -160,7 +160,7 @@ void leave_out_neighbours(const Points& rest, contact::BroadPhase& broad, Team& 
   surfaces.unfelt_edges = lists_of(surface.edges.size(), edges);
 }
 
-/// A triangle, edge or vertex of the surface that a vertex is closest to, and how often it counts.
+/// The triangle, edge or vertex of the surface to which a vertex is closest, and its multiplicity.
 struct ContactPotential::Feature {
   int corners;  // 3: a triangle, 2: an edge, 1: a vertex
   Index place, count;
@@ -183,7 +183,7 @@ bool ContactPotential::edges_felt(const Pair& edges) const {
          !contains(surfaces_.unfelt_edges, edges.first, edges.second);
 }
 
-/// Triangles at an edge that a vertex feels.
+/// Returns the number of triangles at an edge that interact with a vertex.
 Index ContactPotential::felt_at(Index vertex, Index edge) const {
   const contact::Lists& around = surfaces_.surface.edge_triangles;
   Index count = 0;
@@ -193,7 +193,7 @@ Index ContactPotential::felt_at(Index vertex, Index edge) const {
 
 namespace {
 
-/// Which side of a triangle two of its corners are, by the bits of a separation's nodes.
+/// Returns the side of a triangle that two of its corners form, by the bits of a separation's nodes.
 int side_of(std::uint8_t nodes) {
   return nodes == 0b0111 ? 0 : nodes == 0b1101 ? 1 : 2;  // corners 0 1, 1 2, 2 0
 }
@@ -206,19 +206,19 @@ void note_once(std::vector<Index>& seen, Index item, const auto& visit) {
 
 }  // namespace
 
-double ContactPotential::reach_of(Index vertex, Index triangle, const ContactFirmness& firmness) const {
-  const bool wider =
-      firmness.reach != 1 && !same_robot(surfaces_, surfaces_.vertex_part, vertex, surfaces_.triangle_part, triangle);
-  return wider ? firmness.reach * surfaces_.reach_mm : surfaces_.reach_mm;
+double ContactPotential::reach_of(Index vertex, Index triangle, const ContactStiffnessScale& stiffness_scale) const {
+  const bool wider = stiffness_scale.reach != 1 &&
+                     !same_robot(surfaces_, surfaces_.vertex_part, vertex, surfaces_.triangle_part, triangle);
+  return wider ? stiffness_scale.reach * surfaces_.reach_mm : surfaces_.reach_mm;
 }
 
-double ContactPotential::reach_of_edges(const Pair& edges, const ContactFirmness& firmness) const {
-  const bool wider = firmness.reach != 1 &&
+double ContactPotential::reach_of_edges(const Pair& edges, const ContactStiffnessScale& stiffness_scale) const {
+  const bool wider = stiffness_scale.reach != 1 &&
                      !same_robot(surfaces_, surfaces_.edge_part, edges.first, surfaces_.edge_part, edges.second);
-  return wider ? firmness.reach * surfaces_.reach_mm : surfaces_.reach_mm;
+  return wider ? stiffness_scale.reach * surfaces_.reach_mm : surfaces_.reach_mm;
 }
 
-/// count  of what the separation was looked for in: a triangle, or a side or corner of it
+/// count  multiplicity of the triangle, or of the side or corner of it, to which the separation was computed
 void ContactPotential::count(Index triangle, const Separation& separation, Index count, Index pair, double reach,
                              std::vector<Feature>& features) const {
   if (!(separation.squared < reach * reach)) return;
@@ -236,7 +236,7 @@ void ContactPotential::count(Index triangle, const Separation& separation, Index
   features.push_back({corners, place, count, separation, pair});
 }
 
-/// Of a corner of a triangle: 1, less the triangles around it that are felt, plus the edges between those.
+/// Returns the multiplicity of a corner: 1, minus the interacting triangles around it, plus the edges of these at it.
 Index ContactPotential::count_at(Index vertex, Index corner) const {
   const contact::Surface& surface = surfaces_.surface;
   const std::size_t place = place_[corner];
@@ -256,17 +256,19 @@ Index ContactPotential::count_at(Index vertex, Index corner) const {
 
 namespace {
 
-/// Of a gap, per area and the scene's modulus.
-energy::LengthLaw law_of(const Separation& separation, double reach, const ContactFirmness& firmness) {
+/// Returns the barrier law of a gap, per area and the scene's modulus.
+energy::LengthLaw law_of(const Separation& separation, double reach, const ContactStiffnessScale& stiffness_scale) {
   energy::LengthLaw law = energy::barrier(std::sqrt(separation.squared), reach);
-  if (firmness.modulus == 1) return law;
-  return {firmness.modulus * law.value, firmness.modulus * law.slope, firmness.modulus * law.curvature};
+  if (stiffness_scale.modulus == 1) return law;
+  return {stiffness_scale.modulus * law.value, stiffness_scale.modulus * law.slope,
+          stiffness_scale.modulus * law.curvature};
 }
 
 }  // namespace
 
 void ContactPotential::add_vertex(const Points& positions, const Candidates& candidates, std::size_t begin,
-                                  std::size_t end, const ContactFirmness& firmness, std::vector<Term>& terms) const {
+                                  std::size_t end, const ContactStiffnessScale& stiffness_scale,
+                                  std::vector<Term>& terms) const {
   const contact::Surface& surface = surfaces_.surface;
   const Index vertex = candidates.vertex_triangle[begin].first;
   std::vector<Feature> features;
@@ -275,7 +277,7 @@ void ContactPotential::add_vertex(const Points& positions, const Candidates& can
     const Pair& pair = candidates.vertex_triangle[i];
     if (!felt(vertex, pair.second)) continue;
     const Separation found = contact::vertex_triangle(points_of(positions, nodes_of_vertex_triangle(surface, pair)));
-    const double reach = firmness.foresight * reach_of(vertex, pair.second, firmness);
+    const double reach = stiffness_scale.foresight * reach_of(vertex, pair.second, stiffness_scale);
     if (!(found.squared < reach * reach)) continue;
     count(pair.second, found, 1, i, reach, features);
     near.push_back(i);
@@ -284,7 +286,7 @@ void ContactPotential::add_vertex(const Points& positions, const Candidates& can
   for (const std::size_t i : near) {
     const Pair& pair = candidates.vertex_triangle[i];
     const FourPoints x = points_of(positions, nodes_of_vertex_triangle(surface, pair));
-    const double reach = firmness.foresight * reach_of(vertex, pair.second, firmness);
+    const double reach = stiffness_scale.foresight * reach_of(vertex, pair.second, stiffness_scale);
     for (int k = 0; k < 3; ++k) {
       const Index edge = surface.triangle_edges[pair.second][k];
       note_once(edges, edge, [&] {
@@ -303,17 +305,17 @@ void ContactPotential::add_vertex(const Points& positions, const Candidates& can
     const Pair& pair = candidates.vertex_triangle[feature.pair];
     const double weight = surfaces_.modulus_MPa * surfaces_.area(vertex, pair.second);
     terms.push_back({nodes_of_vertex_triangle(surface, pair), feature.separation, feature.count * weight, 0, pair,
-                     law_of(feature.separation, reach_of(vertex, pair.second, firmness), firmness)});
+                     law_of(feature.separation, reach_of(vertex, pair.second, stiffness_scale), stiffness_scale)});
   }
 }
 
 void ContactPotential::find(const Points& positions, const Candidates& candidates, std::vector<Term>& terms,
-                            const ContactFirmness& firmness) const {
+                            const ContactStiffnessScale& stiffness_scale) const {
   terms.clear();
   const std::vector<Pair>& vertices = candidates.vertex_triangle;
   for (std::size_t i = 0, j = 0; i < vertices.size(); i = j) {
     for (j = i + 1; j < vertices.size() && vertices[j].first == vertices[i].first;) ++j;
-    add_vertex(positions, candidates, i, j, firmness, terms);
+    add_vertex(positions, candidates, i, j, stiffness_scale, terms);
   }
   const contact::Surface& surface = surfaces_.surface;
   for (std::size_t i = 0; i < candidates.edge_edge.size(); ++i) {
@@ -321,10 +323,11 @@ void ContactPotential::find(const Points& positions, const Candidates& candidate
     if (!edges_felt(pair)) continue;
     const contact::Nodes nodes = nodes_of_edge_edge(surface, pair);
     const Separation found = contact::edge_edge(points_of(positions, nodes));
-    const double reach = reach_of_edges(pair, firmness);
-    if (!(std::sqrt(found.squared) < firmness.foresight * reach)) continue;
+    const double reach = reach_of_edges(pair, stiffness_scale);
+    if (!(std::sqrt(found.squared) < stiffness_scale.foresight * reach)) continue;
     terms.push_back({nodes, found, surfaces_.modulus_MPa * surfaces_.area_of_edges(pair.first, pair.second),
-                     contact::mollifier_threshold(points_of(rest_, nodes)), pair, law_of(found, reach, firmness)});
+                     contact::mollifier_threshold(points_of(rest_, nodes)), pair,
+                     law_of(found, reach, stiffness_scale)});
   }
 }
 

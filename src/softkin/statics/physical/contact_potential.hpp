@@ -6,57 +6,58 @@
 
 namespace softkin::physical {
 
-/// Surfaces that may touch, and what the potential between them needs.
+/// Surfaces that may have contact, and the data of the potential between them.
 struct ContactSurfaces {
   contact::Surface surface;
   std::vector<double> vertex_area{}, edge_area{};  // that each carries pressure for, by place in the surface [mm^2]
   double reach_mm = 0;                             // > 0: surfaces that are closer repel each other
   double modulus_MPa = 0;                          // > 0: of that repulsion
-  /// Of every vertex, by place: triangles that it does not feel, ascending, those around it among them.
+  /// For every vertex, by place: triangles with which it has no contact, ascending, including those around it.
   contact::Lists unfelt_triangles{};
-  /// Of every edge, by place: edges after it that it does not feel, ascending.
+  /// For every edge, by place: later edges with which it has no contact, ascending.
   contact::Lists unfelt_edges{};
 
   // of surfaces of several parts; else empty
   const ContactModel* rules = nullptr;
   std::vector<Index> vertex_part{}, edge_part{}, triangle_part{};  // by place
-  double guard_area = 0;  // for which a vertex carries pressure against what it stands behind in rank [mm^2]
+  double guard_area = 0;  // for which a vertex carries pressure against a part of a lower ContactRank [mm^2]
 
-  /// For which a vertex carries pressure against a triangle [mm^2].
+  /// The area for which a vertex carries pressure against a triangle [mm^2].
   [[nodiscard]] double area(Index vertex, Index triangle) const;
-  /// For which two edges do; they only keep each other from crossing.
+  /// The area for which two edges carry pressure [mm^2]; they only keep each other from crossing.
   [[nodiscard]] double area_of_edges(Index a, Index b) const;
 };
 
-/// How contact is felt for a while, other than the scene has it.
-struct ContactFirmness {
+/// Temporary scales of the contact law, over that of the scene.
+struct ContactStiffnessScale {
   double modulus = 1;    // over the scene's
   double reach = 1;      // over the scene's, of different solids
-  double foresight = 1;  // up to so many reaches surfaces are looked at that do not feel each other yet
-  bool operator==(const ContactFirmness&) const = default;
+  double foresight = 1;  // range in which future contacts are searched, over the reach
+  bool operator==(const ContactStiffnessScale&) const = default;
 };
 
-/// With what a vertex and a part, or two edges, push each other: kept from shape to shape, while gaps come to what goes
-/// with it.
+/// The contact force between a vertex and a part, or two edges: it is kept from shape to shape, until the gap
+/// corresponds to it.
 struct ContactPush {
   Index first, second;  // vertex and part, or two edges
   bool edges;
   double push = 0;       // per area, over the modulus
-  double shift = 0;      // from the gap in the shape at hand to that at which firm contact pushes so [mm]
+  double shift = 0;      // from the current gap to that of the scene's contact at this force [mm]
   double stiffness = 0;  // [1/mm]
-  Index term = -1;       // that is nearest
+  Index term = -1;       // the nearest one
 };
 
-/// Closeness of a robot to itself at rest is no contact: none of its vertices and edges feels what is nearer than twice
-/// the reach at rest.
+/// Excludes features of a robot that are near each other at rest from contact: pairs of its vertices, edges and
+/// triangles that are nearer at rest than twice the reach.
 ///
 /// broad     of that surface
-/// together  of lying_together
+/// together  as returned by lying_together()
 void leave_out_neighbours(const Points& rest, contact::BroadPhase& broad, Team& team, ContactSurfaces& surfaces,
                           const contact::Lists& together = {});
 
-/// Sheets of a robot that lie on each other at rest, or on its body, pass through each other there: of every row of the
-/// positions vertices of features that are nearer at rest than twice the reach to one of which it is.
+/// Finds sheets of a robot that lie on each other or on its body at rest, and pass through each other there. Returns
+/// for every row of the positions the vertices of features that are nearer at rest than twice the reach to a feature
+/// with that vertex.
 ///
 /// broad  of that surface
 [[nodiscard]] contact::Lists lying_together(const Points& rest, contact::BroadPhase& broad, Team& team,
@@ -69,7 +70,7 @@ void leave_out_neighbours(const Points& rest, contact::BroadPhase& broad, Team& 
 ///
 /// source     barrier: energy/contact_laws.hpp; exclusion of duplicates: Li et al. 2023, "Convergent incremental
 ///            potential contact"
-/// deviation  edges carry a small share of the area: they only keep crossing edges apart
+/// deviation  edges carry a small fraction of the area: they only keep crossing edges apart
 class ContactPotential {
  public:
   /// surfaces and rest must outlive the object
@@ -89,40 +90,40 @@ class ContactPotential {
   ///
   /// candidates  all pairs that are closer than the reach; sorted
   void find(const Points& positions, const contact::Candidates& candidates, std::vector<Term>& terms,
-            const ContactFirmness& firmness = {}) const;
+            const ContactStiffnessScale& stiffness_scale = {}) const;
 
-  /// What terms push with, ascending.
+  /// Returns the contact forces of terms, ascending.
   [[nodiscard]] std::vector<ContactPush> pushes(const std::vector<Term>& terms) const;
-  /// Straightens the laws of terms that were found: lines through what they push with and the gaps that go with it in
-  /// the scene's contact. Forgets what is gone, and adds what begins to push.
+  /// Replaces the laws of terms that were found by straight lines through their contact forces and the gaps at which
+  /// the scene's contact has these forces. Drops the forces of terms that no longer exist, and adds those of new terms.
   void straighten(std::vector<Term>& terms, std::vector<ContactPush>& pushes) const;
-  /// What they push with after so much of a move of the vertices, by these lines.
-  void follow(const std::vector<Term>& terms, const Points& moves, double share,
+  /// Updates the contact forces by these lines, after a fraction of a move of the vertices.
+  void follow(const std::vector<Term>& terms, const Points& moves, double fraction,
               std::vector<ContactPush>& pushes) const;
 
-  /// [mJ]; infinite where a pair touches.
+  /// [mJ]; infinite where the gap of a pair is 0.
   [[nodiscard]] double energy(const Points& positions, const std::vector<Term>& terms) const;
 
   /// Adds the gradient of the energy [N].
   void add_gradient(const Points& positions, const std::vector<Term>& terms, Points& gradient) const;
 
-  /// That of one term in its nodes [N].
+  /// The gradient of one term by its nodes [N].
   [[nodiscard]] contact::Gradient gradient(const Points& positions, const Term& term) const;
 
-  /// Second derivative of a term in its nodes [N/mm]; projected: a positive semidefinite part of it.
+  /// Second derivative of a term by its nodes [N/mm]; projected: a positive semidefinite part of it.
   void stiffness(const Points& positions, const Term& term, bool projected, contact::Hessian& out) const;
 
-  /// May a vertex come to feel a triangle; may two edges?
+  /// Can a vertex have contact with a triangle; can two edges?
   [[nodiscard]] bool felt(Index vertex, Index triangle) const;
   [[nodiscard]] bool edges_felt(const contact::Pair& edges) const;
-  /// How near they come to do so, as contact is felt for a while [mm].
-  [[nodiscard]] double reach_of(Index vertex, Index triangle, const ContactFirmness& firmness) const;
-  [[nodiscard]] double reach_of_edges(const contact::Pair& edges, const ContactFirmness& firmness) const;
+  /// The gap at which their contact begins, with temporary scales [mm].
+  [[nodiscard]] double reach_of(Index vertex, Index triangle, const ContactStiffnessScale& stiffness_scale) const;
+  [[nodiscard]] double reach_of_edges(const contact::Pair& edges, const ContactStiffnessScale& stiffness_scale) const;
 
  private:
   struct Feature;
   void add_vertex(const Points& positions, const contact::Candidates& candidates, std::size_t begin, std::size_t end,
-                  const ContactFirmness& firmness, std::vector<Term>& terms) const;
+                  const ContactStiffnessScale& stiffness_scale, std::vector<Term>& terms) const;
   void count(Index triangle, const contact::Separation& separation, Index count, Index pair, double reach,
              std::vector<Feature>& features) const;
   [[nodiscard]] ContactPush push_of(const Term& term) const;

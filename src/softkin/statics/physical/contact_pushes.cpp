@@ -3,7 +3,7 @@
 #include <softkin/statics/physical/contact_potential.hpp>
 #include <tuple>
 
-// Pushes of what touches, as unknowns of their own.
+// Contact forces as unknowns of their own.
 
 namespace softkin::physical {
 
@@ -11,7 +11,7 @@ using contact::points_of;
 
 namespace {
 
-/// The gap at which a barrier pushes so much.
+/// Returns the gap at which the barrier has this contact force.
 double gap_of_push(double push, double reach, double modulus) {
   double nearer = 0, farther = reach;
   const double wanted = push / modulus;
@@ -32,13 +32,13 @@ bool push_before(const ContactPush& a, const ContactPush& b) {
   return std::tie(a.edges, a.first, a.second) < std::tie(b.edges, b.first, b.second);
 }
 
-/// Of one vertex and part, or two edges, the one that pushes most comes first.
+/// Orders by vertex and part, or by edges, and contacts of the same by decreasing force.
 bool strongest_first(const ContactPush& a, const ContactPush& b) {
   if (push_before(a, b) || push_before(b, a)) return push_before(a, b);
   return a.push > b.push;
 }
 
-/// The one of the same vertex and part, or edges; none: null.
+/// Returns the contact force of the same vertex and part, or edges; null: there is none.
 ContactPush* same_push(std::vector<ContactPush>& sorted, const ContactPush& as) {
   const auto found = std::lower_bound(sorted.begin(), sorted.end(), as, push_before);
   return found == sorted.end() || push_before(as, *found) ? nullptr : &*found;
@@ -69,9 +69,9 @@ std::vector<ContactPush> ContactPotential::pushes(const std::vector<Term>& terms
   return nearest;
 }
 
-/// Of gap and push of a law one is right where shapes change: the push where something rests, the gap where it does
-/// not. The line has the slope of the law where it pushes so, or where the gap for that is far below the gap at hand,
-/// the one with which the push vanishes where the gap does not change.
+/// Linearises the barrier laws. When the shape changes, either the contact force or the gap of a contact stays right:
+/// the force if the contact persists, the gap if it opens. The line has the slope of the law at the known force. If the
+/// gap for that force is far below the current gap, it has the slope with which the force vanishes at the current gap.
 void ContactPotential::straighten(std::vector<Term>& terms, std::vector<ContactPush>& known_pushes) const {
   double most = 0;
   for (ContactPush& push : known_pushes) {
@@ -94,7 +94,7 @@ void ContactPotential::straighten(std::vector<Term>& terms, std::vector<ContactP
   fresh.erase(std::unique(fresh.begin(), fresh.end(),
                           [](const ContactPush& a, const ContactPush& b) { return !push_before(a, b); }),
               fresh.end());
-  for (ContactPush& push : fresh)  // how deep it came is by chance
+  for (ContactPush& push : fresh)  // its depth depends on the step
     if (most > 0) push.push = std::min(push.push, most);
   known_pushes.insert(known_pushes.end(), fresh.begin(), fresh.end());
   std::erase_if(known_pushes, [](const ContactPush& push) { return push.term < 0; });
@@ -114,14 +114,14 @@ void ContactPotential::straighten(std::vector<Term>& terms, std::vector<ContactP
   }
 }
 
-void ContactPotential::follow(const std::vector<Term>& terms, const Points& moves, double share,
+void ContactPotential::follow(const std::vector<Term>& terms, const Points& moves, double fraction,
                               std::vector<ContactPush>& known_pushes) const {
-  constexpr double least = 0.1;  // that one step leaves of a push
+  constexpr double least = 0.1;  // minimum fraction of a contact force that remains after a step
   for (ContactPush& push : known_pushes) {
     const Term& term = terms[push.term];
     const Vec3 normal = term.separation.vector / std::sqrt(term.separation.squared);
     const double wider = normal.dot(points_of(moves, term.nodes) * term.separation.weights);
-    const double next = push.push + share * push.stiffness * (push.shift - wider);
+    const double next = push.push + fraction * push.stiffness * (push.shift - wider);
     push.push = std::max(next, least * push.push);
   }
 }

@@ -12,7 +12,7 @@ void hold_friction(const System& system, const Iterate& at, Workspace& work, Tea
   system.contacts()->friction().hold(work.contacts->terms, at.anchors, work.contacts->holds);
 }
 
-double renew_friction(const System& system, const Points& from, const FreeWay& free, Iterate& at, Workspace& work,
+double renew_friction(const System& system, const Points& from, const FreeMotion& free, Iterate& at, Workspace& work,
                       Team& team) {
   if (!system.friction()) return 0;
   const Contacts& contacts = *system.contacts();
@@ -23,10 +23,10 @@ double renew_friction(const System& system, const Points& from, const FreeWay& f
   return contacts.disagreement(at.positions, before, work.contacts->holds);
 }
 
-double slipping_share(const System& system, const Iterate& at, Workspace& work, Team& team) {
+double slipping_fraction(const System& system, const Iterate& at, Workspace& work, Team& team) {
   if (!system.friction()) return 0;
   hold_friction(system, at, work, team);
-  return system.contacts()->friction().slipping_share(at.positions, work.contacts->holds);
+  return system.contacts()->friction().slipping_fraction(at.positions, work.contacts->holds);
 }
 
 void slide_friction(const System& system, Iterate& at, Workspace& work, Team& team) {
@@ -44,12 +44,12 @@ OtherContact::~OtherContact() {
 void OtherContact::straighten(const Iterate& at, double foresight) {
   contacts_.find(at.positions, scratch_, team_);
   contacts_.note_pushes(scratch_);
-  scratch_.firmness = {1, 1, foresight};
+  scratch_.stiffness_scale = {1, 1, foresight};
   scratch_.straight = true;
 }
 
 void OtherContact::forget() {
-  scratch_.firmness = {};
+  scratch_.stiffness_scale = {};
   scratch_.straight = false;
   scratch_.pushes.clear();
 }
@@ -67,10 +67,10 @@ double missed_by_pushes(const System& system, const Workspace& work) {
   return most;
 }
 
-double clear_share(const System& system, const Points& from, const Way& way, double end, Workspace& work, Points& to,
-                   Team& team) {
-  constexpr double gentle = 0.7, wild = 2.5;  // turns of a piece, and of what was stretched as well
-  way(end, to);
+double clear_fraction(const System& system, const Points& from, const Motion& path, double end, Workspace& work,
+                      Points& to, Team& team) {
+  constexpr double gentle = 0.7, wild = 2.5;  // turns of a piece, and of a shape that is distorted
+  path(end, to);
   if (!system.contact()) return end;
   const Contacts& contacts = *system.contacts();
   const double turn = to.allFinite() ? contacts.largest_turn(from, to) : 2 * wild;
@@ -79,11 +79,11 @@ double clear_share(const System& system, const Points& from, const Way& way, dou
   Points last = from, next;
   for (int piece = 1; piece <= pieces; ++piece) {
     if (piece < pieces)
-      way(end * piece / pieces, next);
+      path(end * piece / pieces, next);
     else
       next = to;
-    const double share = contacts.longest_step(last, next, *work.contacts, team);
-    if (share < 1) return end * (piece - 1 + share) / pieces;
+    const double fraction = contacts.longest_step(last, next, *work.contacts, team);
+    if (fraction < 1) return end * (piece - 1 + fraction) / pieces;
     last.swap(next);
   }
   return end;
@@ -92,19 +92,19 @@ double clear_share(const System& system, const Points& from, const Way& way, dou
 bool advance_clear(const System& system, const Eigen::VectorXd& step, double& scale, Workspace& work, Points& positions,
                    Team& team) {
   constexpr double least = 1e-3;
-  constexpr double within = 0.95;  // of a share that is safe: a shorter way is not quite the same
+  constexpr double within = 0.95;  // of a safe fraction: a shorter motion is not quite the same
   const Points from = positions;
-  const Way way = [&](double share, Points& out) {
+  const Motion path = [&](double fraction, Points& out) {
     out = from;
-    system.advance(step, share * scale, work, out, team);
+    system.advance(step, fraction * scale, work, out, team);
   };
   for (double end = 1; end >= least;) {
-    const double share = clear_share(system, from, way, end, work, positions, team);
-    if (share >= end) {
+    const double fraction = clear_fraction(system, from, path, end, work, positions, team);
+    if (fraction >= end) {
       scale *= end;
       return true;
     }
-    end = within * share;
+    end = within * fraction;
   }
   return false;
 }

@@ -3,28 +3,29 @@
 #include <functional>
 #include <softkin/statics/physical/system.hpp>
 
-/// What contact and friction ask of the steps of a solver: how far a step may go, what is held while it is made, what
-/// is remembered after it. Where nothing can touch they do nothing.
+/// Functions for contact and friction in the steps of a solver: the largest step, the normal forces that are fixed
+/// during it, and the anchors that are kept after it. Without contact they do nothing.
 
 namespace softkin::physical {
 
-/// Friction by the normal forces of an equilibrium, for what follows, at its anchors.
+/// Fixes the normal forces that limit friction to those of an equilibrium, at its anchors, for the evaluations that
+/// follow.
 void hold_friction(const System& system, const Iterate& at, Workspace& work, Team& team);
-/// The same, with new anchors where something began to touch on the way from an earlier shape.
+/// Does the same, with new anchors where contact began on the motion from an earlier shape.
 ///
-/// returns  how far the friction at the iterate was by other normal forces, over the largest force on a vertex [-]
-double renew_friction(const System& system, const Points& from, const FreeWay& free, Iterate& at, Workspace& work,
+/// returns  difference of the friction by the former and the new normal forces, over the largest force on a vertex [-]
+double renew_friction(const System& system, const Points& from, const FreeMotion& free, Iterate& at, Workspace& work,
                       Team& team);
 /// Does friction act on the shapes that are evaluated?
-[[nodiscard]] inline bool rubs(const Workspace& work) {
+[[nodiscard]] inline bool has_friction(const Workspace& work) {
   return work.contacts && (work.contacts->friction_follows || !work.contacts->holds.empty());
 }
-/// Share of what rubs that slips, or nearly [-].
-[[nodiscard]] double slipping_share(const System& system, const Iterate& at, Workspace& work, Team& team);
-/// Lets what slips at an equilibrium go on from there.
+/// Returns the fraction of the normal forces with friction whose contacts slip, or nearly [-].
+[[nodiscard]] double slipping_fraction(const System& system, const Iterate& at, Workspace& work, Team& team);
+/// Moves the anchors of contacts that slip at an equilibrium after these, so that they can continue to slip.
 void slide_friction(const System& system, Iterate& at, Workspace& work, Team& team);
 
-/// While it lives the normal forces that limit friction are those of the shape, not those held.
+/// During its lifetime the normal forces that limit friction are those of the current shape, not the fixed ones.
 class FollowingFriction {
  public:
   explicit FollowingFriction(Workspace& work) : contacts_(work.contacts) { set(true); }
@@ -40,22 +41,23 @@ class FollowingFriction {
   Contacts::Scratch* contacts_;
 };
 
-/// While it lives contact is felt otherwise than by its own laws: of another firmness, or as lines through what pushes.
+/// During its lifetime contact has other laws than its own: another stiffness scale, or lines through the present
+/// contact forces.
 class OtherContact {
  public:
-  /// Of contact that there is. All must outlive the object.
+  /// The system must have contact. All must outlive the object.
   OtherContact(const System& system, Workspace& work, Team& team)
       : contacts_(*system.contacts()), scratch_(*work.contacts), team_(team) {}
   ~OtherContact();
   OtherContact(const OtherContact&) = delete;
   OtherContact& operator=(const OtherContact&) = delete;
 
-  void set_firmness(const ContactFirmness& firmness) { scratch_.firmness = firmness; }
-  /// Notes what touches in a shape, and with what it pushes, as it is felt: lines through that are its laws from there
-  /// on, to look up to so many reaches; see ContactPotential::straighten.
+  void set_stiffness_scale(const ContactStiffnessScale& stiffness_scale) { scratch_.stiffness_scale = stiffness_scale; }
+  /// Replaces the laws of the contacts in a shape by lines through their present forces, and extends the search for
+  /// contacts to `foresight` times the reach; see ContactPotential::straighten.
   void straighten(const Iterate& at, double foresight);
   [[nodiscard]] bool any_push() const { return !scratch_.pushes.empty(); }
-  /// By its own laws again.
+  /// Restores the laws of contact.
   void forget();
 
  private:
@@ -64,21 +66,22 @@ class OtherContact {
   Team& team_;
 };
 
-/// How far pushes are from those of the gaps by the scene's contact, over them: the largest, but for faint ones [-].
+/// Returns the largest difference of contact forces from those of the scene's contact law at the same gaps, over the
+/// forces; small forces count less [-].
 [[nodiscard]] double missed_by_pushes(const System& system, const Workspace& work);
 
-/// A way: the shape at a share of it.
-using Way = std::function<void(double, Points&)>;
-/// How far a way can be gone before something passes through something or is torn out of all proportion [-]. Where it
-/// turns what touches by much it is looked at in pieces.
+/// A motion: sets the shape at a fraction of it.
+using Motion = std::function<void(double, Points&)>;
+/// Returns the fraction of a motion before surfaces pass through each other or are distorted excessively [-]. A motion
+/// that turns contact surfaces far is checked in pieces.
 ///
-/// end  of the way, whose shape is written to `to`
-double clear_share(const System& system, const Points& from, const Way& way, double end, Workspace& work, Points& to,
-                   Team& team);
+/// end  fraction at which the motion ends; the shape there is written to `to`
+double clear_fraction(const System& system, const Points& from, const Motion& path, double end, Workspace& work,
+                      Points& to, Team& team);
 
-/// System::advance, less far where otherwise something would pass through something.
+/// Moves positions as System::advance, but only as far as no surface passes through another.
 ///
-/// scale    becomes what was moved by
+/// scale    becomes that of the actual move
 /// returns  false where hardly any move is possible
 bool advance_clear(const System& system, const Eigen::VectorXd& step, double& scale, Workspace& work, Points& positions,
                    Team& team);

@@ -11,18 +11,19 @@ using contact::Pair;
 
 namespace {
 
-/// Area of a vertex's guard and of edges, over the mean area of a robot's vertices: it changes a pressure by as much,
-/// and yet nothing passes.
-constexpr double guard_share = 0.01;
-/// Of the square of edges' spacing, over that mean: finer surfaces have as much at each crossing of edges.
-constexpr double least_spacing = 1e-4;
-/// Edges whose triangles' normals are so close have this share of what sharp ones have.
-constexpr double smooth_cosine = 0.87, smooth_share = 0.01;
-/// Pairs within so many reaches stand in the pattern.
+/// Contact area of edges and of a vertex's guard, over the mean area of a robot's vertices. It changes a pressure by
+/// this fraction only, and is enough to prevent penetration.
+constexpr double guard_fraction = 0.01;
+/// Minimum of the square of edges' spacing, over that mean: finer surfaces have the same area at each crossing of
+/// edges.
+constexpr double min_spacing = 1e-4;
+/// Edges whose triangles' normals have at least this cosine get this fraction of the area of sharp edges.
+constexpr double smooth_cosine = 0.87, smooth_fraction = 0.01;
+/// Pairs within this multiple of the reach are part of the sparsity pattern.
 constexpr double foresight = 2;
-/// Pairs are looked for in a margin of so many reaches, so that small motions need no new search.
-constexpr double margin_share = 1;
-/// Slots of four vertices.
+/// Margin of the search for pairs, over the reach, so that small motions need no new search.
+constexpr double margin_fraction = 1;
+/// Number of slots of a clique of four vertices.
 constexpr std::int64_t clique_slots = 10;
 
 ContactSurfaces surfaces_of(const Model& model, const Points& rest) {
@@ -44,7 +45,7 @@ Contacts::Contacts(const Model& model)
       friction_(surfaces_) {
   find_parts();
   choose_areas();
-  margin_mm_ = margin_share * surfaces_.reach_mm;
+  margin_mm_ = margin_fraction * surfaces_.reach_mm;
   Team alone(1);
   broad_ = std::make_unique<contact::BroadPhase>(surfaces_.surface, rest_, exclusions());
   contact::Lists together;
@@ -57,7 +58,7 @@ Contacts::Contacts(const Model& model)
   potential_ = std::make_unique<ContactPotential>(surfaces_, rest_);
 }
 
-/// A vertex where parts of the robot meet is of the last of them.
+/// Finds the part of each vertex and edge. Where parts of the robot meet, it is the last of them.
 void Contacts::find_parts() {
   const contact::Surface& surface = surfaces_.surface;
   surfaces_.triangle_part = surfaces_.rules->part_of;
@@ -74,14 +75,15 @@ void Contacts::find_parts() {
   for (std::size_t e = 0; e < surface.edges.size(); ++e) surfaces_.edge_part[e] = last(surface.edge_triangles, e);
 }
 
-/// Of an edge of a body or obstacle, over what edges of the robot have: facets may be far finer than its elements, and
-/// where they stand for something smooth their edges are none; they do not rub.
-double Contacts::share_of_edge(std::size_t edge, double mean_area) const {
+/// Returns the contact area of an edge of a body or obstacle, over that of edges of the robot. Facets may be far finer
+/// than the robot's elements. Edges between facets that approximate a smooth surface get little area. Edges have no
+/// friction.
+double Contacts::fraction_of_edge(std::size_t edge, double mean_area) const {
   const contact::Surface& surface = surfaces_.surface;
   const contact::Ends& ends = surface.edges[edge];
   const double length = (vertex_at(model_.rest, ends[1]) - vertex_at(model_.rest, ends[0])).norm();
   std::vector<Vec3> normals;
-  double spacing = 0;  // how far edges like this one are from the next, about: the mean height of the triangles
+  double spacing = 0;  // estimated distance between similar edges: the mean height of the triangles
   for (Index i = surface.edge_triangles.begin[edge]; i < surface.edge_triangles.begin[edge + 1]; ++i) {
     const auto& [a, b, c] = surface.triangles[surface.edge_triangles.items[i]];
     const Vec3 from = vertex_at(model_.rest, a);
@@ -90,7 +92,7 @@ double Contacts::share_of_edge(std::size_t edge, double mean_area) const {
   }
   spacing /= static_cast<double>(normals.size());
   const bool smooth = normals.size() == 2 && normals[0].normalized().dot(normals[1].normalized()) > smooth_cosine;
-  return std::clamp(spacing * spacing / mean_area, least_spacing, 1.0) * (smooth ? smooth_share : 1);
+  return std::clamp(spacing * spacing / mean_area, min_spacing, 1.0) * (smooth ? smooth_fraction : 1);
 }
 
 void Contacts::choose_areas() {
@@ -103,14 +105,15 @@ void Contacts::choose_areas() {
     sum += surfaces_.vertex_area.back();
     ++count;
   }
-  surfaces_.guard_area = guard_share * sum / std::max<Index>(1, count);
+  surfaces_.guard_area = guard_fraction * sum / std::max<Index>(1, count);
   const double mean = sum / std::max<Index>(1, count);
   for (std::size_t e = 0; e < surfaces_.surface.edges.size(); ++e)
-    surfaces_.edge_area.push_back(guard_share * mean *
-                                  (rank_of(surfaces_.edge_part[e]) == ContactRank::robot ? 1 : share_of_edge(e, mean)));
+    surfaces_.edge_area.push_back(
+        guard_fraction * mean *
+        (rank_of(surfaces_.edge_part[e]) == ContactRank::robot ? 1 : fraction_of_edge(e, mean)));
 }
 
-/// Obstacles do not touch each other, nor a body itself, nor a robot where that is not asked for.
+/// Excludes contacts among obstacles, of a body with itself and, unless requested, of a robot with itself.
 contact::Exclusions Contacts::exclusions() const {
   const ContactModel& rules = *surfaces_.rules;
   const Index parts = rules.parts.size();
@@ -134,23 +137,24 @@ std::unique_ptr<Contacts::Scratch> Contacts::make_scratch() const {
   return std::make_unique<Scratch>(*broad_);
 }
 
-/// Of candidates those that are within each other's reach and feel each other; sorted.
-void Contacts::keep_close(const Points& positions, const ContactFirmness& firmness, Candidates& pairs) const {
+/// Keeps the candidates that are within each other's reach and interact, sorted.
+void Contacts::keep_close(const Points& positions, const ContactStiffnessScale& stiffness_scale,
+                          Candidates& pairs) const {
   const contact::Surface& surface = surfaces_.surface;
   std::erase_if(pairs.vertex_triangle, [&](const Pair& pair) {
     const contact::FourPoints x = contact::points_of(positions, nodes_of_vertex_triangle(surface, pair));
-    const double reach = firmness.foresight * potential_->reach_of(pair.first, pair.second, firmness);
+    const double reach = stiffness_scale.foresight * potential_->reach_of(pair.first, pair.second, stiffness_scale);
     return !potential_->felt(pair.first, pair.second) || contact::vertex_triangle(x).squared > reach * reach;
   });
   std::erase_if(pairs.edge_edge, [&](const Pair& pair) {
     const contact::FourPoints x = contact::points_of(positions, nodes_of_edge_edge(surface, pair));
-    const double reach = firmness.foresight * potential_->reach_of_edges(pair, firmness);
+    const double reach = stiffness_scale.foresight * potential_->reach_of_edges(pair, stiffness_scale);
     return !potential_->edges_felt(pair) || contact::edge_edge(x).squared > reach * reach;
   });
   sort_candidates(pairs);
 }
 
-/// Adds the gradient in the points that add(out) adds to out.
+/// Adds the gradient at the nodes that follows from the gradient at the contact points, which add(out) adds to out.
 void Contacts::add_of_points(Points& gradient, const auto& add) const {
   if (points_.are_nodes()) return add(gradient);
   Points on_points = Points::Zero(gradient.rows(), 3);
@@ -173,7 +177,7 @@ void Contacts::add_gradient(const Points& positions, const Scratch& scratch, Poi
   });
 }
 
-void Contacts::evaluate(const Iterate& at, const Demand& /*demand*/, Term::Scratch& scratch, Sum& sum,
+void Contacts::evaluate(const Iterate& at, const LoadState& /*load_state*/, Term::Scratch& scratch, Sum& sum,
                         Team& team) const {
   auto& own = static_cast<Scratch&>(scratch);
   own.evaluated = !sum.forbidden;
@@ -193,14 +197,14 @@ void Contacts::add_cliques_of(const Iterate& at, Term::Scratch& scratch, linear:
   add_cliques(own.slotted, cliques);
 }
 
-void Contacts::stiffness(const Iterate& at, const Demand& /*demand*/, bool projected, Term::Scratch& scratch,
+void Contacts::stiffness(const Iterate& at, const LoadState& /*load_state*/, bool projected, Term::Scratch& scratch,
                          LargeVector<double>& slots, Team& /*team*/) const {
   const auto& own = static_cast<const Scratch&>(scratch);
   stiffness(at.positions, projected, own, own.slotted, slots.data() + 9 * own.first_slot);
 }
 
-void Contacts::tell(const Iterate& at, const Demand& /*demand*/, Term::Scratch& scratch, ElementDeformation& out,
-                    Team& /*team*/) const {
+void Contacts::describe(const Iterate& at, const LoadState& /*demand*/, Term::Scratch& scratch, ElementDeformation& out,
+                        Team& /*team*/) const {
   const auto& own = static_cast<const Scratch&>(scratch);
   Points room;
   if (own.evaluated)
@@ -214,9 +218,9 @@ Points Contacts::change_along(const Points& nodes, const Scratch& scratch, const
                          points_.of(moves, room_of_moves));
 }
 
-void Contacts::follow_pushes(const Points& moves, double share, Scratch& scratch) const {
+void Contacts::follow_pushes(const Points& moves, double fraction, Scratch& scratch) const {
   Points room;
-  potential_->follow(scratch.terms, points_.of(moves, room), share, scratch.pushes);
+  potential_->follow(scratch.terms, points_.of(moves, room), fraction, scratch.pushes);
 }
 
 void Contacts::add_friction_response(const Points& positions, const Scratch& scratch, const Points& moves,
@@ -228,11 +232,11 @@ void Contacts::add_friction_response(const Points& positions, const Scratch& scr
   });
 }
 
-void Contacts::renew(const Points& from, const Points& to, const FreeWay& free, const Scratch& scratch,
+void Contacts::renew(const Points& from, const Points& to, const FreeMotion& free, const Scratch& scratch,
                      std::vector<Anchor>& anchors) const {
   Points room, room_of_end;
-  FreeWay rooms;
-  const FreeWay free_points{points_.of(free.straight, rooms.straight), points_.of(free.turned, rooms.turned)};
+  FreeMotion rooms;
+  const FreeMotion free_points{points_.of(free.straight, rooms.straight), points_.of(free.turned, rooms.turned)};
   friction_.renew(points_.of(from, room), points_.of(to, room_of_end), free_points, scratch.terms, anchors);
 }
 
@@ -248,7 +252,7 @@ double Contacts::disagreement(const Points& nodes, const Friction::Holds& before
 
 namespace {
 
-/// Place of a pair among those of a pattern, those of edges after those of vertices; -1: none.
+/// Returns the index of a pair in a pattern, where pairs of edges follow those of vertices; -1: it is not there.
 Index place_of(const Candidates& pairs, const Pair& pair, bool edges) {
   const std::vector<Pair>& all = edges ? pairs.edge_edge : pairs.vertex_triangle;
   const auto found = std::lower_bound(all.begin(), all.end(), pair);
@@ -268,7 +272,7 @@ bool Contacts::holds(const Candidates& pairs, const Scratch& scratch) {
 void Contacts::find_pairs(const Points& positions, Scratch& scratch, Team& team, Candidates& pairs) const {
   Points room;
   const Points& points = points_.of(positions, room);
-  ContactFirmness wide = scratch.firmness;
+  ContactStiffnessScale wide = scratch.stiffness_scale;
   wide.foresight *= foresight;
   scratch.broad.find(points, foresight * reach_mm(scratch), team, pairs);
   keep_close(points, wide, pairs);
@@ -284,7 +288,7 @@ contact::Nodes Contacts::nodes_of(const Pair& pair, bool edges) const {
 
 namespace {
 
-/// visit(pair, edges) in the order of place_of.
+/// Calls visit(pair, edges) in the order of place_of.
 void each_of(const Candidates& pairs, const auto& visit) {
   for (const Pair& pair : pairs.vertex_triangle) visit(pair, false);
   for (const Pair& pair : pairs.edge_edge) visit(pair, true);
@@ -297,16 +301,16 @@ void add_to_slots(const contact::Hessian& block, double* slot) {
         for (int c = 0; c < 3; ++c) slot[3 * r + c] += block(3 * a + r, 3 * b + c);
 }
 
-/// The same of points that nodes carry.
+/// Adds a block to the slots of the nodes that carry the contact points.
 void add_to_slots(const contact::Hessian& block, const ContactPoints::Carriers& by, double* slot) {
   for (int a = 0; a < by.count; ++a) {
     Eigen::Matrix<double, 3, 12> row = Eigen::Matrix<double, 3, 12>::Zero();
     for (int i = 0; i < 4; ++i)
-      if (by.shares(i, a) != 0) row += by.shares(i, a) * block.middleRows<3>(3 * i);
+      if (by.fractions(i, a) != 0) row += by.fractions(i, a) * block.middleRows<3>(3 * i);
     for (int b = 0; b <= a; ++b, slot += 9) {
       Mat3 of_nodes = Mat3::Zero();
       for (int i = 0; i < 4; ++i)
-        if (by.shares(i, b) != 0) of_nodes += by.shares(i, b) * row.middleCols<3>(3 * i);
+        if (by.fractions(i, b) != 0) of_nodes += by.fractions(i, b) * row.middleCols<3>(3 * i);
       Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>{slot} += of_nodes;
     }
   }
@@ -323,7 +327,7 @@ void Contacts::add_cliques(const Candidates& pairs, linear::Cliques& cliques) co
   });
 }
 
-/// First slot of each pair, then their number; none where every pair has as many.
+/// Returns the first slot of each pair, then their number; nothing if every pair has the same number of slots.
 std::vector<std::int64_t> Contacts::slots_of(const Candidates& pairs) const {
   std::vector<std::int64_t> slots;
   if (points_.are_nodes()) return slots;

@@ -10,49 +10,50 @@
 
 namespace softkin::physical {
 
-/// What touches in the shapes of a robot: the potential between its surfaces and those around it, what it adds to the
-/// pattern of the stiffness, and how far the robot may move before anything passes through anything. Positions, moves
-/// and forces are of nodes; what touches are flat triangles between the ContactPoints.
+/// The contacts of a robot: the potential between its surfaces and those around it, its part of the pattern of the
+/// stiffness, and the largest motion without penetration. Positions, moves and forces belong to nodes; the surfaces are
+/// flat triangles between the ContactPoints.
 class Contacts : public Term {
  public:
   /// model must outlive the object, and have contact.
   explicit Contacts(const Model& model);
 
-  /// What changes with the shape; one per thread of control.
+  /// Data that change with the shape; one per thread of control.
   struct Scratch : Term::Scratch {
     explicit Scratch(const contact::BroadPhase& all) : broad(all) {}
 
-    /// What is within reach on a way, every point on a straight one, and at most half the margin beside it.
+    /// Pairs within reach during a motion of all points along straight lines, or at most half the margin away from
+    /// these.
     struct Around {
       contact::Candidates pairs;
       Points begin, end;  // of the points
-      double reach = 0;   // for which it was looked for [mm]
+      double reach = 0;   // of the search [mm]
       double least = -1;  // distance of those pairs at the end [mm]; negative: not known
       [[nodiscard]] double beside(const Points& points) const;
     };
     contact::BroadPhase broad;
-    Around around, before;                      // and the last but one, as steps that are not taken lead back to it
-    contact::Candidates close;                  // what is within reach of the shape that was found last
+    Around around, before;                      // and the last but one, to which rejected steps return
+    contact::Candidates close;                  // pairs within reach in the shape that was found last
     std::vector<ContactPotential::Term> terms;  // of the points of the shape that was found last
     Friction::Holds holds;                      // of normal forces that were held last
-    ContactFirmness firmness{};                 // of what is found
+    ContactStiffnessScale stiffness_scale{};    // of the pairs that are found
     bool straight = false;                      // are laws lines through the pushes
     std::vector<ContactPush> pushes{};
     bool friction_follows = false;  // are its normal forces those of the shape, not those held
-    bool evaluated = false;         // was the last shape one in which all that comes before has an energy
+    bool evaluated = false;         // did all terms before it have an energy in the last shape
     contact::Candidates slotted{};  // pairs that have slots
     std::int64_t first_slot = 0;
   };
   [[nodiscard]] std::unique_ptr<Scratch> make_scratch() const;
   [[nodiscard]] std::unique_ptr<Term::Scratch> new_scratch() const override { return make_scratch(); }
 
-  /// Finds what is closer than the reach.
+  /// Finds all pairs that are closer than the reach.
   void find(const Points& positions, Scratch& scratch, Team& team) const;
 
   [[nodiscard]] const Friction& friction() const { return friction_; }
   // Of the terms that were found: see Friction.
-  /// from, to: the way to the shape that was found
-  void renew(const Points& from, const Points& to, const FreeWay& free, const Scratch& scratch,
+  /// from, to: start and end of the motion to the shape that was found
+  void renew(const Points& from, const Points& to, const FreeMotion& free, const Scratch& scratch,
              std::vector<Anchor>& anchors) const;
   void slide(const Points& positions, const Scratch& scratch, std::vector<Anchor>& anchors) const;
   [[nodiscard]] double disagreement(const Points& positions, const Friction::Holds& before,
@@ -61,15 +62,16 @@ class Contacts : public Term {
   // Of the terms that were found, at the same positions, and of the holds.
   /// [mJ]; infinite where a pair touches.
   [[nodiscard]] double energy(const Points& positions, const Scratch& scratch) const;
-  /// Adds it [N].
+  /// Adds the gradient of the energy [N].
   void add_gradient(const Points& positions, const Scratch& scratch, Points& gradient) const;
-  /// Finds what touches, and adds it; nothing where a term before has no energy.
-  void evaluate(const Iterate& at, const Demand& demand, Term::Scratch& scratch, Sum& sum, Team& team) const override;
+  /// Finds the contacts and adds their energy and gradient; does nothing where a term before has no energy.
+  void evaluate(const Iterate& at, const LoadState& load_state, Term::Scratch& scratch, Sum& sum,
+                Team& team) const override;
 
-  /// What the terms that were found push with.
+  /// Stores the forces of the terms that were found.
   void note_pushes(Scratch& scratch) const { scratch.pushes = potential_->pushes(scratch.terms); }
-  /// What they push with after so much of a move.
-  void follow_pushes(const Points& moves, double share, Scratch& scratch) const;
+  /// Updates these forces after a fraction of a move.
+  void follow_pushes(const Points& moves, double fraction, Scratch& scratch) const;
 
   /// Does a pattern with the cliques of these pairs hold the stiffness of all terms?
   [[nodiscard]] static bool holds(const contact::Candidates& pairs, const Scratch& scratch);
@@ -87,10 +89,11 @@ class Contacts : public Term {
   /// given; 9 values each [N/mm].
   void stiffness(const Points& positions, bool projected, const Scratch& scratch, const contact::Candidates& pairs,
                  double* slots) const;
-  void stiffness(const Iterate& at, const Demand& demand, bool projected, Term::Scratch& scratch,
+  void stiffness(const Iterate& at, const LoadState& load_state, bool projected, Term::Scratch& scratch,
                  LargeVector<double>& slots, Team& team) const override;
 
-  /// Adds what friction's normal forces change of the gradient with moves; see Friction::add_response.
+  /// Adds the change of the gradient along moves that comes from the normal forces of friction; see
+  /// Friction::add_response.
   void add_friction_response(const Points& positions, const Scratch& scratch, const Points& moves,
                              Points& gradient) const;
   [[nodiscard]] bool symmetric() const override { return !friction_.any(); }
@@ -99,20 +102,20 @@ class Contacts : public Term {
     if (!symmetric()) add_friction_response(at.positions, static_cast<const Scratch&>(scratch), moves, force);
   }
 
-  /// The share in [0, 1] of a motion, every vertex on its straight way, in which nothing passes through anything and no
-  /// gap shrinks to less than a tenth.
+  /// Returns the fraction in [0, 1] of a motion, every vertex on a straight line, in which no surface passes through
+  /// another and no gap shrinks to less than a tenth.
   [[nodiscard]] double longest_step(const Points& from, const Points& to, Term::Scratch& scratch,
                                     Team& team) const override;
 
-  /// How much an edge of the surfaces changes in a motion, over its length, the largest of all: 2 sin(angle / 2) where
-  /// it only turns [-].
+  /// Returns the largest change of an edge of the surfaces in a motion, over its length: 2 sin(angle / 2) where it only
+  /// turns [-].
   [[nodiscard]] double largest_turn(const Points& from, const Points& to) const;
 
-  void tell(const Iterate& at, const Demand& demand, Term::Scratch& scratch, ElementDeformation& out,
-            Team& team) const override;
+  void describe(const Iterate& at, const LoadState& load_state, Term::Scratch& scratch, ElementDeformation& out,
+                Team& team) const override;
 
-  /// How what pulls on the points changes along moves of the nodes, at a shape whose terms were found and whose
-  /// friction is held: the derivative of the gradient of all that touches and rubs [N].
+  /// Returns the change of the gradient of all contact and friction terms on the points along moves of the nodes, at a
+  /// shape whose terms were found and whose normal forces of friction are fixed [N].
   [[nodiscard]] Points change_along(const Points& positions, const Scratch& scratch, const Points& moves) const;
 
   [[nodiscard]] const ContactSurfaces& surfaces() const { return surfaces_; }
@@ -123,11 +126,12 @@ class Contacts : public Term {
   [[nodiscard]] double longest_step_of_points(const Points& from, const Points& to, Scratch& scratch, Team& team) const;
   void search(const Points& from, const Points& to, Scratch& scratch, Team& team) const;
   [[nodiscard]] double reach_mm(const Scratch& scratch) const {
-    return surfaces_.reach_mm * std::max(1.0, scratch.firmness.reach) * scratch.firmness.foresight;
+    return surfaces_.reach_mm * std::max(1.0, scratch.stiffness_scale.reach) * scratch.stiffness_scale.foresight;
   }
-  void keep_close(const Points& positions, const ContactFirmness& firmness, contact::Candidates& pairs) const;
+  void keep_close(const Points& positions, const ContactStiffnessScale& stiffness_scale,
+                  contact::Candidates& pairs) const;
   void find_parts();
-  [[nodiscard]] double share_of_edge(std::size_t edge, double mean_area) const;
+  [[nodiscard]] double fraction_of_edge(std::size_t edge, double mean_area) const;
   void choose_areas();
   [[nodiscard]] contact::Exclusions exclusions() const;
   void add_of_points(Points& gradient, const auto& add) const;

@@ -14,33 +14,38 @@ bool same_shape(const Points& a, const Points& b) {
   return a.rows() == b.rows() && a == b;
 }
 
-/// Where weights are foretold to move something farther than this share of the diagonal, and something is in the way,
-/// what touches is looked for first.
+/// If dead loads are predicted to move a vertex farther than this fraction of the diagonal, and a possible collision
+/// shortens that motion, contact forces are predicted before Newton's method starts.
 constexpr double far = 0.2;
-/// Shortest step of the continuation, over the way asked for; and where some of it was gone and nothing touches, over
-/// the way and over that, whichever is less: what is asked for may be a thousand times what is borne.
-constexpr double least_advance = 1e-4, least_of_way = 5e-4, least_of_gone = 0.005;
-/// A step that moves no vertex farther than this share of the diagonal and yet fails leads nowhere.
-constexpr double least_move = 8e-5;
-/// The same where things touch, over the contact distance: what sticks moves by a hundredth of that.
-constexpr double least_contact_move = 1e-4;
-/// What is held turns by no more in one step [degrees].
-constexpr double most_turn = 30;
-/// Share of a step that is not worth another one at the end of a way.
-constexpr double least_left = 0.1;
-/// A step leads at most half the way to where one led nowhere, until that is this much nearer than it was then.
+/// Shortest step, as a fraction of the path. With contact or a released body it is min_advance; otherwise it is the
+/// smaller one of min_path_fraction and min_completed_fraction times the completed part, but at least min_advance: the
+/// requested load may be a thousand times the largest one that the robot carries.
+constexpr double min_advance = 1e-4, min_path_fraction = 5e-4, min_completed_fraction = 0.005;
+/// A step that moves no vertex farther than this fraction of the diagonal and still fails ends the path.
+constexpr double min_move = 8e-5;
+/// The same limit with contact, over the contact distance: sticking contacts move by a hundredth of that distance.
+constexpr double min_contact_move = 1e-4;
+/// Largest rotation of a support in one step [degrees].
+constexpr double max_turn = 30;
+/// The last step of a path includes a remainder that is shorter than this fraction of the step.
+constexpr double min_left = 0.1;
+/// After a failed step the next steps cover at most half the remaining distance to the failed load factor, until that
+/// distance has shrunk to this fraction of its initial value.
 constexpr double much_nearer = 0.35;
-/// In steps shorter than this an equilibrium is followed where it is unstable; and few factors tell where it ends.
+/// Steps shorter than this fraction of the path also follow unstable equilibria, and their number of factorisations is
+/// limited.
 constexpr double follow_below = 0.05;
-/// Under a growing load an equilibrium this many times as far from the predicted shape as that is from the last one
-/// lies beyond a snap, if that is more than this share of the robot's diagonal.
-constexpr double most_correction = 0.5, least_snap = 0.01;
-/// Where ratios and supports change alone a step jumps if this share of that distance is no bend of the way; one of
-/// this share of the way that jumps is taken, and told.
-constexpr double least_jump = 0.9, finest = 0.02;
-/// A longer step that inverts an element is made shorter: laws that have an energy for it have a mirrored equilibrium.
-constexpr double most_inverting = 0.01;
-/// Of what elements pull with, that may be out of balance where a step has come to rest: more is no equilibrium.
+/// Under changing loads a step may have passed a snap-through if the correction is more than max_correction times the
+/// predicted move and more than min_snap times the robot's diagonal.
+constexpr double max_correction = 0.5, min_snap = 0.01;
+/// A step snaps through if more than min_jump of its correction is not the curvature of the path, see jumped(). If only
+/// ratios and supports change, a step that snaps through is accepted and reported once it is at most the fraction
+/// `finest` of the path.
+constexpr double min_jump = 0.9, finest = 0.02;
+/// A step longer than this fraction of the path that inverts an element is rejected: laws that have an energy for
+/// inverted elements also have mirrored equilibria.
+constexpr double max_inverting = 0.01;
+/// Largest residual of an accepted step, over the internal forces of the elements. A larger one is no equilibrium.
 constexpr double much_imbalance = 0.01;
 
 }  // namespace
@@ -52,32 +57,33 @@ Continuation::Continuation(const System& system, Workspace& work, Team& team, co
       team_(team),
       options_(options),
       report_(report),
-      settler_(system, work, team, options, progress, report),
+      corrector_(system, work, team, options, progress, report),
       tracer_(options.trace, report) {}
 
-/// Moves to the end of a whole way where it is known without a tangent: foretold, foreseen or as the last ones led.
-bool Continuation::lead(const Demand& here, const Demand& there, Iterate& trial) {
-  return !system_.contact() && (follow_foretold(here, there, work_, trial) ||
-                                follow_foreseen(system_, here, there, settler_.active, work_, team_, trial) ||
-                                work_.trail.lead(here, there, settler_.active, options_.tolerance_mm, trial));
+/// Predicts the end of a whole path without a tangent: by the caller's initial guess, by a stored second-order
+/// extrapolation or by a polynomial through the last equilibria. Returns false if none of these is available.
+bool Continuation::lead(const LoadState& here, const LoadState& there, Iterate& trial) {
+  return !system_.contact() && (follow_initial_guess(here, there, work_, trial) ||
+                                follow_extrapolated(system_, here, there, corrector_.active, work_, team_, trial) ||
+                                work_.trail.lead(here, there, corrector_.active, options_.tolerance_mm, trial));
 }
 
-/// One step from limp sheets that lie flat, where no tangent leads anywhere.
-Newton::Outcome Continuation::step_from_flat(const Demand& there, const Iterate& at, Iterate& trial) {
-  if (settler_.runs_into_flat(there, at)) return Newton::Outcome::blocked;
-  const std::optional<Swelling> swelling = swell(system_, there, settler_.active, trial, work_, team_);
+/// Makes one step from flat sheets, which have no stiffness against their loads and so no tangent.
+Newton::Outcome Continuation::step_from_flat(const LoadState& there, const Iterate& at, Iterate& trial) {
+  if (corrector_.runs_into_flat(there, at)) return Newton::Outcome::blocked;
+  const std::optional<Swelling> swelling = swell(system_, there, corrector_.active, trial, work_, team_);
   step_.unforetold = swelling.has_value();
   step_.predicted = step_.begun = trial.positions;
   step_.move_mm = system_.largest_move(at.positions, step_.predicted);
-  return swelling ? settler_.settle_swollen(there, *swelling, trial)
-                  : settler_.settle(there, Newton::Policy::descend, trial);
+  return swelling ? corrector_.correct_swollen(there, *swelling, trial)
+                  : corrector_.correct(there, Newton::Policy::descend, trial);
 }
 
-/// One step; trial begins at `at` and ends at the equilibrium.
-Newton::Outcome Continuation::step(const Demand& here, const Demand& there, double length, const Iterate& at,
+/// Makes one step; `trial` starts as a copy of `at` and becomes the equilibrium.
+Newton::Outcome Continuation::step(const LoadState& here, const LoadState& there, double length, const Iterate& at,
                                    Iterate& trial) {
-  if (system_.limp() && system_.layers()->flat(at.positions)) return step_from_flat(there, at, trial);
-  const bool whole = way_.done == 0 && length == 1;  // steps of a way are short where it is difficult
+  if (system_.has_wrinkling() && system_.layers()->flat(at.positions)) return step_from_flat(there, at, trial);
+  const bool whole = path_.done == 0 && length == 1;  // later steps are short where the path is difficult
   bool led = false, cut = false;
   const auto prediction = [&] {
     led = whole && !led && lead(here, there, trial);
@@ -88,188 +94,195 @@ Newton::Outcome Continuation::step(const Demand& here, const Demand& there, doub
       step_.move_mm = system_.largest_move(at.positions, step_.predicted);
       return true;
     }
-    const ClearPrediction clear = predict_clear(system_, here, there, settler_.active, work_, team_, trial);
+    const ClearPrediction clear = predict_clear(system_, here, there, corrector_.active, work_, team_, trial);
     step_.predicted = clear.predicted;
     step_.straight = clear.straight;
-    if (system_.friction()) settler_.free_way = {clear.straight, clear.predicted};
+    if (system_.friction()) corrector_.free_motion = {clear.straight, clear.predicted};
     step_.move_mm = clear.move_mm.value_or(system_.largest_move(at.positions, step_.predicted));
-    cut = clear.cut && settler_.weighs(here, there) &&
+    cut = clear.cut && corrector_.weighs(here, there) &&
           system_.largest_move(at.positions, step_.predicted) > far * system_.model().diagonal_mm;
     step_.begun = trial.positions;
     return clear.move_mm.has_value();
   };
   if (!prediction()) return whole ? fall_onto(here, there, at, trial) : Newton::Outcome::blocked;
   if (whole && !led && leads_too_far(here, there, at)) return Newton::Outcome::too_far;
-  const bool follows = settler_.last.modes > 0 && !options_.stable && length <= 1.001 * follow_below;
+  const bool follows = corrector_.last.modes > 0 && !options_.stable && length <= 1.001 * follow_below;
   const auto policy = follows ? Newton::Policy::follow : led ? Newton::Policy::near : Newton::Policy::descend;
   const bool again = system_.contact() && !follows, first = again && whole && cut;
   const Iterate begun = again ? trial : Iterate{};
-  const auto settle_foreseen = [&] {
+  const auto correct_with_predicted_contact = [&] {
     trial = begun;
-    const auto foreseen = settler_.foresee_contact(there, at, false, trial);
-    if (foreseen == Newton::Outcome::converged) return settler_.settle(there, policy, trial);
-    return foreseen == Newton::Outcome::interrupted ? foreseen : Newton::Outcome::stuck;
+    const auto predicted_contact = corrector_.predict_contact(there, at, false, trial);
+    if (predicted_contact == Newton::Outcome::converged) return corrector_.correct(there, policy, trial);
+    return predicted_contact == Newton::Outcome::interrupted ? predicted_contact : Newton::Outcome::stuck;
   };
-  auto outcome = first ? settle_foreseen() : Newton::Outcome::stuck;
+  auto outcome = first ? correct_with_predicted_contact() : Newton::Outcome::stuck;
   if (outcome == Newton::Outcome::stuck) {
     if (first) trial = begun;
-    outcome = settler_.settle(there, policy, trial, whole && settler_.factorised_nearby(trial.positions));
+    outcome = corrector_.correct(there, policy, trial, whole && corrector_.factorised_nearby(trial.positions));
   }
-  if (outcome == Newton::Outcome::stuck && again && !first) outcome = settle_foreseen();
+  if (outcome == Newton::Outcome::stuck && again && !first) outcome = correct_with_predicted_contact();
   if (outcome == Newton::Outcome::converged && !led && whole)
     work_.trail.note_tangent(here, there, system_.largest_move(step_.begun, trial.positions));
-  if (outcome == Newton::Outcome::stuck && !follows && length < follow_below && settler_.prepare(here, at) >= 0) {
+  if (outcome == Newton::Outcome::stuck && !follows && length < follow_below && corrector_.prepare(here, at) >= 0) {
     trial = at;
-    if (prediction()) outcome = settler_.settle(there, Newton::Policy::follow, trial);
+    if (prediction()) outcome = corrector_.correct(there, Newton::Policy::follow, trial);
   }
   return outcome;
 }
 
-/// Where weights would lead far through something: what is held comes to its place, and the body onto what is near.
-Newton::Outcome Continuation::fall_onto(const Demand& here, const Demand& there, const Iterate& at, Iterate& trial) {
-  if (!settler_.weighs(here, there) || settler_.touches(at)) return Newton::Outcome::blocked;
+/// If dead loads would carry the body far into an obstacle, the supports are moved first and the body is then dropped
+/// into contact.
+Newton::Outcome Continuation::fall_onto(const LoadState& here, const LoadState& there, const Iterate& at,
+                                        Iterate& trial) {
+  if (!corrector_.weighs(here, there) || corrector_.touches(at)) return Newton::Outcome::blocked;
   trial = at;
-  if (!carry_held(system_, here, there, settler_.active, work_, team_, trial)) return Newton::Outcome::blocked;
-  settler_.give_loads(there, trial);
+  if (!carry_held(system_, here, there, corrector_.active, work_, team_, trial)) return Newton::Outcome::blocked;
+  corrector_.give_loads(there, trial);
   step_.predicted = step_.begun = trial.positions;
   step_.unforetold = true;
-  const auto outcome = settler_.foresee_contact(there, at, true, trial);
+  const auto outcome = corrector_.predict_contact(there, at, true, trial);
   if (outcome == Newton::Outcome::interrupted) return outcome;
   step_.begun = trial.positions;
-  return outcome == Newton::Outcome::converged ? settler_.settle(there, Newton::Policy::descend, trial)
-                                               : Newton::Outcome::stuck;  // blocked is what was not tried
+  return outcome == Newton::Outcome::converged ? corrector_.correct(there, Newton::Policy::descend, trial)
+                                               : Newton::Outcome::stuck;  // `blocked` would mean: not tried
 }
 
-/// Does a step leave the way? Where a way bends, the tangent at its end, followed back, misses its begin on the side on
-/// which the one at its begin misses its end, and by about as much; where it jumps, on the other side.
-bool Continuation::jumped(const Demand& here, const Demand& there, const Iterate& at, const Iterate& trial) {
+/// Does a step leave the path? On a curved path the tangent at the end of the step, followed backwards, misses the
+/// start on the side on which the tangent at the start misses the end, and by about as much. After a snap-through or
+/// branch switch it misses the start on the other side.
+bool Continuation::jumped(const LoadState& here, const LoadState& there, const Iterate& at, const Iterate& trial) {
   if (step_.unforetold) return false;
   const double correction = system_.largest_move(step_.predicted, trial.positions);
   const auto jumps = [&] {
     Iterate back = trial;
-    (void)predict(system_, there, here, settler_.active, work_, team_, back);
+    (void)predict(system_, there, here, corrector_.active, work_, team_, back);
     const Points ahead = step_.predicted - trial.positions, behind = back.positions - at.positions;
     step_.jump_mm = 0.5 * system_.largest_move(ahead, behind);
-    // where the way has a corner, at which something begins to touch, both miss on the same side, by any lengths
-    return !(step_.jump_mm <= least_jump * correction) && !(system_.contact() && ahead.cwiseProduct(behind).sum() > 0);
+    // at a corner of the path, where contact begins, both tangents miss on the same side, by any distances
+    return !(step_.jump_mm <= min_jump * correction) && !(system_.contact() && ahead.cwiseProduct(behind).sum() > 0);
   };
-  if (correction <= least_snap * system_.model().diagonal_mm) return false;
-  // the factor at hand is of a shape nearby, and mostly good enough
-  return jumps() && (settler_.prepare(there, trial) < 0 || jumps());
+  if (correction <= min_snap * system_.model().diagonal_mm) return false;
+  // the current factorisation is of a nearby shape, which is usually accurate enough
+  return jumps() && (corrector_.prepare(there, trial) < 0 || jumps());
 }
 
-/// Does a step lead on from where the way turns back? Then it jumps, whatever a tangent tells there.
+/// Does the step start where the path turns back? Then it snaps through, whatever the tangent there predicts.
 bool Continuation::turned_back(const Iterate& at, const Iterate& trial) {
-  if (way_.turned) step_.jump_mm = system_.largest_move(at.positions, trial.positions);
-  return way_.turned;
+  if (path_.turned) step_.jump_mm = system_.largest_move(at.positions, trial.positions);
+  return path_.turned;
 }
 
-Status Continuation::follow(const Demand& from, const Demand& to, Iterate& at) {
+Status Continuation::follow(const LoadState& from, const LoadState& to, Iterate& at) {
   const Status end = follow_whole(from, to, at);
   sort_branch(system_, report_);
   return end;
 }
 
-Status Continuation::follow_whole(const Demand& from, const Demand& to, Iterate& at) {
-  settler_.active.resize(system_.actuators());
-  for (Index a = 0; a < system_.actuators(); ++a) settler_.active[a] = system_.measures().constrains(a);
+Status Continuation::follow_whole(const LoadState& from, const LoadState& to, Iterate& at) {
+  corrector_.active.resize(system_.actuators());
+  for (Index a = 0; a < system_.actuators(); ++a) corrector_.active[a] = system_.measures().constrains(a);
   set_out(from, to);
-  (void)settler_.release(to, at, false);
-  settler_.good_shape = at.positions;
-  (void)settler_.renew_anchors(at);
+  (void)corrector_.release(to, at, false);
+  corrector_.good_shape = at.positions;
+  (void)corrector_.renew_anchors(at);
   if (!same_shape(work_.home, at.positions)) work_.trail.clear();
-  way_.factorised = same_shape(work_.home, at.positions) && settler_.factor_holds_active();
+  path_.factorised = same_shape(work_.home, at.positions) && corrector_.factor_holds_active();
   work_.home.resize(0, 3);
-  if (!way_.factorised && from.actuation == to.actuation && from.share == to.share && from.fading == to.fading) {
-    const auto outcome = settle_here(to, at);
+  if (!path_.factorised && from.actuation == to.actuation && from.load_factor == to.load_factor &&
+      from.fading == to.fading) {
+    const auto outcome = correct_here(to, at);
     if (outcome == Newton::Outcome::interrupted) return Status::interrupted;
     if (outcome == Newton::Outcome::converged) return arrive(to, at);
   }
-  while (way_.done < 1) {
+  while (path_.done < 1) {
     const std::optional<Status> end = go_on(at);
-    if (end == Status::limit && together_ && way_.then)
+    if (end == Status::limit && together_ && path_.then)
       go_together(at);
     else if (end)
       return *end;
-    else if (way_.done == 1 && way_.then)
-      set_out(way_.here, Demand(*way_.then));
+    else if (path_.done == 1 && path_.then)
+      set_out(path_.here, LoadState(*path_.then));
   }
   return arrive(to, at);
 }
 
-/// Newton at once, where the start is as near to the equilibrium asked for as any prediction from it.
-Newton::Outcome Continuation::settle_here(const Demand& demand, Iterate& at) {
-  const std::vector<bool> before = settler_.active;
+/// Runs Newton's method without a prediction, where the start is as close to the requested equilibrium as any
+/// prediction.
+Newton::Outcome Continuation::correct_here(const LoadState& load_state, Iterate& at) {
+  const std::vector<bool> before = corrector_.active;
   Iterate trial = at;
-  auto outcome = settler_.settle(demand, Newton::Policy::descend, trial);
-  if (settler_.newton().inverted() || (system_.surroundings().any_body() && !settler_.newton().balanced()))
+  auto outcome = corrector_.correct(load_state, Newton::Policy::descend, trial);
+  if (corrector_.newton().inverted() || (system_.surroundings().any_body() && !corrector_.newton().balanced()))
     outcome = Newton::Outcome::stuck;
   if (outcome == Newton::Outcome::converged) {
-    settler_.take(at, std::move(trial));
-    settler_.last = settler_.judged();
+    corrector_.take(at, std::move(trial));
+    corrector_.last = corrector_.judged();
     ++report_.continuation_steps;
     report_.reached = 1;
   } else {
-    settler_.active = before;
+    corrector_.active = before;
   }
   return outcome;
 }
 
-/// Another way, from where the last one ended.
-void Continuation::set_out(const Demand& from, const Demand& to) {
-  way_ = {.from = from, .to = to, .here = from, .before = way_.before};
-  way_.loads_change = change_loads(from, to);
+/// Starts a new path at the end of the last one.
+void Continuation::set_out(const LoadState& from, const LoadState& to) {
+  path_ = {.from = from, .to = to, .here = from, .before = path_.before};
+  path_.loads_change = change_loads(from, to);
   for (Index a = 0; a < system_.actuators(); ++a)
-    way_.releases = way_.releases || (system_.surroundings().holds(a) && from.actuation[a] != to.actuation[a]);
-  way_.load = only_load(from, to);
-  way_.marked_iterations = report_.iterations;
+    path_.releases = path_.releases || (system_.surroundings().holds(a) && from.actuation[a] != to.actuation[a]);
+  path_.load = only_load(from, to);
+  path_.marked_iterations = report_.iterations;
 }
 
-/// Along what a load does.
-Climb::End Continuation::climb(Climb::End (Climb::*along)(Iterate&), Index load, Iterate& at) {
-  if (!settler_.newton().goes_on()) return Climb::End::interrupted;
-  Climb climb(settler_, tracer_, options_, {load, way_.from, way_.to, way_.here, way_.done, way_.whole()});
-  const Climb::End end = (climb.*along)(at);
-  way_.here = climb.route().here;
-  way_.done = climb.route().done;
-  at_summit_ = at_summit_ || climb.at_summit();
+/// Runs a measure-controlled continuation of a load, and continues from the load state that it reaches.
+MeasureContinuation::End Continuation::follow_measure(MeasureContinuation::End (MeasureContinuation::*along)(Iterate&),
+                                                      Index load, Iterate& at) {
+  if (!corrector_.newton().goes_on()) return MeasureContinuation::End::interrupted;
+  MeasureContinuation follow_measure(corrector_, tracer_, options_,
+                                     {load, path_.from, path_.to, path_.here, path_.done, path_.whole()});
+  const MeasureContinuation::End end = (follow_measure.*along)(at);
+  path_.here = follow_measure.route().here;
+  path_.done = follow_measure.route().done;
+  at_limit_point_ = at_limit_point_ || follow_measure.at_limit_point();
   return end;
 }
 
-/// Where the next step ends. One that leaves hardly anything is as long as what is left.
-double Continuation::next_share() {
-  const double gap = way_.failed.share - way_.done;
-  if (gap > much_nearer * way_.failed.ahead) way_.advance = std::min(way_.advance, 0.5 * gap);
-  const double turn = system_.placement().largest_turn(way_.from, way_.to);
-  if (way_.advance * turn > most_turn) way_.advance = most_turn / turn;
-  const double ahead = way_.done + way_.advance;
-  return ahead + least_left * way_.advance < 1 ? ahead : 1;
+/// Returns the fraction of the path at which the next step ends. A step that would leave a small remainder includes it.
+double Continuation::next_fraction() {
+  const double gap = path_.failed.load_factor - path_.done;
+  if (gap > much_nearer * path_.failed.ahead) path_.advance = std::min(path_.advance, 0.5 * gap);
+  const double turn = system_.placement().largest_turn(path_.from, path_.to);
+  if (path_.advance * turn > max_turn) path_.advance = max_turn / turn;
+  const double ahead = path_.done + path_.advance;
+  return ahead + min_left * path_.advance < 1 ? ahead : 1;
 }
 
-/// Makes ready for a step; a status where the way ends without one.
-std::optional<Status> Continuation::start_step(const Demand& there, Iterate& at) {
-  if (settler_.release(there, at, false)) way_.factorised = false;
-  if (!way_.factorised && !settler_.newton().goes_on()) return Status::interrupted;
-  const int modes = way_.factorised ? settler_.last.modes : settler_.prepare(way_.here, at);
+/// Prepares a step; returns a status if the path ends without one.
+std::optional<Status> Continuation::start_step(const LoadState& there, Iterate& at) {
+  if (corrector_.release(there, at, false)) path_.factorised = false;
+  if (!path_.factorised && !corrector_.newton().goes_on()) return Status::interrupted;
+  const int modes = path_.factorised ? corrector_.last.modes : corrector_.prepare(path_.here, at);
   if (modes < 0)
-    return limit(way_.done, "no step leads on from here: the stiffness is singular, or an element is inverted", at);
-  way_.factorised = true;
-  if (options_.beyond > 0 && modes > 0 && way_.load >= 0 && way_.done == 0) {
-    const Climb::End back = climb(&Climb::back, way_.load, at);
-    if (back == Climb::End::interrupted) return Status::interrupted;
-    if (back == Climb::End::arrived) return arrive(way_.to, at);
-    if (!settler_.newton().goes_on()) return Status::interrupted;
-    way_.factorised = settler_.prepare(way_.here, at) >= 0;
+    return limit(path_.done, "no step leads on from here: the stiffness is singular, or an element is inverted", at);
+  path_.factorised = true;
+  if (options_.beyond > 0 && modes > 0 && path_.load >= 0 && path_.done == 0) {
+    const MeasureContinuation::End back = follow_measure(&MeasureContinuation::back, path_.load, at);
+    if (back == MeasureContinuation::End::interrupted) return Status::interrupted;
+    if (back == MeasureContinuation::End::arrived) return arrive(path_.to, at);
+    if (!corrector_.newton().goes_on()) return Status::interrupted;
+    path_.factorised = corrector_.prepare(path_.here, at) >= 0;
   }
   return std::nullopt;
 }
 
-/// What a step of this length that ended so is worth.
-Continuation::StepEnd Continuation::judge(Newton::Outcome outcome, const Demand& there, double length,
+/// Evaluates the result of a step of this length: whether it found an equilibrium on the path, and if not, why.
+Continuation::StepEnd Continuation::judge(Newton::Outcome outcome, const LoadState& there, double length,
                                           const Iterate& at, const Iterate& trial) {
-  StepEnd end{.why = outcome == Newton::Outcome::stuck     ? settler_.newton().why_stuck()
+  StepEnd end{.why = outcome == Newton::Outcome::stuck     ? corrector_.newton().why_stuck()
                      : outcome == Newton::Outcome::blocked ? "something is in the way"
-                     : outcome == Newton::Outcome::too_far ? "it is far more than the load can be foretold for"
+                     : outcome == Newton::Outcome::too_far ? "it is far more than the load can be predicted for"
                                                            : ""};
   end.blocked = outcome == Newton::Outcome::blocked || outcome == Newton::Outcome::too_far;
   end.found = outcome != Newton::Outcome::stuck && !end.blocked;
@@ -277,25 +290,25 @@ Continuation::StepEnd Continuation::judge(Newton::Outcome outcome, const Demand&
     end.found = false;
     end.why = because;
   };
-  if (end.found && way_.loads_change &&
+  if (end.found && path_.loads_change &&
       snapped(step_.move_mm, system_.largest_move(step_.predicted, trial.positions)) &&
-      jumped(way_.here, there, at, trial))
+      jumped(path_.here, there, at, trial))
     reject("the equilibrium lies beyond a jump");
-  end.snap = end.found && !way_.loads_change && (turned_back(at, trial) || jumped(way_.here, there, at, trial));
+  end.snap = end.found && !path_.loads_change && (turned_back(at, trial) || jumped(path_.here, there, at, trial));
   end.unstable = end.found && outcome == Newton::Outcome::unstable;
-  if (settler_.newton().inverted() && !settler_.last.inverted && length > most_inverting)
+  if (corrector_.newton().inverted() && !corrector_.last.inverted && length > max_inverting)
     reject("an element is inverted");
-  // a body that nothing holds has no stiffness, and so no step
-  if (end.found && system_.surroundings().any_body() && !settler_.newton().balanced())
+  // a body without supports or contact has no stiffness, and so no Newton step
+  if (end.found && system_.surroundings().any_body() && !corrector_.newton().balanced())
     reject("a body is out of balance");
-  const Imbalance& forces = settler_.newton().imbalance();
+  const Imbalance& forces = corrector_.newton().imbalance();
   if (end.found && forces.residual > much_imbalance * forces.pull + forces.rounding)
     reject("forces are out of balance");
   return end;
 }
 
-/// Has the path no corners, and can its tangents be compared? In a field a robot may turn freely; where tendons rub the
-/// path depends on its steps, which are not made shorter for this.
+/// Has the path no corners, and can its tangents be compared? In a magnetic field a robot may rotate freely. With
+/// friction of tendons the path depends on its steps, which are not shortened for this check.
 bool Continuation::is_smooth() const {
   const auto& actuators = system_.model().actuators;
   return !system_.kinked() && !system_.tendons().any() &&
@@ -303,31 +316,31 @@ bool Continuation::is_smooth() const {
                       [](const Actuator& each) { return each.as<MagneticDrive>() != nullptr; });
 }
 
-/// Is there a limit point between a step's begin and its end?
+/// Is there a limit point between the start and the end of a step?
 ///
-/// changed  do cables that were held slacken, or others pull
+/// changed  has the set of active cables changed
 SegmentCheck::Verdict Continuation::check_segment(double length, bool changed, const Iterate& at,
                                                   const Iterate& trial) {
   using Verdict = SegmentCheck::Verdict;
-  const bool has_tangent = step_.extrapolated || step_.straight.rows() > 0;  // none leads from flat sheets
+  const bool has_tangent = step_.extrapolated || step_.straight.rows() > 0;  // flat sheets have none
   if (step_.unforetold || !has_tangent || !is_smooth()) return Verdict::confirmed;
   const double farthest = std::max(system_.largest_move(at.positions, trial.positions),
                                    system_.largest_move(at.positions, step_.predicted));
   if (SegmentCheck::is_short(system_, farthest)) return Verdict::confirmed;
-  const int modes = settler_.newton().unstable_modes();
-  SegmentEnd low{&at, way_.done, {}, settler_.last.modes};
+  const int modes = corrector_.newton().unstable_modes();
+  SegmentEnd low{&at, path_.done, {}, corrector_.last.modes};
   if (!step_.extrapolated) low.rate = (step_.straight - at.positions) / length;
-  SegmentCheck check(settler_, tracer_, options_, way_.from, way_.to);
+  SegmentCheck check(corrector_, tracer_, options_, path_.from, path_.to);
   Verdict verdict =
-      check.check(std::move(low), {&trial, way_.done + length, {}, modes}, step_.predicted - at.positions, changed);
-  if (check.lost_factor()) way_.factorised = false;
+      check.check(std::move(low), {&trial, path_.done + length, {}, modes}, step_.predicted - at.positions, changed);
+  if (check.lost_factor()) path_.factorised = false;
   if (changed && verdict == Verdict::unclear) verdict = Verdict::confirmed;  // where a cable slackens tangents turn
   return verdict;
 }
 
-/// A step that passed a limit point of a load, or of which nothing shows that it did not, is not taken.
+/// Rejects a step that passed a limit point of a load, or for which this cannot be excluded.
 void Continuation::check_path(double length, bool changed, const Iterate& at, const Iterate& trial, StepEnd& end) {
-  if (!way_.loads_change) return;
+  if (!path_.loads_change) return;
   const SegmentCheck::Verdict verdict = check_segment(length, changed, at, trial);
   if (verdict == SegmentCheck::Verdict::confirmed) return;
   end.interrupted = verdict == SegmentCheck::Verdict::interrupted;
@@ -336,148 +349,150 @@ void Continuation::check_path(double length, bool changed, const Iterate& at, co
                                                       : "the equilibrium lies beyond a limit point";
 }
 
-/// Tries one step and takes it, or chooses a shorter one; a status where the way ends.
+/// Tries one step and accepts it, or chooses a shorter one; returns a status if the path ends.
 std::optional<Status> Continuation::go_on(Iterate& at) {
-  const double next = next_share(), length = next - way_.done;
-  const Demand there = between(way_.from, way_.to, next);
+  const double next = next_fraction(), length = next - path_.done;
+  const LoadState there = between(path_.from, path_.to, next);
   Iterate trial = at;
   if (const std::optional<Status> end = start_step(there, at)) return end;
   const int before = report_.iterations;
-  const std::vector<bool> active = settler_.active;
+  const std::vector<bool> active = corrector_.active;
   work_.left_field = false;
-  tracer_.begin(whole(way_.done), whole(next), length);
+  tracer_.begin(whole(path_.done), whole(next), length);
   step_.unforetold = step_.extrapolated = false;
   step_.straight.resize(0, 3);
   const auto outcome = [&] {
-    const auto briefly = settler_.newton().briefly(ends_early(length < follow_below));
-    return step(way_.here, there, length, at, trial);
+    const auto briefly = corrector_.newton().briefly(ends_early(length < follow_below));
+    return step(path_.here, there, length, at, trial);
   }();
-  settler_.free_way = {};
+  corrector_.free_motion = {};
   if (outcome == Newton::Outcome::interrupted) return Status::interrupted;
   StepEnd came = judge(outcome, there, length, at, trial);
-  if (came.found && !came.snap) check_path(length, settler_.active != active, at, trial, came);
+  if (came.found && !came.snap) check_path(length, corrector_.active != active, at, trial, came);
   if (came.interrupted) return Status::interrupted;
   const double longest = longest_step(came.snap, came.unstable);
   const double corrected_mm = came.found ? system_.largest_move(step_.begun, trial.positions) : 0;
-  const auto trace = [&](bool taken, const std::string& told) {
-    tracer_.end(taken, told, step_.move_mm, corrected_mm);
+  const auto trace = [&](bool taken, const std::string& reported) {
+    tracer_.end(taken, reported, step_.move_mm, corrected_mm);
   };
   std::optional<Status> end;
   if (!came.found) {
     trace(false, came.why);
-    way_.factorised = came.blocked;
-    settler_.active = active;
-    if (!came.blocked) way_.failed.note(next, way_.done);
+    path_.factorised = came.blocked;
+    corrector_.active = active;
+    if (!came.blocked) path_.failed.note(next, path_.done);
     end = shorten(length, at);
   } else if (length > 1.001 * longest) {
     trace(false,
           came.snap ? "it jumps: shorter ones may not" : "it is unstable: a shorter one shows where it becomes so");
     if (came.snap)
-      way_.beyond = Beyond{std::move(trial), there, next, settler_.active, settler_.judged(), step_.jump_mm};
-    way_.factorised = false;
-    settler_.active = active;
-    way_.advance = std::max(longest, 0.4 * length);
+      path_.beyond = Beyond{std::move(trial), there, next, corrector_.active, corrector_.judged(), step_.jump_mm};
+    path_.factorised = false;
+    corrector_.active = active;
+    path_.advance = std::max(longest, 0.4 * length);
   } else {
     trace(true, came.snap ? "it jumps" : came.unstable ? "unstable" : came.why);
-    if (came.snap) tell_snap(step_.jump_mm, whole(way_.done), report_);
-    settler_.take(at, std::move(trial));
+    if (came.snap) report_snap(step_.jump_mm, whole(path_.done), report_);
+    corrector_.take(at, std::move(trial));
     if (!come_to(there, next, came.unstable, at)) return Status::interrupted;
     lengthen(report_.iterations - before, came.unstable, at);
   }
   return end ? end : out_of_patience(at);
 }
 
-/// Chooses the next step after one that was taken, in so many iterations.
+/// Chooses the length of the next step after an accepted one that took this many iterations.
 void Continuation::lengthen(int iterations, bool unstable, Iterate& at) {
-  way_.advance *= lengthened(iterations / settler_.rounds());  // those for new normal forces are as many each
-  if (unstable) way_.advance = std::min(way_.advance, follow_below);
+  path_.advance *= lengthened(iterations / corrector_.rounds());  // each update of normal forces takes as many
+  if (unstable) path_.advance = std::min(path_.advance, follow_below);
   if (leads_beyond(at)) {
     take_beyond(at);
-  } else if (way_.beyond && system_.contact()) {  // a step as long would end there again
-    way_.advance = std::min(way_.advance, std::max(finest, 0.5 * (way_.beyond->done - way_.done)));
+  } else if (path_.beyond && system_.contact()) {  // a step of that length would end there again
+    path_.advance = std::min(path_.advance, std::max(finest, 0.5 * (path_.beyond->done - path_.done)));
   }
 }
 
-/// The next step over one that took so many iterations. Where things touch they hardly depend on its length, as
-/// something begins to touch in most steps.
+/// Returns the length of the next step over that of one which took this many iterations. With contact their number
+/// hardly depends on the length, as contacts begin in most steps.
 double Continuation::lengthened(int iterations) const {
   if (system_.contact()) return iterations <= 15 ? 3 : iterations <= 30 ? 2 : 1;
   return iterations <= 7 ? 2 : iterations <= 12 ? 1.5 : 1;
 }
 
-/// After a step that led to no equilibrium.
+/// Chooses how to continue after a step without an equilibrium; returns a status if the path ends.
 std::optional<Status> Continuation::shorten(double length, Iterate& at) {
-  const std::vector<bool> active = settler_.active;
-  if (way_.load >= 0) {  // along what the load does
-    const Climb::End end = climb(&Climb::up, std::exchange(way_.load, -1), at);
-    if (end == Climb::End::interrupted) return Status::interrupted;
-    if (end == Climb::End::arrived) return arrive(way_.to, at);
-    if (end == Climb::End::summit) return limit(way_.done, report_.remark, at);
-    settler_.active = active;
-    way_.factorised = false;
-    report_.reached = whole(way_.done);
+  const std::vector<bool> active = corrector_.active;
+  if (path_.load >= 0) {  // by measure-controlled continuation
+    const MeasureContinuation::End end = follow_measure(&MeasureContinuation::up, std::exchange(path_.load, -1), at);
+    if (end == MeasureContinuation::End::interrupted) return Status::interrupted;
+    if (end == MeasureContinuation::End::arrived) return arrive(path_.to, at);
+    if (end == MeasureContinuation::End::limit_point) return limit(path_.done, report_.remark, at);
+    corrector_.active = active;
+    path_.factorised = false;
+    report_.reached = whole(path_.done);
   }
   if (loads_at_last(at)) return std::nullopt;
   const ArcLength::End curve = follow_curve(at);
   if (curve == ArcLength::End::interrupted) return Status::interrupted;
   if (curve == ArcLength::End::turned) {
-    if (way_.loads_change && !way_.bears_all) return limit(way_.done, beyond_here(), at);
-    way_.advance = way_.bears_all ? 1 - way_.done : finest;  // may jump to what is stable beyond
-    way_.thorough = true;
+    if (path_.loads_change && !path_.bears_all) return limit(path_.done, beyond_here(), at);
+    path_.advance = path_.bears_all ? 1 - path_.done : finest;  // may snap through to a stable shape
+    path_.thorough = true;
   }
   if (curve != ArcLength::End::lost) return std::nullopt;
-  way_.advance = 0.4 * length;
-  if (way_.beyond && way_.advance < finest) {
-    tell_snap(way_.beyond->jump_mm, whole(way_.done), report_);
+  path_.advance = 0.4 * length;
+  if (path_.beyond && path_.advance < finest) {
+    report_snap(path_.beyond->jump_mm, whole(path_.done), report_);
     take_beyond(at);
-    way_.advance = follow_below;
+    path_.advance = follow_below;
     return std::nullopt;
   }
-  double least = least_move * system_.model().diagonal_mm;
-  if (system_.contact()) least = std::min(least, least_contact_move * system_.model().contact.distance_mm);
-  const bool leads_nowhere = !way_.releases && step_.move_mm < least;
-  way_.thorough = false;
-  if (way_.advance < shortest_advance() || leads_nowhere || way_.turned) return limit(way_.done, beyond_here(), at);
+  double least = min_move * system_.model().diagonal_mm;
+  if (system_.contact()) least = std::min(least, min_contact_move * system_.model().contact.distance_mm);
+  const bool leads_nowhere = !path_.releases && step_.move_mm < least;
+  path_.thorough = false;
+  if (path_.advance < shortest_advance() || leads_nowhere || path_.turned) return limit(path_.done, beyond_here(), at);
   return std::nullopt;
 }
 
 double Continuation::shortest_advance() const {
-  if (jerky()) return least_advance;
-  return std::max(least_advance, std::min(least_of_way, least_of_gone * way_.done));
+  if (is_non_smooth()) return min_advance;
+  return std::max(min_advance, std::min(min_path_fraction, min_completed_fraction * path_.done));
 }
 
 void Continuation::Failed::note(double at, double done) {
-  share = share > done ? std::min(share, at) : at;
-  ahead = share - done;
+  load_factor = load_factor > done ? std::min(load_factor, at) : at;
+  ahead = load_factor - done;
 }
 
-/// An equilibrium on the way; false: interrupted.
-bool Continuation::come_to(const Demand& there, double next, bool unstable, Iterate& at) {
-  settler_.last = settler_.judged();
+/// Records an equilibrium on the path; with the option `stable` an unstable one is left by buckling. Returns false if
+/// interrupted.
+bool Continuation::come_to(const LoadState& there, double next, bool unstable, Iterate& at) {
+  corrector_.last = corrector_.judged();
   if (unstable && options_.stable && next < 1) {
-    if (!buckle(settler_, there, at)) return false;
-    way_.factorised = false;
-  } else if (unstable && next < 1 && report_.physical.unstable_from == 0 && settler_.prepare(there, at) > 0) {
-    report_.physical.unstable_from = whole(next);  // in the shape itself: the last factorisation was of one close to it
+    if (!buckle(corrector_, there, at)) return false;
+    path_.factorised = false;
+  } else if (unstable && next < 1 && report_.physical.unstable_from == 0 && corrector_.prepare(there, at) > 0) {
+    report_.physical.unstable_from = whole(next);  // at this shape: the last factorisation was of a nearby one
   }
-  if (way_.beyond && next >= way_.beyond->done) way_.beyond.reset();
+  if (path_.beyond && next >= path_.beyond->done) path_.beyond.reset();
   pass(there, next);
   return true;
 }
 
-void Continuation::pass(const Demand& demand, double done) {
-  way_.here = demand;
-  way_.done = done;
-  way_.turned = false;
+void Continuation::pass(const LoadState& load_state, double done) {
+  path_.here = load_state;
+  path_.done = done;
+  path_.turned = false;
   report_.reached = whole(done);
   ++report_.continuation_steps;
 }
 
 bool Continuation::snapped(double predicted_mm, double correction_mm) const {
-  return correction_mm > most_correction * predicted_mm && correction_mm > least_snap * system_.model().diagonal_mm;
+  return correction_mm > max_correction * predicted_mm && correction_mm > min_snap * system_.model().diagonal_mm;
 }
 
-/// Of a step that came to an equilibrium: a shorter one may not leave the way, or leave it where it becomes unstable.
+/// Returns the longest step that is accepted with this result: a shorter one may stay on the path, or end closer to
+/// where the path becomes unstable.
 double Continuation::longest_step(bool snap, bool unstable) const {
   return snap ? finest : unstable && options_.stable ? follow_below : 1;
 }

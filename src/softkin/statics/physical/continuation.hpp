@@ -2,130 +2,131 @@
 
 #include <optional>
 #include <softkin/statics/physical/arc_length.hpp>
+#include <softkin/statics/physical/corrector.hpp>
+#include <softkin/statics/physical/measure_continuation.hpp>
 #include <softkin/statics/physical/segment_check.hpp>
-#include <softkin/statics/physical/settling.hpp>
 #include <softkin/statics/physical/step_tracer.hpp>
-#include <softkin/statics/physical/summit.hpp>
 
 namespace softkin::physical {
 
-/// The path of equilibria from one demand to another: predictor, length of steps, limits, and where it becomes
-/// unstable.
+/// Follows the path of equilibria from one load state to another: predictor, step-size control, limits, and where the
+/// path becomes unstable.
 class Continuation {
  public:
   /// All must outlive the object.
   Continuation(const System& system, Workspace& work, Team& team, const Equilibria::Options& options,
                const ProgressCallback& progress, SolveReport& report);
 
-  /// Follows the equilibrium from `from` to `to`; at is the last good one.
-  Status follow(const Demand& from, const Demand& to, Iterate& at);
+  /// Follows the equilibrium from `from` to `to`; `at` becomes the last accepted one.
+  Status follow(const LoadState& from, const LoadState& to, Iterate& at);
 
-  /// What the last good one is an equilibrium of.
-  [[nodiscard]] const Demand& here() const { return way_.here; }
+  /// The load state of the last accepted equilibrium.
+  [[nodiscard]] const LoadState& here() const { return path_.here; }
 
-  /// Did the way end where its load has its maximum?
-  [[nodiscard]] bool at_summit() const { return at_summit_; }
+  /// Did the path end at a limit point of its load?
+  [[nodiscard]] bool at_limit_point() const { return at_limit_point_; }
 
  private:
-  /// The step at hand.
+  /// The current step.
   struct Step {
-    Points predicted{}, begun{};      // where it was to lead, and what of that is in nobody's way
-    Points straight{};                // where its tangent leads to first order
-    double move_mm = 0, jump_mm = 0;  // to what it predicted, and beside the way
-    bool unforetold = false;          // does no tangent say where it should have led
-    bool extrapolated = false;        // was it predicted without a tangent, from equilibria around it
+    Points predicted{}, begun{};      // the prediction, and its part without collision
+    Points straight{};                // the first-order prediction, along the tangent
+    double move_mm = 0, jump_mm = 0;  // largest predicted move; distance of the end from the path
+    bool unforetold = false;          // is there no tangent that predicts its end
+    bool extrapolated = false;        // was it predicted from nearby equilibria, without a tangent
   };
-  /// What a step came to.
+  /// The result of a step.
   struct StepEnd {
-    std::string why{};                    // it ended
-    bool found = false, blocked = false;  // an equilibrium; the way there
-    bool snap = false, unstable = false;  // of what was found
-    bool interrupted = false;             // while it was checked
+    std::string why{};                    // reason of its end
+    bool found = false, blocked = false;  // was an equilibrium found; did a collision block the motion
+    bool snap = false, unstable = false;  // properties of that equilibrium
+    bool interrupted = false;             // did the caller interrupt the check
   };
-  /// Where a step came out that jumped: what is left where shorter ones find nothing.
+  /// The end of a step that snapped through; it is accepted if shorter steps find no equilibrium.
   struct Beyond {
     Iterate at;
-    Demand demand;
+    LoadState load_state;
     double done = 0;
     std::vector<bool> active;
     Judgement last;
     double jump_mm = 0;
   };
 
-  /// The nearest share ahead at which a step led nowhere.
+  /// The smallest load factor ahead at which a step failed.
   struct Failed {
-    double share = 0;  // 0: none
-    double ahead = 0;  // how far it was then
+    double load_factor = 0;  // 0: none
+    double ahead = 0;        // its distance from the equilibrium at that time
 
     void note(double at, double done);
   };
 
-  /// The way asked for, and how far it was gone.
-  struct Way {
-    Demand from{}, to{}, here{};
-    double done = 0, advance = 1;  // shares of it: gone, and of the next step
-    Index load = -1;               // that alone changes beside weights, until it was climbed along what it does
+  /// The requested path and its progress.
+  struct PathState {
+    LoadState from{}, to{}, here{};
+    double done = 0, advance = 1;  // fractions of it: completed, and of the next step
+    Index load = -1;               // the only one that changes besides dead loads, until its measure is followed
     bool loads_change = false;
-    bool releases = false;    // a body, which hardly moves until it is nearly free
-    bool factorised = false;  // the stiffness here
+    bool releases = false;    // a body is released, which hardly moves until it is nearly free
+    bool factorised = false;  // is the stiffness at the current shape factorised
     std::optional<Beyond> beyond{};
-    std::optional<Demand> then{};  // where the next way leads
+    std::optional<LoadState> then{};  // the end of the next path
     Failed failed{};
-    bool thorough = true;  // is the next step given every iteration
-    double before = 0;     // share of all that was asked, gone on ways before
-    double marked = 0;     // the last share at which it was getting on
+    bool thorough = true;  // may the next step use all iterations
+    double before = 0;     // fraction of the whole request that earlier paths completed
+    double marked = 0;     // the fraction at the last sufficient progress
     int marked_iterations = 0;
-    int misses = 0, next_look = 2;  // steps that led nowhere, and after how many the curve is followed
-    bool turned = false;            // does it turn back here
-    bool bears_all = false;         // beyond what is left, about
+    int misses = 0, next_look = 2;  // failed steps; how many start arc-length continuation
+    bool turned = false;            // does the curve of equilibria turn back here
+    bool bears_all = false;         // does a shape after the turn carry about the whole load
 
-    [[nodiscard]] WholeWay whole() const { return {before, then.has_value()}; }
+    [[nodiscard]] WholePath whole() const { return {before, then.has_value()}; }
   };
 
-  /// Where weights and loads were told apart.
+  /// The state in which the path was split into dead loads and other loads.
   struct Together {
-    Way way;
+    PathState path;
     Iterate at;
     std::vector<bool> active;
     Judgement last;
   };
 
-  // the way
-  Status follow_whole(const Demand& from, const Demand& to, Iterate& at);
-  void set_out(const Demand& from, const Demand& to);
-  Newton::Outcome settle_here(const Demand& demand, Iterate& at);
-  [[nodiscard]] double whole(double done) const { return way_.whole()(done); }
-  [[nodiscard]] Index only_load(const Demand& from, const Demand& to) const;
-  [[nodiscard]] bool change_loads(const Demand& from, const Demand& to) const;
-  [[nodiscard]] bool anything_comes_with_share() const;
+  // the path
+  Status follow_whole(const LoadState& from, const LoadState& to, Iterate& at);
+  void set_out(const LoadState& from, const LoadState& to);
+  Newton::Outcome correct_here(const LoadState& load_state, Iterate& at);
+  [[nodiscard]] double whole(double done) const { return path_.whole()(done); }
+  [[nodiscard]] Index only_load(const LoadState& from, const LoadState& to) const;
+  [[nodiscard]] bool change_loads(const LoadState& from, const LoadState& to) const;
+  [[nodiscard]] bool changes_with_load_factor() const;
   [[nodiscard]] bool holds_elsewhere() const;
   std::optional<Status> go_on(Iterate& at);
-  void pass(const Demand& demand, double done);
-  bool come_to(const Demand& there, double next, bool unstable, Iterate& at);
+  void pass(const LoadState& load_state, double done);
+  bool come_to(const LoadState& there, double next, bool unstable, Iterate& at);
   bool loads_at_last(const Iterate& at);
   void go_together(Iterate& at);
   ArcLength::End follow_curve(Iterate& at);
-  Climb::End climb(Climb::End (Climb::*along)(Iterate&), Index load, Iterate& at);
+  MeasureContinuation::End follow_measure(MeasureContinuation::End (MeasureContinuation::*along)(Iterate&), Index load,
+                                          Iterate& at);
 
   // a step
-  std::optional<Status> start_step(const Demand& there, Iterate& at);
-  Newton::Outcome step(const Demand& here, const Demand& there, double length, const Iterate& at, Iterate& trial);
-  Newton::Outcome step_from_flat(const Demand& there, const Iterate& at, Iterate& trial);
-  Newton::Outcome fall_onto(const Demand& here, const Demand& there, const Iterate& at, Iterate& trial);
-  bool lead(const Demand& here, const Demand& there, Iterate& trial);
-  bool leads_too_far(const Demand& here, const Demand& there, const Iterate& at);
+  std::optional<Status> start_step(const LoadState& there, Iterate& at);
+  Newton::Outcome step(const LoadState& here, const LoadState& there, double length, const Iterate& at, Iterate& trial);
+  Newton::Outcome step_from_flat(const LoadState& there, const Iterate& at, Iterate& trial);
+  Newton::Outcome fall_onto(const LoadState& here, const LoadState& there, const Iterate& at, Iterate& trial);
+  bool lead(const LoadState& here, const LoadState& there, Iterate& trial);
+  bool leads_too_far(const LoadState& here, const LoadState& there, const Iterate& at);
   SegmentCheck::Verdict check_segment(double length, bool changed, const Iterate& at, const Iterate& trial);
   void check_path(double length, bool changed, const Iterate& at, const Iterate& trial, StepEnd& end);
-  [[nodiscard]] StepEnd judge(Newton::Outcome outcome, const Demand& there, double length, const Iterate& at,
+  [[nodiscard]] StepEnd judge(Newton::Outcome outcome, const LoadState& there, double length, const Iterate& at,
                               const Iterate& trial);
   bool turned_back(const Iterate& at, const Iterate& trial);
-  bool jumped(const Demand& here, const Demand& there, const Iterate& at, const Iterate& trial);
+  bool jumped(const LoadState& here, const LoadState& there, const Iterate& at, const Iterate& trial);
   [[nodiscard]] bool snapped(double predicted_mm, double correction_mm) const;
   bool leads_beyond(const Iterate& at);
   void take_beyond(Iterate& at);
 
   // its length
-  [[nodiscard]] double next_share();
+  [[nodiscard]] double next_fraction();
   [[nodiscard]] double longest_step(bool snap, bool unstable) const;
   void lengthen(int iterations, bool unstable, Iterate& at);
   [[nodiscard]] double lengthened(int iterations) const;
@@ -133,14 +134,14 @@ class Continuation {
   [[nodiscard]] double shortest_advance() const;
   [[nodiscard]] bool ends_early(bool short_step) const;
   [[nodiscard]] bool is_smooth() const;
-  [[nodiscard]] bool jerky() const { return system_.contact() || way_.releases; }
+  [[nodiscard]] bool is_non_smooth() const { return system_.contact() || path_.releases; }
 
   // the end
-  Status arrive(const Demand& demand, Iterate& at);
+  Status arrive(const LoadState& load_state, Iterate& at);
   Status limit(double done, const std::string& why, const Iterate& at);
   std::optional<Status> out_of_patience(const Iterate& at);
-  void tell_stability(const Demand& demand, const Iterate& at);
-  void tell_balance();
+  void report_stability(const LoadState& load_state, const Iterate& at);
+  void report_balance();
   [[nodiscard]] std::string beyond_here() const;
   [[nodiscard]] std::string instead_of_loads() const;
 
@@ -149,12 +150,12 @@ class Continuation {
   Team& team_;
   const Equilibria::Options& options_;
   SolveReport& report_;
-  Settler settler_;
+  Corrector corrector_;
   StepTracer tracer_;
-  Way way_;
+  PathState path_;
   Step step_;
   std::optional<Together> together_;
-  bool at_summit_ = false;
+  bool at_limit_point_ = false;
 };
 
 }  // namespace softkin::physical

@@ -11,15 +11,16 @@ namespace softkin::physical {
 
 namespace {
 
-/// Rounds with a factor from nearby that cost about as much as a new factor, and with that.
+/// Iterations with the factor of a shape nearby that cost about as much as a new factor, and with a new one.
 constexpr int inexact_rounds = 8, exact_rounds = 3;
-/// With friction, of which no factor holds all.
+/// The same with friction, which no factor contains completely.
 constexpr int friction_rounds = 40;
-/// Of the accuracy, in what the factor makes of what is left: it may make a third too little of it.
-constexpr double asked = 0.3;
-/// What rounding may add to a solution with the factor of the stiffness itself: more, and that is singular.
+/// Fraction of the accuracy required of the preconditioned residual, which may be a third too small.
+constexpr double accuracy_fraction = 0.3;
+/// Largest relative part of a solution by rounding, with the factor of the stiffness itself; above it the stiffness is
+/// singular.
 constexpr double singular = 1e-6;
-/// A cable without tension that is as long as it may be but for this share is held.
+/// A cable without tension is constrained if its length is within this fraction of the largest one.
 constexpr double verge = 1e-9;
 
 }  // namespace
@@ -27,17 +28,17 @@ constexpr double verge = 1e-9;
 Derivative::Derivative(const System& system, Workspace& work, double accuracy, Team& team)
     : system_(system), work_(work), accuracy_(accuracy), team_(team), active_(system.actuators()) {}
 
-/// Measures that are held: of chambers, and of cables that pull or are as long as they may be.
-void Derivative::hold(const Iterate& at, const Demand& demand) {
+/// Collects the constrained measures: of chambers, and of cables that are in tension or at their largest length.
+void Derivative::hold(const Iterate& at, const LoadState& load_state) {
   for (Index a = 0; a < system_.actuators(); ++a) {
     if (!system_.measures().constrains(a)) continue;
     active_[a] = !system_.measures().only_pulls(a) || at.multipliers[a] > 0 ||
                  system_.measures().value(a, at.positions) >=
-                     (1 - verge) * system_.measures().target(a, demand.actuation, at.multipliers[a]);
+                     (1 - verge) * system_.measures().target(a, load_state.actuation, at.multipliers[a]);
     if (active_[a]) held_.push_back(a);
   }
   hold_friction(system_, at, work_, team_);
-  system_.evaluate(at, demand, active_, work_, balance_, team_);
+  system_.evaluate(at, load_state, active_, work_, balance_, team_);
 }
 
 void Derivative::make_room(Index columns) {
@@ -46,7 +47,8 @@ void Derivative::make_room(Index columns) {
   moves_.resize(columns);
 }
 
-/// A right-hand side, of forces that change and of what is held and moves: that takes measures along.
+/// Sets a right-hand side from the change of the forces and the moves of vertices that are no unknowns, which change
+/// measures, too.
 void Derivative::ask(const Iterate& at, Index column, const Points& force, Points moves) {
   system_.freedoms().reduce(-force, at.positions, right_.moves.col(column));
   if (moves.isZero(0)) return;
@@ -56,15 +58,17 @@ void Derivative::ask(const Iterate& at, Index column, const Points& force, Point
   moves_[column] = std::move(moves);
 }
 
-/// How forces change with a command that no measure answers to, and how what it moves itself does.
-void Derivative::by_command(const Iterate& at, const Demand& demand, Index actuator, Points& force, Points& moves) {
-  system_.placement().velocity(actuator, demand, moves);
-  system_.command_force(at, demand, actuator, work_, force, team_);
-  if (!moves.isZero(0)) system_.add_pull(at, demand, balance_, moves, work_, force, team_);
+/// Computes the derivative of the forces by a command that sets no measure, and that of the vertices that it moves
+/// itself.
+void Derivative::by_command(const Iterate& at, const LoadState& load_state, Index actuator, Points& force,
+                            Points& moves) {
+  system_.placement().velocity(actuator, load_state, moves);
+  system_.command_force(at, load_state, actuator, work_, force, team_);
+  if (!moves.isZero(0)) system_.add_pull(at, load_state, balance_, moves, work_, force, team_);
 }
 
-/// The right-hand sides of the commands.
-void Derivative::ask(const Iterate& at, const Demand& demand) {
+/// Sets the right-hand sides of the commands.
+void Derivative::ask(const Iterate& at, const LoadState& load_state) {
   by_commands_ = true;
   make_room(system_.actuators());
   for (Index i = 0; i < std::ssize(held_); ++i)
@@ -73,25 +77,25 @@ void Derivative::ask(const Iterate& at, const Demand& demand) {
   Points force, moves;
   for (Index a = 0; a < system_.actuators(); ++a) {
     if (system_.measures().constrains(a)) continue;
-    by_command(at, demand, a, force, moves);
+    by_command(at, load_state, a, force, moves);
     ask(at, a, force, moves);
   }
 }
 
-/// False where the factor is too far off, or its stiffness singular.
+/// Solves for all right-hand sides. False where the factor is too far off, or its stiffness singular.
 bool Derivative::solve(const Iterate& at, bool exact_factor) {
   Bordered equations(system_, work_, team_);
   equations.set(at, balance_);
   const bool symmetric = system_.symmetric();
   const int rounds = !symmetric ? friction_rounds : exact_factor ? exact_rounds : inexact_rounds;
-  // those of the last derivative, of a shape nearby; what they leave would not tell of the factor's own rounding
+  // the guess is the last derivative, of a shape nearby; with an exact factor it would hide the rounding of that
   const Slopes& last = work_.tangents;
   const bool like_last = by_commands_ && !exact_factor && last.at.rows() == at.positions.rows() && last.held == held_;
   const Columns guess = like_last ? Columns{last.moves, last.multipliers} : Columns{};
   const linear::Remainder remainder =
-      equations.solve(right_, asked * accuracy_, rounds, found_, like_last ? &guess : nullptr);
+      equations.solve(right_, accuracy_fraction * accuracy_, rounds, found_, like_last ? &guess : nullptr);
   const bool rounded = exact_factor && symmetric && !(remainder.apart <= singular);
-  return remainder.left <= asked * accuracy_ && !rounded;
+  return remainder.left <= accuracy_fraction * accuracy_ && !rounded;
 }
 
 Points Derivative::positions(const Iterate& at, Index column) const {
@@ -101,7 +105,7 @@ Points Derivative::positions(const Iterate& at, Index column) const {
   return positions;
 }
 
-/// Of the measures that are held, as users know them.
+/// Returns the multipliers of the constrained measures, in users' units.
 Eigen::VectorXd Derivative::multipliers(Index column) const {
   Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(system_.actuators());
   for (Index i = 0; i < std::ssize(held_); ++i)
@@ -109,15 +113,16 @@ Eigen::VectorXd Derivative::multipliers(Index column) const {
   return multipliers;
 }
 
-/// The derivative of the supports' forces is that of the gradient where they hold: by the number itself, by the moves,
-/// and by the held measures' multipliers; without the pressure on what closes chambers.
+/// Returns the derivative of the supports' forces, which is that of the gradient at their vertices: by the number
+/// itself, by the moves, and by the multipliers of the constrained measures; without the pressures on supports that
+/// close chambers.
 ///
-/// force  the first of these
-/// loads  derivatives of all tensions and pressures, as users know them
-Points Derivative::reactions(const Iterate& at, const Demand& demand, Index column, Points force,
+/// force  the derivative by the number itself
+/// loads  derivatives of all tensions and pressures, in users' units
+Points Derivative::reactions(const Iterate& at, const LoadState& load_state, Index column, Points force,
                              const Eigen::VectorXd& loads) {
   const Points moves = positions(at, column);
-  system_.add_pull(at, demand, balance_, moves, work_, force, team_);
+  system_.add_pull(at, load_state, balance_, moves, work_, force, team_);
   for (Index i = 0; i < std::ssize(held_); ++i)
     force += system_.measures().sign(held_[i]) * found_.multipliers(i, column) * system_.pull(held_[i], at);
   for (Index a = 0; a < system_.actuators(); ++a) {
@@ -132,21 +137,20 @@ Points Derivative::reactions(const Iterate& at, const Demand& demand, Index colu
 }
 
 /// Solves for all right-hand sides, with the factor at hand or a new one.
-bool Derivative::find(const Iterate& at, const Demand& demand) {
+bool Derivative::find(const Iterate& at, const LoadState& load_state) {
   using Precision = linear::MixedLdlt::Precision;
   bool solved = false;
   if (work_.home.rows() > 0) {
     if (work_.saddle.active() != held_) system_.couple(at, active_, balance_, work_, team_);
-    system_.assemble(at, demand, balance_, System::Stiffness::exact, work_, team_);
+    system_.assemble(at, load_state, balance_, System::Stiffness::exact, work_, team_);
     system_.gather(at, balance_, work_, team_);
     solved = solve(at, false);
   }
   const auto solve_anew = [&](Precision precision) {
     work_.home.resize(0, 3);
     const Temporarily scope(work_.saddle.precision(), precision);
-    (void)system_.factorise(at, demand, active_, balance_, {}, work_, team_);
-    if (system_.contact())
-      system_.gather(at, balance_, work_, team_);  // else what was factorised is what is multiplied with
+    (void)system_.factorise(at, load_state, active_, balance_, {}, work_, team_);
+    if (system_.contact()) system_.gather(at, balance_, work_, team_);  // else multiply() uses the factorised matrix
     return solve(at, work_.saddle.factor().in_double());
   };
   solved = solved || solve_anew(work_.saddle.precision()) ||
@@ -155,17 +159,17 @@ bool Derivative::find(const Iterate& at, const Demand& demand) {
   return solved;
 }
 
-Sensitivity Derivative::of(const Iterate& at, const Demand& demand) {
-  hold(at, demand);
-  ask(at, demand);
+Sensitivity Derivative::of(const Iterate& at, const LoadState& load_state) {
+  hold(at, load_state);
+  ask(at, load_state);
   const Index actuators = system_.actuators();
-  if (!find(at, demand)) return no_sensitivity(at.positions.rows(), actuators);
+  if (!find(at, load_state)) return no_sensitivity(at.positions.rows(), actuators);
   Sensitivity result{{}, Eigen::MatrixXd(actuators, actuators), true};
   for (Index a = 0; a < actuators; ++a) {
     result.positions.push_back(positions(at, a));
     result.multipliers.col(a) = multipliers(a);
     if (system_.measures().given_load(a))
-      result.multipliers(a, a) = system_.measures().rate(a, demand.actuation[a]) / system_.measures().unit(a);
+      result.multipliers(a, a) = system_.measures().rate(a, load_state.actuation[a]) / system_.measures().unit(a);
   }
   const bool moves = std::any_of(moves_.begin(), moves_.end(), [](const Points& move) { return move.rows() > 0; });
   if (!system_.contact() && !moves)
@@ -173,41 +177,41 @@ Sensitivity Derivative::of(const Iterate& at, const Demand& demand) {
   return result;
 }
 
-/// The right-hand side of a change of the commands. Returns how forces change by it where nothing moves.
-Points Derivative::ask_along(const Iterate& at, const Demand& demand, Index column, const Actuation& change) {
+/// Sets the right-hand side of a change of the commands. Returns the change of the forces at fixed positions.
+Points Derivative::ask_along(const Iterate& at, const LoadState& load_state, Index column, const Actuation& change) {
   for (Index i = 0; i < std::ssize(held_); ++i)
     right_.multipliers(i, column) = system_.measures().sign(held_[i]) * change[held_[i]] *
                                     system_.measures().target_by_command(held_[i], at.multipliers[held_[i]]);
   Points force, moves, pulled = Points::Zero(at.positions.rows(), 3);
-  Points sum = pulled, way = pulled;
+  Points sum = pulled, motion = pulled;
   for (Index a = 0; a < system_.actuators(); ++a) {
     if (change[a] == 0 || system_.measures().constrains(a)) continue;
     if (system_.model().actuators[a].is<ForceCommand>()) {
-      system_.surroundings().add_force(a, change[a], sum);  // of hundreds where a force may act anywhere
+      system_.surroundings().add_force(a, change[a], sum);  // there may be hundreds of these
       continue;
     }
-    by_command(at, demand, a, force, moves);
+    by_command(at, load_state, a, force, moves);
     sum += change[a] * force;
-    if (!moves.isZero(0)) way += change[a] * moves;
+    if (!moves.isZero(0)) motion += change[a] * moves;
   }
-  if (!way.isZero(0)) system_.add_pull(at, demand, balance_, way, work_, pulled, team_);
-  ask(at, column, sum, way);
+  if (!motion.isZero(0)) system_.add_pull(at, load_state, balance_, motion, work_, pulled, team_);
+  ask(at, column, sum, motion);
   return sum - pulled;
 }
 
-ParameterSensitivity Derivative::of(const Iterate& at, const Demand& demand, const std::vector<Actuation>& changes,
-                                    bool reactions) {
+ParameterSensitivity Derivative::of(const Iterate& at, const LoadState& load_state,
+                                    const std::vector<Actuation>& changes, bool reactions) {
   const Index count = changes.size();
   const Points nothing = Points::Zero(at.positions.rows(), 3);
-  hold(at, demand);
+  hold(at, load_state);
   make_room(count);
   std::vector<Points> forces;
   for (Index p = 0; p < count; ++p) {
-    Points force = ask_along(at, demand, p, changes[p]);
+    Points force = ask_along(at, load_state, p, changes[p]);
     if (reactions) forces.push_back(std::move(force));
   }
   ParameterSensitivity result{{}, Eigen::MatrixXd::Zero(system_.actuators(), count), false};
-  result.regular = count == 0 || find(at, demand);
+  result.regular = count == 0 || find(at, load_state);
   for (Index p = 0; p < count; ++p) {
     result.positions.push_back(result.regular ? positions(at, p) : nothing);
     if (!result.regular) {
@@ -218,19 +222,20 @@ ParameterSensitivity Derivative::of(const Iterate& at, const Demand& demand, con
     for (Index a = 0; a < system_.actuators(); ++a)
       if (system_.measures().given_load(a))
         result.multipliers(a, p) +=
-            changes[p][a] * system_.measures().rate(a, demand.actuation[a]) / system_.measures().unit(a);
+            changes[p][a] * system_.measures().rate(a, load_state.actuation[a]) / system_.measures().unit(a);
     if (reactions)
-      result.reactions.push_back(this->reactions(at, demand, p, std::move(forces[p]), result.multipliers.col(p)));
+      result.reactions.push_back(this->reactions(at, load_state, p, std::move(forces[p]), result.multipliers.col(p)));
   }
   return result;
 }
 
-std::vector<Points> Derivative::under(const Iterate& at, const Demand& demand, const std::vector<Points>& forces) {
-  hold(at, demand);
+std::vector<Points> Derivative::under(const Iterate& at, const LoadState& load_state,
+                                      const std::vector<Points>& forces) {
+  hold(at, load_state);
   make_room(forces.size());
   for (std::size_t p = 0; p < forces.size(); ++p) ask(at, p, -forces[p], Points::Zero(at.positions.rows(), 3));
   std::vector<Points> found;
-  if (forces.empty() || !find(at, demand)) return found;
+  if (forces.empty() || !find(at, load_state)) return found;
   for (std::size_t p = 0; p < forces.size(); ++p) found.push_back(positions(at, p));
   return found;
 }
@@ -240,52 +245,53 @@ Perturbation::Perturbation(const Perturbed& perturbed, const System& like)
       less(std::make_unique<const System>(perturbed.less, like)),
       difference(perturbed.difference) {}
 
-/// system: of this robot with another number
-Derivative::Found Derivative::found_by(const System& system, const Iterate& at, const Demand& demand,
+/// system: of the robot with a perturbed number
+Derivative::Found Derivative::found_by(const System& system, const Iterate& at, const LoadState& load_state,
                                        const std::shared_ptr<const ViscousHistory>& history, double elapsed_s) const {
   Workspace work(system);
-  Iterate own = at;  // what acts of a command may be one of the numbers
+  Iterate own = at;  // factors and offsets of commands may be among the numbers
   for (Index a = 0; a < system.actuators(); ++a)
     if (system.measures().measures(a) && system.measures().given_load(a))
-      own.multipliers[a] = system.measures().given(a, demand.actuation[a]);
+      own.multipliers[a] = system.measures().given(a, load_state.actuation[a]);
   system.set_time(history, elapsed_s, work, team_);
-  own.eyelets = system.tendons().lengths(own.positions, balance_.slips);  // what slips goes on
+  own.eyelets = system.tendons().lengths(own.positions, balance_.slips);  // slipping tendons continue to slip
   hold_friction(system, own, work, team_);
   Balance balance;
-  system.evaluate(own, demand, active_, work, balance, team_);
+  system.evaluate(own, load_state, active_, work, balance, team_);
   Found found{std::move(work.gradient), at.positions, std::move(balance.constraint), std::move(own.multipliers)};
-  system.placement().hold(demand, found.held);
+  system.placement().hold(load_state, found.held);
   return found;
 }
 
-/// The right-hand side of a number.
-Derivative::Direct Derivative::ask_number(const Iterate& at, const Demand& demand, Index column,
+/// Sets the right-hand side of a perturbed number.
+Derivative::Direct Derivative::ask_number(const Iterate& at, const LoadState& load_state, Index column,
                                           const Perturbation& number,
                                           const std::shared_ptr<const ViscousHistory>& history, double elapsed_s) {
-  Found more = found_by(*number.more, at, demand, history, elapsed_s);
-  const Found less = found_by(*number.less, at, demand, history, elapsed_s);
+  Found more = found_by(*number.more, at, load_state, history, elapsed_s);
+  const Found less = found_by(*number.less, at, load_state, history, elapsed_s);
   const Direct direct{(more.gradient - less.gradient) / number.difference,
                       (more.multipliers - less.multipliers) / number.difference};
   Points moves = (more.held - less.held) / number.difference, force = direct.force;
   for (Index i = 0; i < std::ssize(held_); ++i)
     right_.multipliers(i, column) = -system_.measures().sign(held_[i]) *
                                     (more.constraint[held_[i]] - less.constraint[held_[i]]) / number.difference;
-  if (!moves.isZero(0)) system_.add_pull(at, demand, balance_, moves, work_, force, team_);
+  if (!moves.isZero(0)) system_.add_pull(at, load_state, balance_, moves, work_, force, team_);
   ask(at, column, force, std::move(moves));
   return direct;
 }
 
-ParameterSensitivity Derivative::of(const Iterate& at, const Demand& demand,
+ParameterSensitivity Derivative::of(const Iterate& at, const LoadState& load_state,
                                     const std::vector<Perturbation>& perturbations,
                                     const std::shared_ptr<const ViscousHistory>& history, double elapsed_s,
                                     bool reactions) {
   const Index count = perturbations.size();
-  hold(at, demand);
+  hold(at, load_state);
   make_room(count);
   std::vector<Direct> direct;
-  for (Index p = 0; p < count; ++p) direct.push_back(ask_number(at, demand, p, perturbations[p], history, elapsed_s));
+  for (Index p = 0; p < count; ++p)
+    direct.push_back(ask_number(at, load_state, p, perturbations[p], history, elapsed_s));
   ParameterSensitivity result{{}, Eigen::MatrixXd::Zero(system_.actuators(), count), false};
-  result.regular = count == 0 || find(at, demand);
+  result.regular = count == 0 || find(at, load_state);
   for (Index p = 0; p < count; ++p) {
     result.positions.push_back(result.regular ? positions(at, p) : Points(Points::Zero(at.positions.rows(), 3)));
     if (result.regular) result.multipliers.col(p) = multipliers(p);
@@ -294,37 +300,39 @@ ParameterSensitivity Derivative::of(const Iterate& at, const Demand& demand,
   }
   for (Index p = 0; reactions && p < count; ++p)
     result.reactions.push_back(
-        result.regular ? this->reactions(at, demand, p, std::move(direct[p].force), result.multipliers.col(p))
+        result.regular ? this->reactions(at, load_state, p, std::move(direct[p].force), result.multipliers.col(p))
                        : Points(Points::Zero(at.positions.rows(), 3)));
   return result;
 }
 
 /// The right-hand side of the adjoint: K Y + G M = by_places, G^T Y - C M = by_multipliers.
-void Derivative::ask_adjoint(const Iterate& at, Index column, const ShapeGradient& told) {
-  if (told.by_places.rows() > 0) system_.freedoms().reduce(told.by_places, at.positions, right_.moves.col(column));
-  if (told.by_loads.size() == 0) return;
+void Derivative::ask_adjoint(const Iterate& at, Index column, const ShapeGradient& reported) {
+  if (reported.by_places.rows() > 0)
+    system_.freedoms().reduce(reported.by_places, at.positions, right_.moves.col(column));
+  if (reported.by_loads.size() == 0) return;
   for (Index i = 0; i < std::ssize(held_); ++i)
-    right_.multipliers(i, column) = told.by_loads[held_[i]] / system_.measures().unit(held_[i]);
+    right_.multipliers(i, column) = reported.by_loads[held_[i]] / system_.measures().unit(held_[i]);
 }
 
-/// With K X + G L = F and G^T X - C L = T of a number: by_places . X + by_multipliers . L = Y . F + M . T, and what the
-/// number changes without them.
-Eigen::MatrixXd Derivative::of(const Iterate& at, const Demand& demand, const std::vector<Perturbation>& perturbations,
+/// With K X + G L = F and G^T X - C L = T of a number: by_places . X + by_multipliers . L = Y . F + M . T, plus the
+/// direct change by the number.
+Eigen::MatrixXd Derivative::of(const Iterate& at, const LoadState& load_state,
+                               const std::vector<Perturbation>& perturbations,
                                const std::shared_ptr<const ViscousHistory>& history, double elapsed_s,
-                               const std::vector<ShapeGradient>& told) {
-  const Index rows = told.size(), count = perturbations.size();
-  hold(at, demand);
+                               const std::vector<ShapeGradient>& reported) {
+  const Index rows = reported.size(), count = perturbations.size();
+  hold(at, load_state);
   make_room(rows);
-  for (Index r = 0; r < rows; ++r) ask_adjoint(at, r, told[r]);
-  if (rows > 0 && !find(at, demand)) return {};
+  for (Index r = 0; r < rows; ++r) ask_adjoint(at, r, reported[r]);
+  if (rows > 0 && !find(at, load_state)) return {};
   const Columns adjoint = std::move(found_);
   Eigen::MatrixXd result(rows, count);
   for (Index p = 0; p < count; ++p) {
     make_room(1);
     moves_[0].resize(0, 3);
-    const Direct direct = ask_number(at, demand, 0, perturbations[p], history, elapsed_s);
+    const Direct direct = ask_number(at, load_state, 0, perturbations[p], history, elapsed_s);
     for (Index r = 0; r < rows; ++r) {
-      const ShapeGradient& each = told[r];
+      const ShapeGradient& each = reported[r];
       double sum =
           adjoint.moves.col(r).dot(right_.moves.col(0)) + adjoint.multipliers.col(r).dot(right_.multipliers.col(0));
       if (each.by_places.rows() > 0 && moves_[0].rows() > 0) sum += each.by_places.cwiseProduct(moves_[0]).sum();
@@ -341,7 +349,7 @@ Sensitivity Equilibria::sensitivity(const State& state, bool reuse_factor, doubl
   Lease lease(*this, at->positions, reuse_factor);
   system_.set_time(at->history, at->elapsed_s, lease.work(), team);
   Sensitivity found =
-      Derivative(system_, lease.work(), accuracy, team).of(system_.iterate(*at), {at->actuation, at->share});
+      Derivative(system_, lease.work(), accuracy, team).of(system_.iterate(*at), {at->actuation, at->load_factor});
   for (Points& moves : found.positions) drop_vertices(moves);
   return found;
 }
@@ -352,7 +360,7 @@ ParameterSensitivity Equilibria::sensitivity(const State& state, const std::vect
   Lease lease(*this, at->positions, reuse_factor);
   system_.set_time(at->history, at->elapsed_s, lease.work(), team);
   ParameterSensitivity found = Derivative(system_, lease.work(), accuracy, team)
-                                   .of(system_.iterate(*at), {at->actuation, at->share}, changes, reactions);
+                                   .of(system_.iterate(*at), {at->actuation, at->load_factor}, changes, reactions);
   for (Points& moves : found.positions) drop_vertices(moves);
   for (Points& forces : found.reactions) drop_vertices(forces);
   return found;
@@ -363,11 +371,11 @@ std::vector<Points> Equilibria::moves_under(const State& state, const std::vecto
   const Inside at(*this, state, team);
   Lease lease(*this, at->positions, reuse_factor);
   system_.set_time(at->history, at->elapsed_s, lease.work(), team);
-  const Points none = Points::Zero(at->positions.rows() - state.positions.rows(), 3);  // of what is no vertex
+  const Points none = Points::Zero(at->positions.rows() - state.positions.rows(), 3);  // of the pressures
   std::vector<Points> all;
   for (const Points& force : forces) (all.emplace_back(at->positions.rows(), 3)) << force, none;
-  std::vector<Points> found =
-      Derivative(system_, lease.work(), accuracy, team).under(system_.iterate(*at), {at->actuation, at->share}, all);
+  std::vector<Points> found = Derivative(system_, lease.work(), accuracy, team)
+                                  .under(system_.iterate(*at), {at->actuation, at->load_factor}, all);
   for (Points& moves : found) drop_vertices(moves);
   return found;
 }
@@ -377,22 +385,22 @@ ParameterSensitivity Equilibria::sensitivity(const State& state, const std::vect
   const Inside at(*this, state, team);
   Lease lease(*this, at->positions, reuse_factor);
   system_.set_time(at->history, at->elapsed_s, lease.work(), team);
-  ParameterSensitivity found =
-      Derivative(system_, lease.work(), accuracy, team)
-          .of(system_.iterate(*at), {at->actuation, at->share}, perturbations, at->history, at->elapsed_s, reactions);
+  ParameterSensitivity found = Derivative(system_, lease.work(), accuracy, team)
+                                   .of(system_.iterate(*at), {at->actuation, at->load_factor}, perturbations,
+                                       at->history, at->elapsed_s, reactions);
   for (Points& moves : found.positions) drop_vertices(moves);
   for (Points& forces : found.reactions) drop_vertices(forces);
   return found;
 }
 
 Eigen::MatrixXd Equilibria::gradients(const State& state, const std::vector<Perturbation>& perturbations,
-                                      const std::vector<ShapeGradient>& told, bool reuse_factor, double accuracy,
+                                      const std::vector<ShapeGradient>& reported, bool reuse_factor, double accuracy,
                                       Team& team) const {
   const Inside at(*this, state, team);
   Lease lease(*this, at->positions, reuse_factor);
   system_.set_time(at->history, at->elapsed_s, lease.work(), team);
-  const Points none = Points::Zero(at->positions.rows() - state.positions.rows(), 3);  // of what is no vertex
-  std::vector<ShapeGradient> all = told;
+  const Points none = Points::Zero(at->positions.rows() - state.positions.rows(), 3);  // of the pressures
+  std::vector<ShapeGradient> all = reported;
   for (ShapeGradient& each : all) {
     if (each.by_places.rows() == 0) continue;
     Points places(at->positions.rows(), 3);
@@ -400,7 +408,7 @@ Eigen::MatrixXd Equilibria::gradients(const State& state, const std::vector<Pert
     each.by_places = std::move(places);
   }
   return Derivative(system_, lease.work(), accuracy, team)
-      .of(system_.iterate(*at), {at->actuation, at->share}, perturbations, at->history, at->elapsed_s, all);
+      .of(system_.iterate(*at), {at->actuation, at->load_factor}, perturbations, at->history, at->elapsed_s, all);
 }
 
 }  // namespace softkin::physical

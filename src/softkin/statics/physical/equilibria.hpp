@@ -8,8 +8,8 @@
 
 namespace softkin::physical {
 
-/// Equilibria of a robot in the physical formulation: Newton along a path of demands from the start's to the one asked
-/// for, in steps as long as Newton allows, each begun with a tangent predictor.
+/// Equilibria of a robot in the physical formulation: Newton's method along a path of load states from the start to the
+/// requested one, in steps as long as it converges, each begun with a tangent predictor.
 class Equilibria {
  public:
   class Lease;
@@ -25,9 +25,9 @@ class Equilibria {
     bool keep_history = true;
     bool trace = false;
     bool reuse_factor = true;
-    bool stable = false;        // leave unstable equilibria
-    double beyond = 0;          // see StaticsOptions
-    double force_share = 1e-6;  // of the elements' largest pull that may be out of balance
+    bool stable = false;           // leave unstable equilibria
+    double beyond = 0;             // see StaticsOptions
+    double force_fraction = 1e-6;  // tolerance of the residual, over the largest internal force
     std::shared_ptr<const ViscousHistory> history{};
     double elapsed_s = std::numeric_limits<double>::infinity();
   };
@@ -36,14 +36,15 @@ class Equilibria {
   [[nodiscard]] Equilibrium solve(const Actuation& actuation, const State& start, const Options& options,
                                   const ProgressCallback& progress, Team& team) const;
 
-  /// A state with the pressures of mixed elements among its positions, as the system has them, and back. Where it does
-  /// not know them, those that balance its forces best: the only ones, at an equilibrium.
+  /// Returns a state with the pressures of mixed elements among its positions, as the system has them; outside()
+  /// removes them. If the state does not contain pressures, they are those that balance its forces best, which are the
+  /// only ones at an equilibrium.
   ///
   /// throws  InvalidInput on pressures of another robot
   [[nodiscard]] State inside(const State& at, Team& team) const;
   void outside(State& at) const;
 
-  /// Of an equilibrium; see Statics::sensitivity.
+  /// Returns the sensitivity of an equilibrium; see Statics::sensitivity.
   [[nodiscard]] Sensitivity sensitivity(const State& at, bool reuse_factor, double accuracy, Team& team) const;
 
   [[nodiscard]] ParameterSensitivity sensitivity(const State& at, const std::vector<Perturbation>& perturbations,
@@ -53,18 +54,18 @@ class Equilibria {
 
   /// See Perturbations::gradients. The system must be reciprocal.
   [[nodiscard]] Eigen::MatrixXd gradients(const State& at, const std::vector<Perturbation>& perturbations,
-                                          const std::vector<ShapeGradient>& told, bool reuse_factor, double accuracy,
-                                          Team& team) const;
+                                          const std::vector<ShapeGradient>& reported, bool reuse_factor,
+                                          double accuracy, Team& team) const;
 
   /// See Statics::reciprocal_moves.
   [[nodiscard]] std::vector<Points> moves_under(const State& at, const std::vector<Points>& forces, bool reuse_factor,
                                                 double accuracy, Team& team) const;
 
-  /// See Statics::foresee.
-  bool foresee(const Actuation& actuation, const State& at, Points& positions, Team& team) const;
+  /// See Statics::extrapolate.
+  bool extrapolate(const Actuation& actuation, const State& at, Points& positions, Team& team) const;
 
-  /// See Statics::foretell.
-  bool foretell(const State& at, State there) const;
+  /// See Statics::set_initial_guess.
+  bool set_initial_guess(const State& at, State there) const;
 
   /// Adds stress and reactions of an equilibrium; see Statics::measured.
   void measure(const State& at, ElementDeformation& out, Team& team) const;
@@ -76,23 +77,23 @@ class Equilibria {
   /// See Statics::flow.
   [[nodiscard]] ViscousFlow flow(const State& at, Team& team) const;
 
-  /// Drops what earlier solves left.
+  /// Discards the workspaces of earlier solves.
   void forget() const;
 
   [[nodiscard]] const System& system() const { return system_; }
 
  private:
-  /// Without that anything passes through anything, every vertex on its straight way.
+  /// Can every vertex move on a straight path from one shape to the other without penetration?
   bool comes_to(const Points& from, const Points& to, Workspace& work, Team& team) const;
   [[nodiscard]] Equilibrium solve_inside(const Actuation& actuation, const State& start, const Options& options,
                                          const ProgressCallback& progress, Team& team) const;
-  [[nodiscard]] Iterate iterate_at(const State& start, const Demand& from) const;
-  [[nodiscard]] Demand demand_now(const State& start, const Demand& from, const Iterate& at, const Options& options,
-                                  Workspace& work, Team& team) const;
-  [[nodiscard]] State state_at(Iterate&& at, const Demand& demand, const Options& options) const;
+  [[nodiscard]] Iterate iterate_at(const State& start, const LoadState& from) const;
+  [[nodiscard]] LoadState load_state_now(const State& start, const LoadState& from, const Iterate& at,
+                                         const Options& options, Workspace& work, Team& team) const;
+  [[nodiscard]] State state_at(Iterate&& at, const LoadState& load_state, const Options& options) const;
   void find_pressures(State& at, Team& team) const;
   void drop_vertices(Points& points) const;
-  void begin_again(const Demand& to, const Options& options, const ProgressCallback& progress, Team& team,
+  void begin_again(const LoadState& to, const Options& options, const ProgressCallback& progress, Team& team,
                    Workspace& work, Iterate& at, SolveReport& report) const;
 
   System system_;

@@ -14,7 +14,7 @@ using Matrix9 = Eigen::Matrix<double, 9, 9>;
 using Matrix93 = Eigen::Matrix<double, 9, 3>;
 using Vector9 = Eigen::Matrix<double, 9, 1>;
 
-/// Strain down to which a family has its stiffness: at rest it has it.
+/// Smallest strain at which a family has its stiffness, so that it has it at rest.
 constexpr double engaged = -1e-9;
 
 /// Strain E of a family at a deformation, with its derivatives. Entry (i, j) of F stands at 3 j + i.
@@ -46,7 +46,7 @@ class FamilyStrain {
   double scale_, square_;
 };
 
-/// Of a family at a strain above 0: energy per volume and its two derivatives [MPa]. Not finite where it is too long.
+/// Energy per volume of a family at a strain above 0, and its two derivatives [MPa]. Not finite at too large a strain.
 struct FamilyLaw {
   double energy, slope, second;
 
@@ -66,7 +66,8 @@ Eigen::Matrix<double, 3, K> nodes_at(const Points& positions, const std::array<I
   return at;
 }
 
-/// A point's P [MPa] and energy per volume; false where it has none.
+/// Adds P [MPa], the first Piola-Kirchhoff stress, and the energy per volume of a point; false where there is no
+/// energy.
 template <class Families>
 bool add_force(const Mat3& f, const Families& families, Mat3& force, double& energy) {
   if (!(f.determinant() > 0)) return false;
@@ -169,7 +170,7 @@ std::unique_ptr<Term::Scratch> FibreFamilies::new_scratch() const {
   return scratch;
 }
 
-void FibreFamilies::evaluate(const Iterate& at, const Demand& /*demand*/, Term::Scratch& scratch, Sum& sum,
+void FibreFamilies::evaluate(const Iterate& at, const LoadState& /*load_state*/, Term::Scratch& scratch, Sum& sum,
                              Team& team) const {
   std::vector<double>& pulls = static_cast<Scratch&>(scratch).pulls;
   std::atomic<bool> known = true;
@@ -192,7 +193,7 @@ void FibreFamilies::evaluate(const Iterate& at, const Demand& /*demand*/, Term::
         }
       }
     });
-    for (std::size_t e = 0; e < elements.size(); ++e) {  // by one thread: elements share vertices
+    for (std::size_t e = 0; e < elements.size(); ++e) {  // by one thread: elements have vertices in common
       const Pulls pull(pulls.data() + first + 3 * K * e);
       for (int i = 0; i < K; ++i) sum.gradient.row(elements[e].nodes[i]) += pull.col(i).transpose();
       sum.energy += energies[e];
@@ -201,8 +202,8 @@ void FibreFamilies::evaluate(const Iterate& at, const Demand& /*demand*/, Term::
   sum.forbidden = sum.forbidden || !known;
 }
 
-void FibreFamilies::stiffness(const Iterate& at, const Demand& /*demand*/, bool projected, Term::Scratch& /*scratch*/,
-                              LargeVector<double>& slots, Team& team) const {
+void FibreFamilies::stiffness(const Iterate& at, const LoadState& /*demand*/, bool projected,
+                              Term::Scratch& /*scratch*/, LargeVector<double>& slots, Team& team) const {
   using Block = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
   each([&]<int K, int Q>(const Elements<K, Q>& elements, std::size_t /*first*/) {
     team.pieces(elements.size(), [&](Index begin, Index end) {
@@ -216,7 +217,7 @@ void FibreFamilies::stiffness(const Iterate& at, const Demand& /*demand*/, bool 
           if (second.isZero(0)) continue;
           double* slot = slots.data() + 9 * element.slot;
           for (int a = 0; a < K; ++a) {
-            Matrix93 by_a = Matrix93::Zero();  // of forces of all of F by a node's place
+            Matrix93 by_a = Matrix93::Zero();  // derivative of P by the position of a node
             for (int k = 0; k < 3; ++k) by_a += slopes(a, k) * second.middleCols<3>(3 * k);
             for (int b = 0; b <= a; ++b, slot += 9) {
               Mat3 block = Mat3::Zero();

@@ -6,10 +6,11 @@
 
 namespace softkin::physical {
 
-/// Families of fibres in materials (model/families.hpp), beside the isotropic law of the elements, in their own slots.
+/// Families of fibres in materials (model/families.hpp), in addition to the isotropic law of the elements, in their own
+/// slots.
 ///
-/// With H = kappa I + (1 - 3 kappa) d d^T it is E = J^(-2/3) tr(F H F^T) - 1. Where an element is turned over, or a
-/// fibre so long that exp(k2 E^2) is no number, there is no energy.
+/// With H = kappa I + (1 - 3 kappa) d d^T the strain of a family is E = J^(-2/3) tr(F H F^T) - 1. There is no energy
+/// where an element is inverted, or a fibre so long that exp(k2 E^2) overflows.
 class FibreFamilies : public Term {
  public:
   /// model  must outlive the object
@@ -23,13 +24,14 @@ class FibreFamilies : public Term {
   };
   [[nodiscard]] std::unique_ptr<Term::Scratch> new_scratch() const override;
 
-  void evaluate(const Iterate& at, const Demand& demand, Term::Scratch& scratch, Sum& sum, Team& team) const override;
-  void stiffness(const Iterate& at, const Demand& demand, bool projected, Term::Scratch& scratch,
+  void evaluate(const Iterate& at, const LoadState& load_state, Term::Scratch& scratch, Sum& sum,
+                Team& team) const override;
+  void stiffness(const Iterate& at, const LoadState& load_state, bool projected, Term::Scratch& scratch,
                  LargeVector<double>& slots, Team& team) const override;
-  /// Fibres that are pressed carry nothing.
+  /// Compressed fibres carry nothing.
   [[nodiscard]] bool kinked() const override { return true; }
 
-  /// What they add to the Cauchy stress of an element at a quadrature point [MPa]; tetrahedra first, then prisms.
+  /// Their contribution to the Cauchy stress of an element at a quadrature point [MPa]; tetrahedra first, then prisms.
   [[nodiscard]] Mat3 stress(Index element, int point, const Points& positions) const;
 
  private:

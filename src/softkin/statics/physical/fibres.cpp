@@ -8,9 +8,9 @@ namespace softkin::physical {
 
 namespace {
 
-constexpr double taut = -1e-9;  // strain from which on a fibre that takes tension only is stiff: as it is at rest
+constexpr double taut = -1e-9;  // strain above which a tension-only fibre is stiff; it is stiff at rest
 
-/// Of a fibre per length at rest, by its stretch.
+/// Response of a fibre to its stretch, per length at rest.
 struct FibrePull {
   double energy_N = 0, tension_N = 0, slope_N = 0;
 };
@@ -49,7 +49,7 @@ Fibres::Fibres(const Model& model) : fibres_(model.reinforcement.fibres) {
     }
 }
 
-void Fibres::evaluate(const Iterate& at, const Demand& /*demand*/, Term::Scratch& /*scratch*/, Sum& sum,
+void Fibres::evaluate(const Iterate& at, const LoadState& /*demand*/, Term::Scratch& /*scratch*/, Sum& sum,
                       Team& /*team*/) const {
   for (const Group& group : groups_)
     for (const Place& place : group.places) {
@@ -75,7 +75,7 @@ void Fibres::add_cliques(linear::Cliques& cliques) {
   }
 }
 
-void Fibres::stiffness(const Iterate& at, const Demand& /*demand*/, bool projected, Term::Scratch& /*scratch*/,
+void Fibres::stiffness(const Iterate& at, const LoadState& /*demand*/, bool projected, Term::Scratch& /*scratch*/,
                        LargeVector<double>& slots, Team& team) const {
   using Block = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
   team.pieces(groups_.size(), [&](Index begin, Index end) {
@@ -104,30 +104,30 @@ bool Fibres::kinked() const {
   return std::any_of(fibres_.begin(), fibres_.end(), [](const Fibre& fibre) { return fibre.tension_only; });
 }
 
-void Fibres::tell(const Iterate& at, const Demand& /*demand*/, Term::Scratch& /*scratch*/, ElementDeformation& out,
-                  Team& /*team*/) const {
+void Fibres::describe(const Iterate& at, const LoadState& /*demand*/, Term::Scratch& /*scratch*/,
+                      ElementDeformation& out, Team& /*team*/) const {
   for (const Fibre& fibre : fibres_) {
-    FibreForces told;
+    FibreForces reported;
     double rest = 0, now = 0, work = 0, slack = 0;
     for (const FibrePlace& place : fibre.places) {
       const double stretch = tangent(place.vertices, place.slopes, at.positions).norm();
       const double tension = pull_of(fibre.stiffness_N, fibre.tension_only, stretch).tension_N;
-      if (rest == 0 || tension > told.largest_N) {
-        told.largest_N = tension;
-        told.where = Vec3::Zero();
+      if (rest == 0 || tension > reported.largest_N) {
+        reported.largest_N = tension;
+        reported.where = Vec3::Zero();
         for (std::size_t i = 0; i < place.vertices.size(); ++i)
-          told.where += place.weights[i] * vertex_at(at.positions, place.vertices[i]);
+          reported.where += place.weights[i] * vertex_at(at.positions, place.vertices[i]);
       }
-      told.least_N = rest == 0 ? tension : std::min(told.least_N, tension);
+      reported.min_N = rest == 0 ? tension : std::min(reported.min_N, tension);
       rest += place.length_mm;
       now += place.length_mm * stretch;
       work += place.length_mm * tension;
       if (fibre.tension_only && tension == 0) slack += place.length_mm;
     }
-    told.mean_N = work / rest;
-    told.stretch = now / rest;
-    told.slack = slack / rest;
-    out.fibres.push_back(told);
+    reported.mean_N = work / rest;
+    reported.stretch = now / rest;
+    reported.slack = slack / rest;
+    out.fibres.push_back(reported);
   }
 }
 

@@ -5,21 +5,22 @@
 
 namespace softkin::physical {
 
-/// Threads that the body's elements carry along. A piece of length L has the energy L E A / 2 (s - 1)^2, s its stretch,
-/// and the tension E A (s - 1); one that takes tension only neither below a stretch of 1.
+/// Fibres in the body's elements, which deform with these. A piece of length L has the energy L E A / 2 (s - 1)^2, s
+/// being its stretch, and the tension E A (s - 1); both are zero below a stretch of 1 if it takes tension only.
 class Fibres : public Term {
  public:
   /// model must outlive the object.
   explicit Fibres(const Model& model);
 
-  void evaluate(const Iterate& at, const Demand& demand, Term::Scratch& scratch, Sum& sum, Team& team) const override;
+  void evaluate(const Iterate& at, const LoadState& load_state, Term::Scratch& scratch, Sum& sum,
+                Team& team) const override;
   void add_cliques(linear::Cliques& cliques) override;
-  /// projected: what pressed pieces lose across their direction is left out, all else is positive.
-  void stiffness(const Iterate& at, const Demand& demand, bool projected, Term::Scratch& scratch,
+  /// projected: without the negative stiffness of compressed pieces across their direction; the rest is positive.
+  void stiffness(const Iterate& at, const LoadState& load_state, bool projected, Term::Scratch& scratch,
                  LargeVector<double>& slots, Team& team) const override;
   [[nodiscard]] bool kinked() const override;
-  void tell(const Iterate& at, const Demand& demand, Term::Scratch& scratch, ElementDeformation& out,
-            Team& team) const override;
+  void describe(const Iterate& at, const LoadState& load_state, Term::Scratch& scratch, ElementDeformation& out,
+                Team& team) const override;
 
  private:
   /// A place among the vertices of its group.

@@ -11,7 +11,7 @@ namespace {
 constexpr double loop_constant = 0.1;    // mu_0 / (4 pi) [mT mm / A]
 constexpr double dipole_constant = 1e5;  // the same [mT mm^3 / (A m^2)]
 
-/// A number that depends on the place, with its first derivatives, and its second ones where they are asked for.
+/// A number that depends on the position, with its first derivatives, and its second ones if requested.
 template <bool Second>
 struct Local {
   double value = 0;
@@ -42,7 +42,7 @@ struct Local {
   }
 };
 
-/// f(a), by f and its derivatives there.
+/// Returns f(a) from f and its derivatives at a.
 template <bool Second>
 Local<Second> composed(const Local<Second>& a, double f, double f1, double f2) {
   Local<Second> of(f, f1 * a.slope);
@@ -50,7 +50,7 @@ Local<Second> composed(const Local<Second>& a, double f, double f1, double f2) {
   return of;
 }
 
-/// 1 / sqrt(a)^n of a > 0, for all n that are asked for with one division and one root.
+/// 1 / sqrt(a)^n of a > 0, for all requested n with one division and one root.
 template <bool Second>
 class InversePowers {
  public:
@@ -69,7 +69,7 @@ class InversePowers {
   double inverse_, root_;
 };
 
-/// Along a direction, from a point.
+/// Returns the coordinate along a direction, from a point.
 template <bool Second>
 Local<Second> along(const Vec3& from_point, const Vec3& direction) {
   return Local<Second>(from_point.dot(direction), direction);
@@ -134,7 +134,7 @@ bool Fields::Setting::in_space() const {
                      [](const Source& source) { return source.current != 0 || !source.moment.isZero(0); });
 }
 
-Fields::Setting Fields::setting(const Demand& demand) const {
+Fields::Setting Fields::setting(const LoadState& load_state) const {
   Setting setting;
   for (const FieldSource& source : magnetism_.sources) {
     Setting::Source& of = setting.sources.emplace_back();
@@ -148,7 +148,7 @@ Fields::Setting Fields::setting(const Demand& demand) const {
     if (!drive) continue;
     const FieldCommand command = drive->command;
     const std::size_t place = drive->source;
-    const double value = demand.actuation[a];
+    const double value = load_state.actuation[a];
     if (command == FieldCommand::current)
       setting.sources[place].current = value;
     else if (command == FieldCommand::flux_density)
@@ -160,15 +160,15 @@ Fields::Setting Fields::setting(const Demand& demand) const {
     else
       setting.uniform[axis_of(command)] += value;
   }
-  for (Setting::Source& source : setting.sources) source.moment *= demand.share;
+  for (Setting::Source& source : setting.sources) source.moment *= load_state.load_factor;
   return setting;
 }
 
-Fields::Setting Fields::derivative(Index actuator, const Demand& demand) const {
+Fields::Setting Fields::derivative(Index actuator, const LoadState& load_state) const {
   const auto& drive = std::get<MagneticDrive>(model_.actuators[actuator].drive);
   const FieldCommand command = drive.command;
   const std::size_t place = drive.source;
-  Setting setting = this->setting(demand), result;
+  Setting setting = this->setting(load_state), result;
   result.sources.resize(setting.sources.size());
   if (command == FieldCommand::current) {
     result.sources[place].current = 1;
@@ -179,7 +179,7 @@ Fields::Setting Fields::derivative(Index actuator, const Demand& demand) const {
     result.moved_along = axis_of(command);
   } else if (command >= FieldCommand::moment_x) {
     result.sources[place].position = setting.sources[place].position;
-    result.sources[place].moment = demand.share * Vec3::Unit(axis_of(command));
+    result.sources[place].moment = load_state.load_factor * Vec3::Unit(axis_of(command));
   } else {
     result.uniform = Vec3::Unit(axis_of(command));
   }

@@ -14,32 +14,32 @@ class Fields {
   /// model must outlive the object, and have magnetism.
   explicit Fields(const Model& model);
 
-  /// What the commands make of the sources. A dipole grows with the share of the dead loads, since where it is at rest
-  /// it would pull already.
+  /// The sources under a load state. The moment of a dipole grows with the load factor, since at its initial place the
+  /// dipole already attracts the robot.
   struct Setting {
     struct Source {
       double current = 0;                                   // [A]
       Vec3 position = Vec3::Zero(), moment = Vec3::Zero();  // [mm], [A m^2]
     };
-    Vec3 uniform = Vec3::Zero();  // sum of what is the same everywhere [mT]
+    Vec3 uniform = Vec3::Zero();  // sum of the uniform fields [mT]
     std::vector<Source> sources;
     int moved_along = -1;  // axis: not the fields, but their derivative by a move of the sources along it
 
     [[nodiscard]] bool in_space() const;
   };
-  [[nodiscard]] Setting setting(const Demand& demand) const;
+  [[nodiscard]] Setting setting(const LoadState& load_state) const;
   /// Derivative of the fields by the command of an actuator: [mT] becomes [mT per unit of the command].
-  [[nodiscard]] Setting derivative(Index actuator, const Demand& demand) const;
+  [[nodiscard]] Setting derivative(Index actuator, const LoadState& load_state) const;
 
-  /// Is a field there that grows with the share of the dead loads?
+  /// Is there a dipole, whose field grows with the load factor?
   [[nodiscard]] bool any_dipole() const { return any_dipole_; }
 
-  /// What changes in space, all but Setting::uniform, at a place of every lane [mm].
+  /// Computes the flux density that varies in space, all except Setting::uniform, at a point per lane [mm].
   ///
   /// source   loops: energy/loop_field.hpp; dipole: mu_0 / (4 pi) (3 (m . r) r / r^5 - m / r^3); grid: SplineGrid
-  /// count    lanes that matter
-  /// second   are second derivatives asked for: they cost as much again, and are zero otherwise; not of a setting that
-  ///          is moved
+  /// count    number of lanes in use
+  /// second   are second derivatives requested: they double the cost, and are zero otherwise; not for a setting that is
+  ///          a derivative by a move
   /// returns  false where one of those lanes is outside a grid, on a wire or on a dipole
   bool flux(const Setting& setting, const energy::Pack3& places, Index count, bool second,
             energy::FluxPoint& out) const;

@@ -7,10 +7,10 @@ namespace softkin::physical {
 
 namespace {
 
-/// By which what sticks gives way, over the contact distance.
-constexpr double creep_share = 0.02;
+/// Elastic displacement of a sticking contact up to the friction limit, over the contact distance.
+constexpr double creep_fraction = 0.02;
 
-/// In the order of anchors.
+/// Compares by the order of anchors.
 template <class A, class B>
 bool before(const A& a, const B& b) {
   return a.vertex != b.vertex ? a.vertex < b.vertex : a.part < b.part;
@@ -18,19 +18,20 @@ bool before(const A& a, const B& b) {
 
 }  // namespace
 
-Friction::Friction(const ContactSurfaces& surfaces) : surfaces_(surfaces), creep_mm_(creep_share * surfaces.reach_mm) {
-  any_ = surfaces.rules != nullptr && surfaces.rules->rubs();
+Friction::Friction(const ContactSurfaces& surfaces)
+    : surfaces_(surfaces), creep_mm_(creep_fraction * surfaces.reach_mm) {
+  any_ = surfaces.rules != nullptr && surfaces.rules->has_friction();
 }
 
-/// What a vertex feels of a part.
+/// The contact of a vertex with a part.
 struct Friction::Touch {
   Index vertex, part;  // the vertex by its place in the surface
   Vec3 force = Vec3::Zero();
   double nearest = HUGE_VAL;                     // squared [mm^2]
-  const ContactPotential::Term* term = nullptr;  // that is nearest
+  const ContactPotential::Term* term = nullptr;  // the nearest one
 };
 
-/// Sorted as anchors are, as terms come by vertices.
+/// Returns the contacts in the order of anchors; terms are ordered by vertices.
 std::vector<Friction::Touch> Friction::touches(const Terms& terms) const {
   std::vector<Touch> all;
   std::size_t first = 0;  // of the vertex at hand
@@ -77,15 +78,15 @@ void Friction::hold(const Terms& terms, const std::vector<Anchor>& anchors, Hold
 
 namespace {
 
-/// Weights of the corners of a triangle, columns 1 to 3, that move their point along its plane.
-Vec3 shifted(const contact::FourPoints& x, const Vec3& weights, const Vec3& way) {
+/// Returns the weights of the corners of a triangle, columns 1 to 3, after their point has moved along its plane.
+Vec3 shifted(const contact::FourPoints& x, const Vec3& weights, const Vec3& motion) {
   Eigen::Matrix<double, 3, 2> sides;
   sides << x.col(2) - x.col(1), x.col(3) - x.col(1);
-  const Eigen::Vector2d change = (sides.transpose() * sides).inverse() * (sides.transpose() * way);
+  const Eigen::Vector2d change = (sides.transpose() * sides).inverse() * (sides.transpose() * motion);
   return change.allFinite() ? Vec3(weights + Vec3(-change.sum(), change[0], change[1])) : weights;
 }
 
-/// The first share of a way at which a + b s + c s^2 is 0; 0 where a is not above it, 1 where it does not come there.
+/// Returns the first fraction s of a motion at which a + b s + c s^2 is 0; 0 if a is not positive, 1 if there is none.
 double first_zero(double a, double b, double c) {
   if (!(a > 0)) return 0;
   const double under_root = b * b - 4 * a * c;
@@ -96,9 +97,9 @@ double first_zero(double a, double b, double c) {
 
 }  // namespace
 
-/// Of what came into reach on the way the anchor lies where it did so if nothing had pushed: the gap hardly changes any
-/// more once something does.
-Anchor Friction::fresh_anchor(const Points& from, const Points& to, const FreeWay& free, const Touch& touch) const {
+/// Returns the anchor of a contact that came into reach during a motion. The anchor is where that would have happened
+/// without contact forces: once they act, the gap hardly changes any more.
+Anchor Friction::fresh_anchor(const Points& from, const Points& to, const FreeMotion& free, const Touch& touch) const {
   const contact::Nodes nodes = nodes_of_vertex_triangle(surfaces_.surface, touch.term->pair);
   const auto apart = [&](const Points& shape) -> Vec3 {
     return contact::points_of(shape, nodes) * touch.term->separation.weights;
@@ -107,14 +108,14 @@ Anchor Friction::fresh_anchor(const Points& from, const Points& to, const FreeWa
   Vec3 turned = apart(free.turned), straight = apart(free.straight);
   if (!(turned.dot(normal) < now.dot(normal))) turned = straight = now;
   const Vec3 move = straight - then, bend = turned - straight;
-  const double share = first_zero(then.dot(normal) - surfaces_.reach_mm, move.dot(normal), bend.dot(normal));
-  Vec3 way = now - then - share * move - share * share * bend;
-  way -= way.dot(normal) * normal;
+  const double fraction = first_zero(then.dot(normal) - surfaces_.reach_mm, move.dot(normal), bend.dot(normal));
+  Vec3 motion = now - then - fraction * move - fraction * fraction * bend;
+  motion -= motion.dot(normal) * normal;
   return {touch.vertex, touch.part, touch.term->pair.second,
-          shifted(contact::points_of(to, nodes), -touch.term->separation.weights.tail<3>(), -way)};
+          shifted(contact::points_of(to, nodes), -touch.term->separation.weights.tail<3>(), -motion)};
 }
 
-void Friction::renew(const Points& from, const Points& to, const FreeWay& free, const Terms& terms,
+void Friction::renew(const Points& from, const Points& to, const FreeMotion& free, const Terms& terms,
                      std::vector<Anchor>& anchors) const {
   std::vector<Anchor> now;
   for (const Touch& touch : touches(terms)) {
@@ -126,16 +127,16 @@ void Friction::renew(const Points& from, const Points& to, const FreeWay& free, 
 }
 
 Vec3 Friction::slip(const Points& positions, const Hold& hold) {
-  const Vec3 way = contact::points_of(positions, hold.nodes) * hold.weights;
-  return way - way.dot(hold.normal) * hold.normal;
+  const Vec3 motion = contact::points_of(positions, hold.nodes) * hold.weights;
+  return motion - motion.dot(hold.normal) * hold.normal;
 }
 
 void Friction::slide(const Points& positions, const Terms& terms, const Holds& holds,
                      std::vector<Anchor>& anchors) const {
   const std::vector<Touch> all = touches(terms);
   for (const Hold& hold : holds) {
-    const Vec3 way = slip(positions, hold);
-    const double length = way.norm();
+    const Vec3 motion = slip(positions, hold);
+    const double length = motion.norm();
     if (!(length > creep_mm_)) continue;
     const Index part = surfaces_.triangle_part[hold.pair.second];
     const auto anchor = std::find_if(anchors.begin(), anchors.end(),
@@ -147,17 +148,17 @@ void Friction::slide(const Points& positions, const Terms& terms, const Holds& h
     anchor->triangle = touch->term->pair.second;
     const contact::FourPoints x =
         contact::points_of(positions, nodes_of_vertex_triangle(surfaces_.surface, {hold.pair.first, anchor->triangle}));
-    anchor->weights = shifted(x, -touch->term->separation.weights.tail<3>(), -creep_mm_ / length * way);
+    anchor->weights = shifted(x, -touch->term->separation.weights.tail<3>(), -creep_mm_ / length * motion);
   }
 }
 
 Vec3 Friction::force(const Points& positions, const Hold& hold) const {
-  const Vec3 way = slip(positions, hold);
-  const double length = way.norm();
-  return length > 0 ? Vec3(-hold.limit * energy::friction(length, creep_mm_).slope / length * way) : Vec3::Zero();
+  const Vec3 motion = slip(positions, hold);
+  const double length = motion.norm();
+  return length > 0 ? Vec3(-hold.limit * energy::friction(length, creep_mm_).slope / length * motion) : Vec3::Zero();
 }
 
-double Friction::slipping_share(const Points& positions, const Holds& holds) const {
+double Friction::slipping_fraction(const Points& positions, const Holds& holds) const {
   constexpr double nearly = 0.75;  // of the creep: friction is within 6 % of its limit
   double all = 0, slipping = 0;
   for (const Hold& hold : holds) {
@@ -198,13 +199,13 @@ void Friction::add_gradient(const Points& positions, const Holds& holds, Points&
 }
 
 void Friction::stiffness(const Points& positions, const Hold& hold, contact::Hessian& out) const {
-  const Vec3 way = slip(positions, hold);
-  const double length = way.norm();
+  const Vec3 motion = slip(positions, hold);
+  const double length = motion.norm();
   const energy::LengthLaw law = energy::friction(length, creep_mm_);
   Mat3 across = Mat3::Identity() - hold.normal * hold.normal.transpose();
   Mat3 block = hold.limit * (length > 0 ? law.slope / length : law.curvature) * across;
   if (length > 0) {
-    const Vec3 along = way / length;
+    const Vec3 along = motion / length;
     block += hold.limit * (law.curvature - law.slope / length) * along * along.transpose();
   }
   for (int i = 0; i < 4; ++i)
@@ -213,20 +214,22 @@ void Friction::stiffness(const Points& positions, const Hold& hold, contact::Hes
 
 namespace {
 
-/// Change of friction's force when the normal force on a vertex changes.
+/// Returns the change of the friction force when the normal force on a vertex changes.
 ///
-/// way  of the vertex from its anchor
-Vec3 change_of_force(double coefficient, double creep, const Vec3& way, const Vec3& pressed, const Vec3& change) {
+/// motion  of the vertex from its anchor
+Vec3 change_of_force(double coefficient, double creep, const Vec3& motion, const Vec3& pressed, const Vec3& change) {
   const double size = pressed.norm();
   const Vec3 normal = pressed / size;
   const double more = normal.dot(change);
   const Vec3 turned = (change - more * normal) / size;
-  const Vec3 slip = way - way.dot(normal) * normal, slip_change = -way.dot(turned) * normal - way.dot(normal) * turned;
+  const Vec3 slip = motion - motion.dot(normal) * normal,
+             slip_change = -motion.dot(turned) * normal - motion.dot(normal) * turned;
   const double length = slip.norm();
   if (!(length > 0)) return -coefficient * size * energy::friction(0, creep).curvature * slip_change;
   const energy::LengthLaw law = energy::friction(length, creep);
-  const double share = law.slope / length, bend = (law.curvature - share) / (length * length);
-  return -coefficient * (more * share * slip + size * (share * slip_change + bend * slip.dot(slip_change) * slip));
+  const double fraction = law.slope / length, bend = (law.curvature - fraction) / (length * length);
+  return -coefficient *
+         (more * fraction * slip + size * (fraction * slip_change + bend * slip.dot(slip_change) * slip));
 }
 
 }  // namespace
@@ -248,8 +251,8 @@ void Friction::add_response(const ContactPotential& potential, const Points& pos
     }
     const double size = pressed.norm();
     if (!(size > 0)) continue;
-    const Vec3 way = contact::points_of(positions, hold.nodes) * hold.weights;
-    const Vec3 more = change_of_force(hold.limit / size, creep_mm_, way, pressed, change);
+    const Vec3 motion = contact::points_of(positions, hold.nodes) * hold.weights;
+    const Vec3 more = change_of_force(hold.limit / size, creep_mm_, motion, pressed, change);
     for (int i = 0; i < 4; ++i) gradient.row(hold.nodes[i]) -= hold.weights[i] * more.transpose();
   }
 }

@@ -5,15 +5,15 @@
 
 namespace softkin::physical {
 
-/// Where a way would lead if nothing were in the way: to first order, and with what turns add to that.
-struct FreeWay {
+/// Target of a motion without contact: to first order, and with the rotations of elements added.
+struct FreeMotion {
   Points straight, turned;
 };
 
-/// Coulomb's friction of vertices on surfaces, with normal forces and directions of an earlier shape: a potential of
-/// how far each vertex is from where it sticks, its anchor, whose slope is the friction coefficient times the normal
-/// force once that is farther than a creep. Anchors stay from step to step where a contact sticks, and follow where it
-/// slips, so that what sticks does not creep on with the number of steps.
+/// Coulomb's friction of vertices on surfaces, with normal forces and directions of an earlier shape. It is a potential
+/// of the distance of each vertex from its anchor, the point where it sticks; its slope is the friction coefficient
+/// times the normal force once the distance exceeds the creep. Anchors stay from step to step where a contact sticks,
+/// and follow where it slips, so that creep does not add up over steps.
 ///
 /// source     potential: energy/contact_laws.hpp
 /// deviation  Li et al. 2020 take the displacement since the last step instead of an anchor
@@ -22,7 +22,7 @@ class Friction {
   /// surfaces must outlive the object.
   explicit Friction(const ContactSurfaces& surfaces);
 
-  /// Does any pair of parts rub?
+  /// Does any pair of parts have friction?
   [[nodiscard]] bool any() const { return any_; }
 
   /// A vertex on a triangle to which it sticks.
@@ -37,15 +37,15 @@ class Friction {
   using Holds = std::vector<Hold>;
   using Terms = std::vector<ContactPotential::Term>;
 
-  /// Of the normal forces of a shape, at those anchors that are in contact; in the order of the anchors.
+  /// Fills holds with the normal forces of a shape at those anchors that are in contact, in the order of the anchors.
   void hold(const Terms& terms, const std::vector<Anchor>& anchors, Holds& holds) const;
 
-  /// Anchors of all that is in contact in a shape: those that there are, and new ones where none is.
-  /// from, to: the way on which they came
-  void renew(const Points& from, const Points& to, const FreeWay& free, const Terms& terms,
+  /// Sets the anchors of all contacts in a shape: keeps those that exist, and adds new ones where there is none.
+  /// from, to: start and end of the motion to that shape
+  void renew(const Points& from, const Points& to, const FreeMotion& free, const Terms& terms,
              std::vector<Anchor>& anchors) const;
 
-  /// Lets the anchors of what slips follow to within the creep.
+  /// Moves the anchors of slipping contacts after these, to within the creep.
   void slide(const Points& positions, const Terms& terms, const Holds& holds, std::vector<Anchor>& anchors) const;
 
   /// The largest difference of two friction forces on a vertex, over the largest of them [-].
@@ -56,23 +56,23 @@ class Friction {
   /// Second derivative of a hold in its nodes [N/mm]; positive semidefinite.
   void stiffness(const Points& positions, const Hold& hold, contact::Hessian& out) const;
 
-  /// Adds what moves of the vertices change of the gradient by the normal forces that they change, at a shape whose
-  /// normal forces are held. Not symmetric.
+  /// Adds the change of the gradient along moves of the vertices that comes from the change of the normal forces, at a
+  /// shape whose normal forces are fixed. It is not symmetric.
   void add_response(const ContactPotential& potential, const Points& positions, const Terms& terms, const Holds& holds,
                     const Points& moves, Points& gradient) const;
 
-  /// How far a vertex is from its anchor, across the normal [mm].
+  /// Returns the displacement of a vertex from its anchor, across the normal [mm].
   [[nodiscard]] static Vec3 slip(const Points& positions, const Hold& hold);
   [[nodiscard]] double creep_mm() const { return creep_mm_; }
-  /// Of the normal forces that are held, the share that slips [-]; 0 without any.
-  [[nodiscard]] double slipping_share(const Points& positions, const Holds& holds) const;
-  /// On the vertex; the nodes share it by their weights [N].
+  /// Returns the fraction of the fixed normal forces whose contacts slip [-]; 0 without any.
+  [[nodiscard]] double slipping_fraction(const Points& positions, const Holds& holds) const;
+  /// Returns the force on the vertex; its nodes take it in proportion to their weights [N].
   [[nodiscard]] Vec3 force(const Points& positions, const Hold& hold) const;
 
  private:
   struct Touch;
   [[nodiscard]] std::vector<Touch> touches(const Terms& terms) const;
-  [[nodiscard]] Anchor fresh_anchor(const Points& from, const Points& to, const FreeWay& free,
+  [[nodiscard]] Anchor fresh_anchor(const Points& from, const Points& to, const FreeMotion& free,
                                     const Touch& touch) const;
 
   const ContactSurfaces& surfaces_;

@@ -30,11 +30,11 @@ constexpr RulePoint degree_6[] = {{0.249286745170910, 0.249286745170910, 0.11678
                                   {0.053145049844817, 0.310352451033784, 0.082851075618374},
                                   {0.636502499121399, 0.053145049844817, 0.082851075618374},
                                   {0.053145049844817, 0.636502499121399, 0.082851075618374}};
-/// Of flat faces: degree 2.
+/// The rule for flat faces: degree 2.
 constexpr RulePoint degree_2[] = {
     {1.0 / 6, 1.0 / 6, 1.0 / 3}, {2.0 / 3, 1.0 / 6, 1.0 / 3}, {1.0 / 6, 2.0 / 3, 1.0 / 3}};
 
-/// Shape functions and their slopes by u and v.
+/// Sets the shape functions and their derivatives by u and v.
 void set_shape(std::size_t nodes, const Parameter& at, Nodes6& shape, Nodes6& by_u, Nodes6& by_v) {
   const double u = at[0], v = at[1], t = 1 - u - v;
   if (nodes == 3) {
@@ -85,17 +85,17 @@ Hydrostatics::Hydrostatics(const Model& model) : model_(model) {
   for (const FollowingTraction& traction : model.loads.tractions)
     if (!traction.deeper_MPa_mm.isZero(0))
       for (const LoadedFace& loaded : traction.faces)
-        faces_.push_back({nodes_of(loaded.face), loaded.share, traction.deeper_MPa_mm, traction.level_mm});
+        faces_.push_back({nodes_of(loaded.face), loaded.fraction, traction.deeper_MPa_mm, traction.level_mm});
   find_rims();
 }
 
-/// Is the surface closed but for edges that can not move?
+/// Is the surface closed, except for edges that cannot move?
 void Hydrostatics::find_rims() {
   std::map<std::pair<Index, Index>, double> passes;
   for (const Face& face : faces_)
     for (std::size_t i = 0; i < 3; ++i) {
       const Index a = face.nodes[i], b = face.nodes[(i + 1) % 3];
-      passes[{std::min(a, b), std::max(a, b)}] += a < b ? face.share : -face.share;
+      passes[{std::min(a, b), std::max(a, b)}] += a < b ? face.fraction : -face.fraction;
     }
   const auto still = [&](Index v) {
     const auto& fixed = model_.held.fixed[v];
@@ -106,7 +106,7 @@ void Hydrostatics::find_rims() {
   });
 }
 
-/// Pressures at the nodes of a face, and between which it is all over the face [MPa].
+/// Pressures at the nodes of a face, and their bounds over all of the face [MPa].
 struct Hydrostatics::Depths {
   std::array<double, 6> at{};
   double least = 0, most = 0;
@@ -114,7 +114,7 @@ struct Hydrostatics::Depths {
   Depths(const Face& face, const Points& positions) {
     for (std::size_t i = 0; i < face.nodes.size(); ++i) {
       at[i] = face.deeper.dot(vertex_at(positions, face.nodes[i]) - face.level);
-      // of what is quadratic its Bezier coefficient
+      // the bounds of a quadratic function are those of its Bezier coefficients
       const double bound = i < 3 ? at[i] : 2 * at[i] - 0.5 * (at[i - 3] + at[(i - 2) % 3]);
       least = i == 0 ? bound : std::min(least, bound);
       most = i == 0 ? bound : std::max(most, bound);
@@ -135,7 +135,7 @@ void Hydrostatics::each_place(const Face& face, const Points& positions, const V
     for (const RulePoint& point : rule) {
       Place place;
       set_shape(count, a + point.a * along + point.b * across, place.shape, place.along_u, place.along_v);
-      place.weight = 0.5 * doubled * point.weight * face.share;
+      place.weight = 0.5 * doubled * point.weight * face.fraction;
       place.pressure = std::max(0.0, depths.of(place.shape));
       for (std::size_t i = 0; i < count; ++i) {
         place.u += place.along_u[i] * vertex_at(positions, face.nodes[i]);
@@ -159,18 +159,18 @@ void Hydrostatics::each_place(const Face& face, const Points& positions, const V
     }
 }
 
-void Hydrostatics::evaluate(const Iterate& at, const Demand& demand, Term::Scratch& scratch, Sum& sum,
+void Hydrostatics::evaluate(const Iterate& at, const LoadState& load_state, Term::Scratch& scratch, Sum& sum,
                             Team& /*team*/) const {
-  static_cast<Scratch&>(scratch).demand = demand;
+  static_cast<Scratch&>(scratch).load_state = load_state;
   double energy = 0;
   for (const Face& face : faces_)
     each_place(face, at.positions, [&](const Place& place, const Vec3& area) {
-      const Vec3 push = demand.share * place.pressure * area;
+      const Vec3 push = load_state.load_factor * place.pressure * area;
       for (std::size_t i = 0; i < face.nodes.size(); ++i)
         sum.gradient.row(face.nodes[i]) += place.shape[i] * push.transpose();
       energy += 0.5 * place.pressure * place.pressure * face.deeper.dot(area) / face.deeper.squaredNorm();
     });
-  sum.energy += demand.share * energy;
+  sum.energy += load_state.load_factor * energy;
 }
 
 Hydrostatics::Blocks Hydrostatics::slopes(std::size_t number, const Points& positions) const {
@@ -191,9 +191,9 @@ Hydrostatics::Blocks Hydrostatics::slopes(std::size_t number, const Points& posi
   return blocks;
 }
 
-void Hydrostatics::add_change(const Demand& from, const Demand& to, const Points& positions, Term::Scratch& /*scratch*/,
-                              Points& force, Team& /*team*/) const {
-  const double change = to.share - from.share;
+void Hydrostatics::add_change(const LoadState& from, const LoadState& to, const Points& positions,
+                              Term::Scratch& /*scratch*/, Points& force, Team& /*team*/) const {
+  const double change = to.load_factor - from.load_factor;
   if (change == 0) return;
   for (const Face& face : faces_)
     each_place(face, positions, [&](const Place& place, const Vec3& area) {

@@ -7,12 +7,11 @@ namespace softkin::physical {
 
 /// A liquid at rest around the robot: on each piece of its outer surface a pressure along the present normal,
 /// p = max(0, b . (x - x0)) at the present place x, with b the density times gravity and x0 a place of the level. It
-/// grows with the share of what is done at once.
+/// grows with the load factor.
 ///
-/// Its energy is that of the pressure field in what is displaced, the integral of p over the volume, taken on the
-/// surface: of (p^2 / 2) b / b^2, whose divergence p is. Forces are p n, face by face; they are the gradient of that
-/// energy where the surface is closed, or open only along edges that can not move. Else their derivative has a part
-/// that is not symmetric: a response.
+/// Its energy is the integral of p over the displaced volume, taken on the surface: of (p^2 / 2) b / b^2, whose
+/// divergence is p. Forces are p n, face by face; they are the gradient of that energy where the surface is closed, or
+/// open only along edges that cannot move. Else their derivative has a part that is not symmetric: a response.
 ///
 /// A face that the level cuts is cut along it: exactly where it is flat, else after eight by eight pieces. As p is 0
 /// there, the derivative of where it is cut is of no account.
@@ -23,19 +22,21 @@ class Hydrostatics : public NodeLoads {
 
   [[nodiscard]] static bool acts(const Model& model);
 
-  void evaluate(const Iterate& at, const Demand& demand, Term::Scratch& scratch, Sum& sum, Team& team) const override;
+  void evaluate(const Iterate& at, const LoadState& load_state, Term::Scratch& scratch, Sum& sum,
+                Team& team) const override;
   [[nodiscard]] bool conservative() const override { return closed_; }
-  void add_change(const Demand& from, const Demand& to, const Points& positions, Term::Scratch& scratch, Points& force,
-                  Team& team) const override;
+  void add_change(const LoadState& from, const LoadState& to, const Points& positions, Term::Scratch& scratch,
+                  Points& force, Team& team) const override;
 
  private:
   struct Face {
     std::vector<Index> nodes;
-    double share = 1;
+    double fraction = 1;
     Vec3 deeper{0, 0, 0};  // b [MPa/mm]
     Vec3 level{0, 0, 0};   // x0 [mm]
   };
-  /// A wet place of a face: shape functions of its nodes, the surface's slopes by its parameters, its share of them.
+  /// A wet quadrature point of a face: shape functions of its nodes and their derivatives, the tangents of the surface,
+  /// and its weight.
   struct Place {
     Eigen::Matrix<double, 6, 1> shape, along_u, along_v;
     Vec3 u = Vec3::Zero(), v = Vec3::Zero();  // [mm]

@@ -4,31 +4,31 @@
 
 namespace softkin::physical {
 
-/// What is asked of a robot in the physical formulation.
-struct Demand {
-  Eigen::VectorXd actuation;  // m, as the user commands it
-  double share = 1;           // of dead loads, dipoles, prestretch and displacements of supports [-]
-  double fading = 0;          // share of what was not in balance where the way began [-]
+/// The loads on a robot in the physical formulation: commands and load factors.
+struct LoadState {
+  Eigen::VectorXd actuation;  // m commands, in the user's units
+  double load_factor = 1;     // of dead loads, dipoles, prestretch and displacements of supports [-]
+  double fading = 0;          // fraction of the residual at the begin of the path that remains [-]
 };
 
-/// At a share of the way from one to another.
-[[nodiscard]] Demand between(const Demand& from, const Demand& to, double share);
+/// Returns the load state at a fraction `load_factor` of the path from one to another.
+[[nodiscard]] LoadState between(const LoadState& from, const LoadState& to, double load_factor);
 
-/// Shape and multipliers; a point of the path that Newton follows.
+/// Shape and multipliers: a point of the path that Newton's method follows.
 struct Iterate {
   Points positions;               // #V by 3 [mm]
   Eigen::VectorXd multipliers;    // m: tension [N], gauge pressure [MPa], voltage of a dea [kV]
-  std::vector<Anchor> anchors{};  // of friction
-  std::vector<double> eyelets{};  // of tendons that rub, see Tendons; empty: they do not yet
+  std::vector<Anchor> anchors{};  // of contact friction
+  std::vector<double> eyelets{};  // of tendons with friction, see Tendons; empty: not yet set
 };
 
-/// How an equilibrium changes with the commands: what a derivative found.
+/// The derivatives of an equilibrium by the commands.
 struct Slopes {
-  Points at;                           // no rows: not known
-  std::vector<Index> held;             // the constraints that were
+  Points at;                           // the shape; no rows: unknown
+  std::vector<Index> held;             // the constraints that were active
   Eigen::MatrixXd moves, multipliers;  // of the unknowns, of the constraints, per unit of each command
-  Eigen::VectorXd foreseen_for{};      // an actuation whose equilibrium was foreseen from here; empty: none
-  Iterate foreseen{};
+  Eigen::VectorXd extrapolated_for{};  // actuation whose equilibrium was extrapolated from here; empty: none
+  Iterate extrapolated{};
 };
 
 }  // namespace softkin::physical

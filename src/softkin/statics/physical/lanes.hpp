@@ -5,7 +5,7 @@
 
 namespace softkin::physical {
 
-// Of one element among those of a block.
+// Access to one element of a block.
 
 inline void set_lane(energy::Pack3& vector, int lane, const Vec3& value) {
   vector.x[lane] = value[0];

@@ -44,7 +44,7 @@ energy::SheetResponse respond(const SheetLaw& law, const Vec3& strain, double ba
                                          : energy::sheet_response(law, strain);
 }
 
-/// The nearest symmetric matrix that presses nowhere.
+/// Returns the nearest symmetric matrix without compression.
 Eigen::Matrix2d pulling(const Eigen::Matrix2d& stress) {
   const double mean = stress.trace() / 2, apart = std::hypot((stress(0, 0) - stress(1, 1)) / 2, stress(1, 0));
   if (mean >= apart) return stress;
@@ -52,7 +52,7 @@ Eigen::Matrix2d pulling(const Eigen::Matrix2d& stress) {
   return (mean + apart) / (2 * apart) * (stress - (mean - apart) * Eigen::Matrix2d::Identity());
 }
 
-/// The places of sorted vertices in an order of their own.
+/// Returns the order that sorts vertices.
 std::vector<std::size_t> sorted_order(const std::vector<Index>& vertices) {
   std::vector<std::size_t> order(vertices.size());
   std::iota(order.begin(), order.end(), 0);
@@ -82,7 +82,7 @@ Eigen::MatrixXd positive(const Eigen::MatrixXd& matrix) {
   return parts.vectors * parts.values.cwiseMax(0.0).asDiagonal() * parts.vectors.transpose();
 }
 
-/// Blocks of the vertices, of which each is the sum over pairs of columns.
+/// Writes the blocks of the vertices, each of which is a sum over pairs of columns.
 template <class Bent>
 void put_stiffness(const Bent& bent, const Eigen::MatrixXd& hessian, double* out) {
   const Eigen::Index columns = hessian.cols() / 3;
@@ -107,7 +107,7 @@ Layers::Layers(const Model& model) : model_(model) {
     add_bending(*layer);
   }
   std::vector<bool> held = vertices_of_elements(model);
-  // what bends has a shape of its own, but a bag that is flat begins swollen: there the film has far to go
+  // sheets that bend have a shape of their own, but a flat bag is swollen at the start, as its film has far to go
   if (std::none_of(model.actuators.begin(), model.actuators.end(), flat_at_rest))
     for (const auto& layer : model.reinforcement.layers) {
       if (layer->bends.empty()) continue;
@@ -194,7 +194,7 @@ energy::BendingResponse<18> Layers::bend(const Joint& joint, const Points& posit
   return energy::bend(*joint.of, columns.leftCols<3>(), columns.rightCols<3>(), second);
 }
 
-void Layers::evaluate(const Iterate& at, const Demand& /*demand*/, Term::Scratch& scratch, Sum& sum,
+void Layers::evaluate(const Iterate& at, const LoadState& /*load_state*/, Term::Scratch& scratch, Sum& sum,
                       Team& /*team*/) const {
   const double barrier = static_cast<Scratch&>(scratch).barrier;
   Eigen::VectorXd& pulls = static_cast<Scratch&>(scratch).pulls;
@@ -238,7 +238,7 @@ void Layers::add_cliques(linear::Cliques& cliques) {
 
 namespace {
 
-/// What its stiffness is made of, projected or not.
+/// Stress and tangent of a sheet's stiffness, projected or not.
 struct SheetStress {
   Eigen::Matrix2d stress;
   Mat3 tangent;
@@ -251,7 +251,7 @@ SheetStress stress_of(const SheetLaw& law, const Sheet& f, double barrier, bool 
   return {pulling(stress), law.rubber ? Mat3(positive(response.tangent)) : response.tangent};
 }
 
-/// Of a place, added to blocks of its vertices: those in order have these places among the place's own.
+/// Adds the stiffness of a place to blocks of its vertices; order: their numbers among the place's vertices.
 void add_sheet_stiffness(const LayerPlace& place, const Sheet& f, const SheetStress& of, double volume,
                          const std::vector<std::size_t>& order, double* out) {
   std::vector<Mat3> slopes;
@@ -268,7 +268,7 @@ void add_sheet_stiffness(const LayerPlace& place, const Sheet& f, const SheetStr
 
 }  // namespace
 
-void Layers::stiffness(const Iterate& at, const Demand& /*demand*/, bool projected, Term::Scratch& scratch,
+void Layers::stiffness(const Iterate& at, const LoadState& /*load_state*/, bool projected, Term::Scratch& scratch,
                        LargeVector<double>& slots, Team& team) const {
   const double barrier = static_cast<const Scratch&>(scratch).barrier;
   const auto room = [&](std::int64_t slot, std::size_t count) {
@@ -304,10 +304,10 @@ bool Layers::kinked() const {
   return std::any_of(faces_.begin(), faces_.end(), [](const Face& face) { return face.law->tension_only; });
 }
 
-void Layers::tell(const Iterate& at, const Demand& /*demand*/, Term::Scratch& /*scratch*/, ElementDeformation& out,
-                  Team& /*team*/) const {
+void Layers::describe(const Iterate& at, const LoadState& /*demand*/, Term::Scratch& /*scratch*/,
+                      ElementDeformation& out, Team& /*team*/) const {
   for (const auto& layer : model_.reinforcement.layers) {
-    LayerForces told;
+    LayerForces reported;
     double area = 0, wrinkled = 0, slack = 0;
     for (const LayerPlace& place : layer->places) {
       const Sheet f = sheet_gradient(place, at.positions);
@@ -317,23 +317,23 @@ void Layers::tell(const Iterate& at, const Demand& /*demand*/, Term::Scratch& /*
       const Eigen::Matrix2d pull =
           layer->thickness_mm / std::sqrt(std::max(c.determinant(), 1e-300)) * as_matrix(response.stress) * c;
       const double mean = pull.trace() / 2, apart = std::sqrt(std::max(mean * mean - pull.determinant(), 0.0));
-      if (area == 0 || mean + apart > told.largest_N_mm) {
-        told.largest_N_mm = mean + apart;
-        told.where = Vec3::Zero();
+      if (area == 0 || mean + apart > reported.largest_N_mm) {
+        reported.largest_N_mm = mean + apart;
+        reported.where = Vec3::Zero();
         for (std::size_t i = 0; i < place.vertices.size(); ++i)
-          told.where += place.weights[i] * vertex_at(at.positions, place.vertices[i]);
+          reported.where += place.weights[i] * vertex_at(at.positions, place.vertices[i]);
       }
-      told.least_N_mm = area == 0 ? mean - apart : std::min(told.least_N_mm, mean - apart);
+      reported.min_N_mm = area == 0 ? mean - apart : std::min(reported.min_N_mm, mean - apart);
       const double middle = c.trace() / 2, off = std::sqrt(std::max(middle * middle - c.determinant(), 0.0));
       const double stretch = std::sqrt(middle + off) - 1;
-      told.strain = area == 0 ? stretch : std::max(told.strain, stretch);
+      reported.strain = area == 0 ? stretch : std::max(reported.strain, stretch);
       area += place.area_mm2;
       if (response.state == energy::SheetState::wrinkled) wrinkled += place.area_mm2;
       if (response.state == energy::SheetState::slack) slack += place.area_mm2;
     }
-    told.wrinkled = wrinkled / area;
-    told.slack = slack / area;
-    out.layers.push_back(told);
+    reported.wrinkled = wrinkled / area;
+    reported.slack = slack / area;
+    out.layers.push_back(reported);
   }
 }
 

@@ -7,45 +7,46 @@
 
 namespace softkin::physical {
 
-/// Thin sheets: membranes on faces of the body, of thickness times the energy of their strain in the plane, and plates
-/// of order 2, by their curvature and the angles that their slopes jump by from face to face.
+/// Thin sheets: membranes on faces of the body, with the energy of their strain in the plane times the thickness, and
+/// plates of order 2, with the energy of their curvature and of the jumps of their slopes from face to face.
 class Layers : public Term {
  public:
   /// model must outlive the object.
   explicit Layers(const Model& model);
 
   struct Scratch : Term::Scratch {
-    Eigen::VectorXd pulls;  // of each vertex, sum of magnitudes [N]
-    double barrier = 0;     // of what takes tension only; 0: it has kinks. See energy::smooth_sheet_response()
+    Eigen::VectorXd pulls;  // internal force on each vertex, sum of magnitudes [N]
+    double barrier = 0;     // smoothing of tension-only sheets; 0: none. See energy::smooth_sheet_response()
   };
   [[nodiscard]] std::unique_ptr<Term::Scratch> new_scratch() const override { return std::make_unique<Scratch>(); }
 
-  /// Is there a vertex that layers alone hold? A flat sheet has no stiffness across itself, or hardly any: one that
-  /// bends counts where a chamber begins flat.
-  [[nodiscard]] bool limp() const { return !alone_.empty(); }
-  /// Are these where they were cut?
+  /// Is there a vertex that belongs to layers alone? A flat sheet has no transverse stiffness, or hardly any. A sheet
+  /// with bending stiffness counts if it belongs to a chamber that is flat at rest.
+  [[nodiscard]] bool has_wrinkling() const { return !alone_.empty(); }
+  /// Are these vertices at their positions at rest?
   [[nodiscard]] bool flat(const Points& positions) const;
-  /// These vertices.
+  /// Returns these vertices.
   [[nodiscard]] const std::vector<Index>& alone() const { return alone_; }
-  /// Adds to the forces what moves of the vertices call up under a tension of 1 N/mm in every direction, which is all
-  /// that the sheets are taken to resist with [N].
+  /// Adds the forces that moves of the vertices cause under a uniform tension of 1 N/mm, the only resistance that the
+  /// sheets are assumed to have [N].
   void add_tension(const Points& moves, Points& forces) const;
-  /// The largest of a layer along its direction, times its thickness [N/mm].
+  /// Returns the largest stiffness of a layer along its direction, times its thickness [N/mm].
   [[nodiscard]] double stiffness_N_mm() const;
-  /// Mean magnitude of the slopes of moves, over the area.
+  /// Returns the mean magnitude of the slopes of moves over the area.
   [[nodiscard]] double mean_slope(const Points& moves) const;
 
-  void evaluate(const Iterate& at, const Demand& demand, Term::Scratch& scratch, Sum& sum, Team& team) const override;
+  void evaluate(const Iterate& at, const LoadState& load_state, Term::Scratch& scratch, Sum& sum,
+                Team& team) const override;
   void add_cliques(linear::Cliques& cliques) override;
-  /// projected: stresses that press are left out; what bends is projected place by place.
-  void stiffness(const Iterate& at, const Demand& demand, bool projected, Term::Scratch& scratch,
+  /// projected: compressive stresses are omitted; bending is projected place by place.
+  void stiffness(const Iterate& at, const LoadState& load_state, bool projected, Term::Scratch& scratch,
                  LargeVector<double>& slots, Team& team) const override;
   [[nodiscard]] bool kinked() const override;
-  void tell(const Iterate& at, const Demand& demand, Term::Scratch& scratch, ElementDeformation& out,
-            Team& team) const override;
+  void describe(const Iterate& at, const LoadState& load_state, Term::Scratch& scratch, ElementDeformation& out,
+                Team& team) const override;
 
  private:
-  /// Places of the same vertices.
+  /// Places with the same vertices.
   struct Face {
     const SheetLaw* law;
     double thickness_mm;
@@ -54,7 +55,7 @@ class Layers : public Term {
     std::vector<std::vector<std::size_t>> orders;  // of each place's vertices, ascending
     std::int64_t slot = 0;                         // its first
   };
-  /// A place that bends: of its vertices the parts of the columns that its energy is of.
+  /// A place with bending: for each of its vertices the coefficients of the columns on which its energy depends.
   template <int Columns>
   struct Bent {
     std::vector<Index> vertices;

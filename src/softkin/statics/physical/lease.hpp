@@ -9,8 +9,8 @@ namespace softkin::physical {
 /// A workspace, for the time of a solve.
 class Equilibria::Lease {
  public:
-  /// One that was left at the start, if there is and it may be reused: its factor is as good as new. Another one has
-  /// no home, and nothing that it holds is used.
+  /// Takes a workspace that was left at the start, if there is one and it may be reused: its factor is as good as new.
+  /// Else the workspace has no home, and nothing in it is used.
   Lease(const Equilibria& owner, const Points& start, bool reuse) : owner_(owner) {
     {
       const std::lock_guard lock(owner_.mutex_);
@@ -26,11 +26,11 @@ class Equilibria::Lease {
     if (reuse && is_at(*work_, start)) return;
     work_->home.resize(0, 3);
     work_->tangents.at.resize(0, 3);
-    work_->foretold.reset();
+    work_->initial_guess.reset();
     work_->saddle.factor().forget();
-    if (work_->contacts) work_->contacts->around = work_->contacts->before = {};  // what is in the way of others
+    if (work_->contacts) work_->contacts->around = work_->contacts->before = {};  // the pairs of other shapes
   }
-  /// What an exception left half done is not used again.
+  /// Gives the workspace back, unless an exception has interrupted its use.
   ~Lease() {
     if (std::uncaught_exceptions() > exceptions_) return;
     const std::lock_guard lock(owner_.mutex_);
@@ -50,7 +50,7 @@ class Equilibria::Lease {
   std::unique_ptr<Workspace> work_;
 };
 
-/// A state as the system has it, for as long as the other one lives. Without mixed elements it is that.
+/// A state in the form that the system takes. Without mixed elements it refers to the given one, which must outlive it.
 class Equilibria::Inside {
  public:
   Inside(const Equilibria& owner, const State& at, Team& team) : at_(&at) {

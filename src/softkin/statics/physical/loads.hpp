@@ -5,15 +5,15 @@
 
 namespace softkin::physical {
 
-/// Weight and forces that the scene gives, which grow with the share of what is done at once: dead loads. Their energy
-/// is that of the moves from rest.
+/// Weight and forces of the scene, which grow with the load factor: dead loads. Their energy is counted from the shape
+/// at rest.
 class DeadLoads : public Term {
  public:
   /// model must outlive the object.
   explicit DeadLoads(const Model& model);
 
-  void evaluate(const Iterate& at, const Demand& demand, Scratch& scratch, Sum& sum, Team& team) const override;
-  void add_change(const Demand& from, const Demand& to, const Points& positions, Scratch& scratch, Points& force,
+  void evaluate(const Iterate& at, const LoadState& load_state, Scratch& scratch, Sum& sum, Team& team) const override;
+  void add_change(const LoadState& from, const LoadState& to, const Points& positions, Scratch& scratch, Points& force,
                   Team& team) const override;
   [[nodiscard]] bool grows() const override { return any_; }
 
@@ -22,8 +22,8 @@ class DeadLoads : public Term {
   bool any_;
 };
 
-/// What was not in balance where a way began that is no equilibrium: dead loads that hold the robot there, and fade
-/// along the way.
+/// The residual at the start of a path that does not begin at an equilibrium: dead loads that keep the robot in that
+/// shape, and fade along the path.
 class FadingLoads : public Term {
  public:
   /// model must outlive the object.
@@ -34,9 +34,10 @@ class FadingLoads : public Term {
   };
   [[nodiscard]] std::unique_ptr<Term::Scratch> new_scratch() const override { return std::make_unique<Scratch>(); }
 
-  void evaluate(const Iterate& at, const Demand& demand, Term::Scratch& scratch, Sum& sum, Team& team) const override;
-  void add_change(const Demand& from, const Demand& to, const Points& positions, Term::Scratch& scratch, Points& force,
-                  Team& team) const override;
+  void evaluate(const Iterate& at, const LoadState& load_state, Term::Scratch& scratch, Sum& sum,
+                Team& team) const override;
+  void add_change(const LoadState& from, const LoadState& to, const Points& positions, Term::Scratch& scratch,
+                  Points& force, Team& team) const override;
 
  private:
   const Model& model_;

@@ -15,7 +15,7 @@ namespace {
 using energy::lanes;
 using Matrix6 = Eigen::Matrix<double, 6, 6>;
 
-/// Where a quadrature point is, and its moment: (volume / mu_0) F b_r [N mm / mT].
+/// Position and magnetic moment of a quadrature point; the moment is (volume / mu_0) F b_r [N mm / mT].
 struct Point {
   Vec3 place = Vec3::Zero(), moment = Vec3::Zero();
 };
@@ -31,7 +31,7 @@ Point point_of(const std::array<Index, K>& nodes, const std::array<double, K>& s
   return point;
 }
 
-/// Of the elements of a block, the last of all for those that it lacks.
+/// Returns the points of the elements of a block; the last element of all stands for missing ones.
 template <int K, class Set>
 std::array<Point, lanes> points_of(const Set& set, Index block, int q, const Points& positions) {
   std::array<Point, lanes> points;
@@ -70,7 +70,7 @@ Matrix6 second_derivative(const Point& point, const Flux& flux) {
   return second;
 }
 
-/// The nearest positive semidefinite matrix after the two halves are measured alike.
+/// Returns the nearest positive semidefinite matrix after both halves are scaled to the same unit.
 Matrix6 made_positive(Matrix6 second, double length_mm) {
   Eigen::Matrix<double, 6, 1> scale;
   scale << length_mm, length_mm, length_mm, 1, 1, 1;
@@ -156,7 +156,7 @@ std::optional<double> Magnets::add_gradient(const Fields::Setting& setting, cons
             known = false;
         }
     });
-    for (Index e = 0; e < count; ++e)  // by one thread: elements share vertices
+    for (Index e = 0; e < count; ++e)  // by one thread: elements have vertices in common
       for (int q = 0; q < Q; ++q) {
         const Point point = point_of<K>(set.nodes[e], set.shapes[q], set.poles[e][q], positions);
         const Flux flux = flux_of_lane(fluxes[e / lanes][q], e % lanes);
@@ -170,34 +170,35 @@ std::optional<double> Magnets::add_gradient(const Fields::Setting& setting, cons
   return energy;
 }
 
-void Magnets::evaluate(const Iterate& at, const Demand& demand, Scratch& /*scratch*/, Sum& sum, Team& team) const {
-  const std::optional<double> energy = add_gradient(fields_.setting(demand), at.positions, sum.gradient, team);
+void Magnets::evaluate(const Iterate& at, const LoadState& load_state, Scratch& /*scratch*/, Sum& sum,
+                       Team& team) const {
+  const std::optional<double> energy = add_gradient(fields_.setting(load_state), at.positions, sum.gradient, team);
   sum.energy += energy.value_or(0);
   sum.forbidden = sum.forbidden || !energy;
   sum.left_field = sum.left_field || !energy;
 }
 
-void Magnets::add_change(const Demand& from, const Demand& to, const Points& positions, Scratch& /*scratch*/,
+void Magnets::add_change(const LoadState& from, const LoadState& to, const Points& positions, Scratch& /*scratch*/,
                          Points& force, Team& team) const {
   const bool commanded =
       std::any_of(commands_.begin(), commands_.end(), [&](Index a) { return from.actuation[a] != to.actuation[a]; });
-  if (!commanded && !(grows() && from.share != to.share)) return;
+  if (!commanded && !(grows() && from.load_factor != to.load_factor)) return;
   Fields::Setting before = fields_.setting(from), after = fields_.setting(to);
-  if (!before.in_space() && !after.in_space()) {  // in which the gradient is linear
+  if (!before.in_space() && !after.in_space()) {  // the gradient is linear in a uniform field
     after.uniform -= before.uniform;
     (void)add_gradient(after, positions, force, team);
     return;
   }
-  Points gradient = Points::Zero(force.rows(), 3);  // in what a dipole does its commands are not linear
+  Points gradient = Points::Zero(force.rows(), 3);  // the field of a dipole is not linear in its commands
   (void)add_gradient(before, positions, gradient, team);
   force -= gradient;
   (void)add_gradient(after, positions, force, team);
 }
 
-void Magnets::stiffness(const Iterate& at, const Demand& demand, bool projected, Scratch& /*scratch*/,
+void Magnets::stiffness(const Iterate& at, const LoadState& load_state, bool projected, Scratch& /*scratch*/,
                         LargeVector<double>& slots, Team& team) const {
   const Points& positions = at.positions;
-  const Fields::Setting setting = fields_.setting(demand);
+  const Fields::Setting setting = fields_.setting(load_state);
   turning_.add_stiffness(fields_, setting, positions, projected, slots, team);
   if (!setting.in_space()) return;
   each([&]<int K, int Q>(const Set<K, Q>& set) {
@@ -231,12 +232,12 @@ void Magnets::stiffness(const Iterate& at, const Demand& demand, bool projected,
   });
 }
 
-void Magnets::add_derivative(Index command, const Demand& demand, const Points& positions, Scratch& /*scratch*/,
+void Magnets::add_derivative(Index command, const LoadState& load_state, const Points& positions, Scratch& /*scratch*/,
                              Points& force, Team& team) const {
-  if (loads(command)) (void)add_gradient(fields_.derivative(command, demand), positions, force, team);
+  if (loads(command)) (void)add_gradient(fields_.derivative(command, load_state), positions, force, team);
 }
 
-MagneticLoad Magnets::load(const Demand& demand, const Points& positions, Team& team) const {
+MagneticLoad Magnets::load(const LoadState& load_state, const Points& positions, Team& team) const {
   MagneticLoad load;
   double volume = 0;
   each([&]<int K, int Q>(const Set<K, Q>& set) {
@@ -250,7 +251,7 @@ MagneticLoad Magnets::load(const Demand& demand, const Points& positions, Team& 
   turning_.add_places(positions, volume, load.center);
   load.center /= volume;
   Points gradient = Points::Zero(positions.rows(), 3);
-  (void)add_gradient(fields_.setting(demand), positions, gradient, team);
+  (void)add_gradient(fields_.setting(load_state), positions, gradient, team);
   for (Index v = 0; v < vertices_; ++v) {
     const Vec3 force = -gradient.row(v).transpose();
     load.force += force;

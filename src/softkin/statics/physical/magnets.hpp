@@ -14,9 +14,9 @@ namespace softkin::physical {
 /// (TurningMagnets), and -(1 / mu_0) (F b_r) . b(x) where it stretches too, with the remanent flux density b_r of the
 /// body at rest and the applied one, b, at the place x where the material is now.
 ///
-/// The second is linear in F. A uniform field pulls at every vertex with a number of its own times the flux density,
-/// whatever the shape: dead forces, and no stiffness. A field that changes in space has stiffness too, in the elements'
-/// own slots.
+/// The second is linear in F. In a uniform field the force on every vertex is a constant times the flux density,
+/// whatever the shape: a dead force without stiffness. A field that varies in space also has stiffness, in the
+/// elements' own slots.
 ///
 /// source  Zhao, Kim, Cheng, Liu, Zhao, J. Mech. Phys. Solids 124, 2019; docs/magnetism.md
 class Magnets : public Term {
@@ -25,31 +25,31 @@ class Magnets : public Term {
   /// slots  first one of every tetrahedron's matrices, then of every prism's
   Magnets(const Model& model, const std::vector<std::int64_t>& slots);
 
-  /// Forbidden where the field is not known: outside a grid, on a wire.
-  void evaluate(const Iterate& at, const Demand& demand, Scratch& scratch, Sum& sum, Team& team) const override;
+  /// The shape is forbidden where the field is not defined: outside a grid, on a wire.
+  void evaluate(const Iterate& at, const LoadState& load_state, Scratch& scratch, Sum& sum, Team& team) const override;
 
-  void add_change(const Demand& from, const Demand& to, const Points& positions, Scratch& scratch, Points& force,
+  void add_change(const LoadState& from, const LoadState& to, const Points& positions, Scratch& scratch, Points& force,
                   Team& team) const override;
 
-  /// Adds second derivatives to what is in the elements' slots. projected: made positive semidefinite at every
-  /// quadrature point, of what stretches by the nearest such matrix in (F b_r, x)
-  void stiffness(const Iterate& at, const Demand& demand, bool projected, Scratch& scratch, LargeVector<double>& slots,
-                 Team& team) const override;
+  /// Adds second derivatives to the elements' slots. projected: they are made positive semidefinite at every quadrature
+  /// point; for magnets that stretch, by the nearest such matrix in (F b_r, x)
+  void stiffness(const Iterate& at, const LoadState& load_state, bool projected, Scratch& scratch,
+                 LargeVector<double>& slots, Team& team) const override;
 
-  void add_derivative(Index command, const Demand& demand, const Points& positions, Scratch& scratch, Points& force,
-                      Team& team) const override;
+  void add_derivative(Index command, const LoadState& load_state, const Points& positions, Scratch& scratch,
+                      Points& force, Team& team) const override;
 
-  [[nodiscard]] MagneticLoad load(const Demand& demand, const Points& positions, Team& team) const;
+  [[nodiscard]] MagneticLoad load(const LoadState& load_state, const Points& positions, Team& team) const;
 
-  void tell(const Iterate& at, const Demand& demand, Scratch& /*scratch*/, ElementDeformation& out,
-            Team& team) const override {
-    out.magnetic = load(demand, at.positions, team);
+  void describe(const Iterate& at, const LoadState& load_state, Scratch& /*scratch*/, ElementDeformation& out,
+                Team& team) const override {
+    out.magnetic = load(load_state, at.positions, team);
   }
 
   [[nodiscard]] bool loads(Index command) const override {
     return std::find(commands_.begin(), commands_.end(), command) != commands_.end();
   }
-  /// Dipoles come with the share.
+  /// Are there dipoles? They are proportional to the load factor.
   [[nodiscard]] bool grows() const override { return fields_.any_dipole(); }
 
  private:
@@ -70,7 +70,7 @@ class Magnets : public Term {
     visit(quadratic_);
     visit(prisms_);
   }
-  /// Energy [mJ] in the fields of a setting; adds the gradient. None where a field is not known.
+  /// Returns the energy [mJ] in the fields of a setting and adds the gradient; none where a field is not defined.
   std::optional<double> add_gradient(const Fields::Setting& setting, const Points& positions, Points& gradient,
                                      Team& team) const;
 

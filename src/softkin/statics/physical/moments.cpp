@@ -24,14 +24,14 @@ class Couples {
 
   [[nodiscard]] Vec3 force(std::size_t i) const { return spin_.cross(arms_[i]); }
 
-  /// Of all forces, where one vertex moves.
+  /// Returns the changes of all forces where one vertex moves.
   [[nodiscard]] std::vector<Vec3> changes(std::size_t moved, const Vec3& by) const {
     const auto count = static_cast<double>(arms_.size());
     std::vector<Vec3> of_arms, changes;
-    Vec3 turned = Vec3::Zero();  // what the inertia changes by, times the spin
+    Vec3 turned = Vec3::Zero();  // change of the inertia, times the spin
     for (std::size_t i = 0; i < arms_.size(); ++i) {
-      const Vec3 &arm = arms_[i], way = of_arms.emplace_back((i == moved ? 1 - 1 / count : -1 / count) * by);
-      turned += 2 * arm.dot(way) * spin_ - way * arm.dot(spin_) - arm * way.dot(spin_);
+      const Vec3 &arm = arms_[i], motion = of_arms.emplace_back((i == moved ? 1 - 1 / count : -1 / count) * by);
+      turned += 2 * arm.dot(motion) * spin_ - motion * arm.dot(spin_) - arm * motion.dot(spin_);
     }
     const Vec3 spin = -inverse_ * turned;
     for (std::size_t i = 0; i < arms_.size(); ++i) changes.emplace_back(spin.cross(arms_[i]) + spin_.cross(of_arms[i]));
@@ -63,17 +63,17 @@ bool Moments::grows() const {
                      [](const RegionMoment& of) { return !of.moment_Nmm.isZero(0); });
 }
 
-double Moments::scale(std::size_t part, const Demand& demand) const {
+double Moments::scale(std::size_t part, const LoadState& load_state) const {
   const Component& component = components_[part];
-  return demand.share * component.of.moment_Nmm[component.axis] +
-         (component.command < 0 ? 0 : demand.actuation[component.command]);
+  return load_state.load_factor * component.of.moment_Nmm[component.axis] +
+         (component.command < 0 ? 0 : load_state.actuation[component.command]);
 }
 
-void Moments::evaluate(const Iterate& at, const Demand& demand, Term::Scratch& scratch, Sum& sum,
+void Moments::evaluate(const Iterate& at, const LoadState& load_state, Term::Scratch& scratch, Sum& sum,
                        Team& /*team*/) const {
-  static_cast<Scratch&>(scratch).demand = demand;
+  static_cast<Scratch&>(scratch).load_state = load_state;
   for (std::size_t r = 0; r < model_.loads.moments.size(); ++r) {
-    const Vec3 moment(scale(3 * r, demand), scale(3 * r + 1, demand), scale(3 * r + 2, demand));
+    const Vec3 moment(scale(3 * r, load_state), scale(3 * r + 1, load_state), scale(3 * r + 2, load_state));
     if (moment.isZero(0)) continue;
     const std::vector<Index>& vertices = model_.loads.moments[r].vertices;
     const Couples couples(vertices, at.positions, moment);
@@ -97,8 +97,8 @@ Moments::Blocks Moments::slopes(std::size_t part, const Points& positions) const
   return blocks;
 }
 
-void Moments::add_change(const Demand& from, const Demand& to, const Points& positions, Term::Scratch& /*scratch*/,
-                         Points& force, Team& /*team*/) const {
+void Moments::add_change(const LoadState& from, const LoadState& to, const Points& positions,
+                         Term::Scratch& /*scratch*/, Points& force, Team& /*team*/) const {
   for (std::size_t part = 0; part < components_.size(); ++part) {
     const double change = scale(part, to) - scale(part, from);
     if (change == 0) continue;
@@ -108,7 +108,7 @@ void Moments::add_change(const Demand& from, const Demand& to, const Points& pos
   }
 }
 
-void Moments::add_derivative(Index command, const Demand& /*demand*/, const Points& positions,
+void Moments::add_derivative(Index command, const LoadState& /*load_state*/, const Points& positions,
                              Term::Scratch& /*scratch*/, Points& force, Team& /*team*/) const {
   for (const Component& component : components_) {
     if (component.command != command) continue;

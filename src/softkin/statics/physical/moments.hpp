@@ -5,11 +5,12 @@
 
 namespace softkin::physical {
 
-/// Moments on rigid regions, which keep their direction: on some of its vertices, at x, forces w x (x - mean), w so
-/// that these add up to the moment in the present shape. They grow with the share of what is done at once, but for what
-/// is commanded.
+/// Moments on rigid regions, which keep their direction: on some vertices of a region, at x, act forces w x (x - mean),
+/// with w such that they add up to the moment in the current shape. Moments that are not commanded grow with the load
+/// factor.
 ///
-/// Such a load has no energy. What is told is its work as it is now on all of the way from rest.
+/// Such a load has no potential. Its reported energy is minus the work of the current forces along the whole
+/// displacement from rest.
 ///
 /// source  Ziegler 1968, Principles of structural stability: moments of a fixed axis have no potential
 class Moments : public NodeLoads {
@@ -18,10 +19,11 @@ class Moments : public NodeLoads {
   explicit Moments(const Model& model);
 
   [[nodiscard]] bool conservative() const override { return false; }
-  void evaluate(const Iterate& at, const Demand& demand, Term::Scratch& scratch, Sum& sum, Team& team) const override;
-  void add_change(const Demand& from, const Demand& to, const Points& positions, Term::Scratch& scratch, Points& force,
-                  Team& team) const override;
-  void add_derivative(Index command, const Demand& demand, const Points& positions, Term::Scratch& scratch,
+  void evaluate(const Iterate& at, const LoadState& load_state, Term::Scratch& scratch, Sum& sum,
+                Team& team) const override;
+  void add_change(const LoadState& from, const LoadState& to, const Points& positions, Term::Scratch& scratch,
+                  Points& force, Team& team) const override;
+  void add_derivative(Index command, const LoadState& load_state, const Points& positions, Term::Scratch& scratch,
                       Points& force, Team& team) const override;
   [[nodiscard]] bool loads(Index command) const override;
   [[nodiscard]] bool grows() const override;
@@ -37,7 +39,7 @@ class Moments : public NodeLoads {
   [[nodiscard]] const std::vector<Index>& nodes_of_part(std::size_t part) const override {
     return components_[part].of.vertices;
   }
-  [[nodiscard]] double scale(std::size_t part, const Demand& demand) const override;
+  [[nodiscard]] double scale(std::size_t part, const LoadState& load_state) const override;
   [[nodiscard]] Blocks slopes(std::size_t part, const Points& positions) const override;
 
   const Model& model_;

@@ -10,20 +10,22 @@ namespace softkin::physical {
 
 namespace {
 
-/// By which a stiffness that is hardly unstable is made positive, over its mean diagonal.
+/// Shifts that make a slightly indefinite stiffness positive definite, over its mean diagonal: the first, and the upper
+/// bound.
 constexpr double slight_shift = 1e-7, clear_shift = 1;
-/// From one that is not enough to the next, and from the last of a shape to the first of the next one: a factor each.
+/// Factor from an insufficient shift to the next one, and divisor from the last shift at a shape to the first at the
+/// next.
 constexpr double stiffer = 30, softer = 10;
-/// The first and the last of one that was made positive element by element, and yet is not; limp sheets are held by
-/// more.
-constexpr double least_shift = 1e-5, least_limp_shift = 1e-4, most_shift = 100;
-/// Where steps are small but forces are not in balance, each iteration must bring them so much nearer to it.
+/// First and last shift of a stiffness that projection element by element did not make positive; sheets that wrinkle
+/// start with a larger one.
+constexpr double min_shift = 1e-5, min_wrinkled_shift = 1e-4, max_shift = 100;
+/// If steps are small but the residual is not, each further iteration must reduce the residual by this factor.
 constexpr double worthwhile_balance = 0.7;
-/// Of the diagonal, that the last steps may lead away from the factor whose negative pivots are told.
+/// Largest distance from the factorised shape at which its number of negative pivots is reported, over the diagonal.
 constexpr double near_factor = 2e-4;
-/// Factors of a solve that is brief.
-constexpr int most_briefly = 10;
-/// A solve that got stuck may have done so by rounding where its last step was so many tolerances at most.
+/// Maximum number of iterations, and so of factorisations, of a brief solve.
+constexpr int max_briefly = 10;
+/// Rounding may be why a solve failed if its last step was at most this many tolerances.
 constexpr double near_tolerance = 100;
 
 }  // namespace
@@ -48,24 +50,26 @@ bool Newton::goes_on() const {
   return !progress_ || progress_({report_.iterations, report_.step_mm, settings_.tolerance_mm, report_.reached});
 }
 
-/// The exact stiffness where it is stable under the constraints or asked for; else made so element by element, or by a
-/// shift where that is slow, then by both. none: no shift makes it positive.
+/// Factorises the exact stiffness if it is stable under the constraints or requested. Otherwise the stiffness is
+/// projected element by element, or shifted where projection converges slowly, then both. Returns `none` if no shift
+/// makes it positive.
 Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
   using Stiffness = System::Stiffness;
   using Precision = linear::MixedLdlt::Precision;
   const Precision usual = work_.saddle.precision();
-  // one that is not stable is not stepped with where Newton descends; and where its sign is a guess, one that is hardly
-  // stiffer wants a closer look
+  // descent takes no step with an unstable stiffness; if its inertia is uncertain, a slightly shifted one is factorised
+  // with a higher precision
   const bool guess = policy == Policy::descend && usual == Precision::enough;
   int negative = 0;
   const auto attempted = [&](Stiffness kind, double shift, Precision precision) {
-    if (!goes_on()) return Advance::interrupted;  // of a large robot each takes as long as many iterations
+    if (!goes_on()) return Advance::interrupted;  // each factorisation of a large robot takes long
     ++report_.factorisations;
     factor_.shape = at.positions;
     secants_.clear();
     factor_.looked_at = false;
     const Temporarily scope(work_.saddle.precision(), precision);
-    negative = system_.factorise(at, *asked_.demand, *asked_.active, balance_, {kind, shift, true}, work_, team_);
+    negative =
+        system_.factorise(at, *requested_.load_state, *requested_.active, balance_, {kind, shift, true}, work_, team_);
     report_.factorisations_in_double += work_.saddle.factor().in_double();
     return negative == 0 ? Advance::made : Advance::none;
   };
@@ -79,24 +83,24 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
   for (double shift = std::max(slight_shift, factor_.shift); pace_.slow && end == Advance::none && shift < clear_shift;
        shift *= stiffer) {
     ++report_.shifts;
-    // pressed sheets buckle in many ways, of which none leads to where they wrinkle
-    end = attempted(system_.limp() ? Stiffness::projected : Stiffness::exact, shift, closer);
+    // compressed sheets have many buckling modes, none of which leads to the wrinkled shape
+    end = attempted(system_.has_wrinkling() ? Stiffness::projected : Stiffness::exact, shift, closer);
     factor_.shift = shift / softer;
   }
   if (end != Advance::none) return end;
   ++report_.projections;
   end = attempted(Stiffness::projected, 0, closer);
-  for (double shift = system_.limp() ? least_limp_shift : least_shift; end == Advance::none && shift < most_shift;
-       shift *= 10) {
+  for (double shift = system_.has_wrinkling() ? min_wrinkled_shift : min_shift;
+       end == Advance::none && shift < max_shift; shift *= 10) {
     ++report_.shifts;
     end = attempted(Stiffness::projected, shift, closer);
   }
   return end;
 }
 
-/// What a step of Newton's makes less where the stiffness is positive: the Lagrangian by the multipliers before it, and
-/// what constraints are missed by. Weights above the multipliers in place of the Lagrangian would forbid steps along
-/// constraints that are curved.
+/// Returns the merit function, which a Newton step with a positive stiffness decreases: the Lagrangian with the
+/// multipliers before the step plus the weighted constraint violations. A penalty alone, with weights above the
+/// multipliers, would forbid steps along curved constraints.
 ///
 /// source  Nocedal, Wright 2006, Numerical optimization, 15.5 (the Maratos effect), with 17.4 as the function of merit
 double Newton::merit(const Balance& balance) const {
@@ -107,18 +111,18 @@ double Newton::merit(const Balance& balance) const {
          missed(prices_.volumes, balance.force(system_.freedoms().scalar_unknowns()));
 }
 
-/// Of constraints that are missed, with their multipliers and what a step changes these by. It adds what they have of
-/// the merit function's slope along the step, which meets them.
+/// Sets the weights of violated constraints from their multipliers and the changes of these in a step. Adds their part
+/// of the slope of the merit function along the step, which satisfies the constraints.
 void Newton::Price::set(const Eigen::VectorXd& multipliers_before, const Eigen::VectorXd& changes,
                         const Eigen::VectorXd& missed, double& slope) {
-  constexpr double beyond = 2;    // what multipliers change by
-  constexpr double least = 0.01;  // of the multipliers
+  constexpr double beyond = 2;    // times the change of the multipliers
+  constexpr double least = 0.01;  // times the multipliers
   multipliers = multipliers_before;
   above = beyond * changes.cwiseAbs() + least * multipliers.cwiseAbs();
   slope -= above.dot(missed.cwiseAbs());
 }
 
-/// Chooses the prices of missed constraints for the step at hand.
+/// Chooses the weights of violated constraints for the current step.
 ///
 /// returns  the slope of the merit function along the step, which is to be negative
 /// source   Nocedal, Wright 2006, Numerical optimization, theorem 18.2
@@ -126,13 +130,13 @@ double Newton::weigh_constraints(const Iterate& at) {
   double slope = balance_.force.dot(step_.move);
   Eigen::VectorXd multipliers = Eigen::VectorXd::Zero(system_.actuators()), changes = multipliers;
   for (Index a = 0; a < system_.actuators(); ++a) {
-    if (!(*asked_.active)[a]) continue;
+    if (!(*requested_.active)[a]) continue;
     multipliers[a] = system_.measures().sign(a) * at.multipliers[a];
     changes[a] = step_.change[a];
   }
   prices_.constraints.set(multipliers, changes, balance_.constraint, slope);
   if (!system_.pressures()) return slope;
-  // pressures are multipliers of volumes that are kept
+  // pressures are the multipliers of the volume constraints of mixed elements
   const std::vector<Index>& unknowns = system_.freedoms().scalar_unknowns();
   Points moves;
   system_.freedoms().expand(step_.move, at.positions, moves);
@@ -143,7 +147,7 @@ double Newton::weigh_constraints(const Iterate& at) {
   return slope;
 }
 
-/// What arrives has arrived, whoever stops it then.
+/// Accepts the trial iterate. One that has converged counts as converged even if the caller interrupts the solve then.
 Newton::Advance Newton::accept(double moved_mm, bool arrives, Iterate& at) {
   record(moved_mm);
   std::swap(at, trial_);
@@ -152,16 +156,16 @@ Newton::Advance Newton::accept(double moved_mm, bool arrives, Iterate& at) {
   return arrives ? Advance::arrived : on ? Advance::made : Advance::interrupted;
 }
 
-/// The workspace is back at the iterate, as the next factorisation wants it.
+/// Evaluates the workspace at the iterate again, as the next factorisation requires.
 Newton::Advance Newton::reject(const Iterate& at) {
-  system_.evaluate(at, *asked_.demand, *asked_.active, work_, balance_, team_);
+  system_.evaluate(at, *requested_.load_state, *requested_.active, work_, balance_, team_);
   return Advance::made;
 }
 
-/// Does no constraint miss its demand by more than steps that are small enough can close?
+/// Are all constraint violations small enough to be closed by steps within the tolerance?
 bool Newton::meets_constraints() const {
   for (Index a = 0; a < system_.actuators(); ++a) {
-    if (!(*asked_.active)[a]) continue;
+    if (!(*requested_.active)[a]) continue;
     const double reach = 2 * tolerance_mm() * work_.slopes[a].rowwise().norm().sum();
     if (!(std::abs(balance_.constraint[a]) <= reach + 1e-9 * system_.measures().rest(a))) return false;
   }
@@ -169,66 +173,69 @@ bool Newton::meets_constraints() const {
 }
 
 bool Newton::balanced() const {
-  return imbalance_.residual <= ending_.loose * settings_.force_share * imbalance_.pull + imbalance_.rounding;
+  return imbalance_.residual <= ending_.loose * settings_.force_fraction * imbalance_.pull + imbalance_.rounding;
 }
 
-/// Steps are small enough. Are the forces out of balance, and do more iterations help?
+/// The steps are small enough. Is the residual still too large, and do more iterations reduce it?
 bool Newton::improve_balance() {
   const double before = std::exchange(imbalance_, system_.imbalance(balance_, work_, team_)).residual;
   return !balanced() && imbalance_.residual < worthwhile_balance * before;
 }
 
-/// The same of lengths and volumes that are commanded.
+/// The same question for the constraints on commanded lengths and volumes.
 bool Newton::improve_constraints() {
   constexpr double promised = 1e-8;  // of the measure at rest
   double missed = 0;
   for (Index a = 0; a < system_.actuators(); ++a)
-    if ((*asked_.active)[a]) missed = std::max(missed, std::abs(balance_.constraint[a]) / system_.measures().rest(a));
+    if ((*requested_.active)[a])
+      missed = std::max(missed, std::abs(balance_.constraint[a]) / system_.measures().rest(a));
   return missed > ending_.loose * promised && missed < worthwhile_balance * std::exchange(missed_, missed);
 }
 
-/// The pressure of a gas is that of its volume, to the last digit: its law holds for what is told. Of a liquid, which
-/// hardly gives way, the balance of forces knows it better.
-void Newton::settle_gases(Iterate& at) const {
+/// Sets the pressure of a sealed gas to that of its volume, so that the reported values satisfy the gas law to the last
+/// digit. The pressure of a nearly incompressible liquid is more accurate from the equilibrium of forces.
+void Newton::correct_gases(Iterate& at) const {
   for (Index a = 0; a < system_.actuators(); ++a) {
     const Filling* filling = system_.measures().filling(a);
-    if (filling && !filling->liquid && (*asked_.active)[a])
-      at.multipliers[a] = filling->pressure(asked_.demand->actuation[a], system_.measures().value(a, at.positions));
+    if (filling && !filling->liquid && (*requested_.active)[a])
+      at.multipliers[a] =
+          filling->pressure(requested_.load_state->actuation[a], system_.measures().value(a, at.positions));
   }
 }
 
-/// Is the count of negative eigenvalues one of rounding, or of a shape that is too far from an equilibrium? Where the
-/// count is 0 the softest change of shape tells. The workspace is left as it was.
+/// Is the number of negative eigenvalues uncertain, by rounding or because the factorised shape is too far from the
+/// equilibrium? If the number is 0, the curvature along the softest mode decides. The workspace is left as it was.
 bool Newton::doubts_stability(const Iterate& at) {
   if (factor_.negative != 0 && factor_.doubtful) return true;
   const double moved = (at.positions - factor_.shape).rowwise().norm().maxCoeff();
   if (!(moved > near_factor * system_.model().diagonal_mm)) return false;
   if (factor_.negative != 0) return true;
-  const bool as_stiff = as_stiff_as_factorised(system_, at, *asked_.demand, *asked_.active, balance_, work_, team_);
+  const bool as_stiff =
+      as_stiff_as_factorised(system_, at, *requested_.load_state, *requested_.active, balance_, work_, team_);
   (void)reject(at);
   return !as_stiff;
 }
 
-/// The number of negative eigenvalues at an iterate, without a doubt.
+/// Determines the number of negative eigenvalues at an iterate reliably, by a factorisation in double precision.
 void Newton::make_sure(const Iterate& at) {
   const Temporarily twice(work_.saddle.precision(), linear::MixedLdlt::Precision::twice);
-  factor_.negative = system_.factorise(at, *asked_.demand, *asked_.active, balance_, {}, work_, team_);
+  factor_.negative = system_.factorise(at, *requested_.load_state, *requested_.active, balance_, {}, work_, team_);
   ++report_.factorisations;
   ++report_.factorisations_in_double;
   factor_.doubtful = false;
 }
 
-Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& active, Policy policy, bool factorised,
-                              Iterate& at) {
-  asked_.demand = &demand;
-  asked_.active = &active;
+Newton::Outcome Newton::solve(const LoadState& load_state, const std::vector<bool>& active, Policy policy,
+                              bool factorised, Iterate& at) {
+  requested_.load_state = &load_state;
+  requested_.active = &active;
   const int before = report_.factorisations - report_.factorisations_in_double;
   start_ = at;
   const Outcome outcome = descend(policy, factorised, at);
   if (outcome != Outcome::stuck) return outcome;
   const bool in_single = report_.factorisations - report_.factorisations_in_double != before && !system_.contact();
-  // of limp sheets rounding may be why wherever they are on the way
-  const double near = near_tolerance * (system_.limp() ? tolerance_mm() : settings_.tolerance_mm);
+  // with sheets that wrinkle rounding may also be why an intermediate solve with a relaxed tolerance failed
+  const double near = near_tolerance * (system_.has_wrinkling() ? tolerance_mm() : settings_.tolerance_mm);
   const bool rounded = ending_.rounded || report_.step_mm < near;
   if (!in_single || ending_.brief || !rounded) return outcome;
   at = start_;
@@ -236,7 +243,7 @@ Newton::Outcome Newton::solve(const Demand& demand, const std::vector<bool>& act
   return descend(policy, false, at);
 }
 
-/// Does nothing do anything to limp sheets? There they have no stiffness, and so no step.
+/// Are flat sheets without loads? They have no stiffness there, and so no Newton step.
 bool Newton::rests() {
   imbalance_ = system_.imbalance(balance_, work_, team_);
   if (!(imbalance_.residual <= imbalance_.rounding) || !balance_.constraint.isZero(0)) return false;
@@ -245,25 +252,25 @@ bool Newton::rests() {
   return true;
 }
 
-/// Nothing is known of steps yet.
+/// Resets the records of steps before a solve.
 void Newton::begin_steps() {
   ending_.why = "its iterations were not enough";
   ending_.rounded = false;
   secants_.clear();
-  pace_ = {.slow = system_.limp()};
+  pace_ = {.slow = system_.has_wrinkling()};
   factor_.refines = factor_.looked_at = false;
 }
 
 Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
-  system_.evaluate(at, *asked_.demand, *asked_.active, work_, balance_, team_);
+  system_.evaluate(at, *requested_.load_state, *requested_.active, work_, balance_, team_);
   ending_.why = "the law has no energy at its begin";
   if (balance_.forbidden || !balance_.force.allFinite()) return Outcome::stuck;
   begin_steps();
   Advance advance = Advance::made;
   double damping = 1;
-  if (system_.limp() && system_.layers()->flat(at.positions) && rests()) return Outcome::converged;
+  if (system_.has_wrinkling() && system_.layers()->flat(at.positions) && rests()) return Outcome::converged;
   imbalance_.residual = missed_ = std::numeric_limits<double>::infinity();
-  const int most = ending_.brief ? std::min(settings_.max_iterations, most_briefly) : settings_.max_iterations;
+  const int most = ending_.brief ? std::min(settings_.max_iterations, max_briefly) : settings_.max_iterations;
   for (int iteration = 0; advance == Advance::made && iteration < most; ++iteration) {
     if (factorised && iteration == 0) {
       factor_.negative = 0;
@@ -282,7 +289,7 @@ Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
     }
     if (advance == Advance::arrived && (improve_balance() || improve_constraints())) {
       advance = Advance::made;
-      policy = Policy::follow;  // a stiffness that was made positive makes steps small where forces are not
+      policy = Policy::follow;  // a stiffness made positive gives small steps where the residual is large
     }
   }
   if (advance == Advance::interrupted) return Outcome::interrupted;
@@ -290,7 +297,7 @@ Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
     if (!std::isfinite(imbalance_.residual) || report_.step_mm >= tolerance_mm()) return Outcome::stuck;
     (void)reject(at);  // the last step was small enough, and none follows it
     imbalance_ = system_.imbalance(balance_, work_, team_);
-    // steps of a factor that is too stiff are small wherever they end
+    // steps with a stiffness that is too large are small anywhere
     if (advance == Advance::none && !balanced() && step_.size.largest > tolerance_mm()) return Outcome::stuck;
   }
   report_.gradient_norm = balance_.force.norm();
@@ -300,7 +307,7 @@ Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
     return Outcome::unmet;
   }
   work_.saddle.correct_multipliers(balance_, at.multipliers, team_);
-  settle_gases(at);
+  correct_gases(at);
   if (doubts_stability(at)) make_sure(at);
   return factor_.negative == 0 ? Outcome::converged : Outcome::unstable;
 }

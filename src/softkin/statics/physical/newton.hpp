@@ -8,58 +8,63 @@
 
 namespace softkin::physical {
 
-/// Newton's method on the equations of equilibrium under one demand, damped by the natural monotonicity test.
+/// Newton's method on the equations of equilibrium under one load state, damped by the natural monotonicity test.
 ///
 /// source  Deuflhard 2011, NLEQ-ERR: a step is as long as the simplified next one shrinks, which is measured with the
 ///         factor at hand and does not depend on how the equations are scaled
 class Newton {
  public:
   struct Settings {
-    double tolerance_mm = 0;    // largest move of a vertex by a step
-    double force_share = 1e-6;  // of the elements' largest pull that may be out of balance
+    double tolerance_mm = 0;       // largest move of a vertex by a step
+    double force_fraction = 1e-6;  // largest residual over the largest internal force at a vertex
     int max_iterations = 30;
     bool keep_history = true;
   };
-  /// unmet: arrived where the active constraints contradict each other or cannot be moved; they are missed.
-  /// blocked, too_far: not tried, as the way there is.
+  /// unmet: converged to a shape that violates active constraints, as they contradict each other or cannot be
+  /// satisfied. blocked, too_far: not tried, as a collision blocks the motion or the load changes too much.
   enum class Outcome { converged, unstable, stuck, unmet, interrupted, blocked, too_far };
 
   Newton(const System& system, Workspace& work, Team& team, const Settings& settings, const ProgressCallback& progress,
          SolveReport& report);
 
-  /// descend: with a stiffness made positive where it is not, towards stable equilibria. follow: with the exact one,
-  /// towards the nearest equilibrium, stable or not. near: descend, but for the first step, which is of the exact one:
-  /// begun so near a stable equilibrium, what is unstable are mostly elements that a foretold shape presses.
+  /// descend: with a stiffness made positive where it is not, towards stable equilibria. follow: with the exact
+  /// stiffness, towards the nearest equilibrium, stable or not. near: like descend, but the first step uses the exact
+  /// stiffness: this close to a stable equilibrium, negative eigenvalues mostly come from elements that the prediction
+  /// compresses.
   enum class Policy { descend, follow, near };
 
-  /// While it lives, where a shorter step is worth more than patience: few factors, and none again in double precision.
+  /// While the returned object exists, a solve uses few factorisations, and a failed one is not repeated in double
+  /// precision; for steps that are better shortened.
   [[nodiscard]] Temporarily<bool> briefly(bool brief) { return {ending_.brief, brief}; }
-  /// While it lives a solve, which only leads to the next one, may end so many times as far from its equilibrium.
+  /// While the returned object exists, the tolerances of a solve are multiplied by this factor; for solves that only
+  /// prepare the next one.
   [[nodiscard]] Temporarily<double> loosely(double times) { return {ending_.loose, times}; }
-  /// Times its tolerances, where only the next solve is to find its way.
+  /// Factor of the tolerances of a coarse solve, which only gives an initial guess for the next one.
   static constexpr double by_far = 1e5;
-  /// Does who asked for the solve let it go on? Asked before what takes as long as many iterations.
+  /// Does the caller let the solve continue? Polled before operations that take as long as many iterations.
   [[nodiscard]] bool goes_on() const;
 
   /// Moves `at` to equilibrium. Multipliers that are not active are given. The workspace is left with the last
-  /// factorisation. What gets stuck where rounding of factors in single precision shows is tried again with others.
+  /// factorisation. A solve that fails, possibly by rounding of factorisations in single precision, is repeated in
+  /// double precision.
   ///
   /// factorised  the workspace holds a stable, exact stiffness of a shape close to `at`: steps are tried with it first
-  Outcome solve(const Demand& demand, const std::vector<bool>& active, Policy policy, bool factorised, Iterate& at);
+  Outcome solve(const LoadState& load_state, const std::vector<bool>& active, Policy policy, bool factorised,
+                Iterate& at);
 
-  /// Moves `at` to where things touch as they push each other, in steps with both as unknowns: pushes change little
-  /// where gaps do. The workspace knows the pushes; see System::straighten_contact. converged: Newton's method on the
-  /// shape alone is near enough.
-  Outcome settle_pushes(const Demand& demand, const std::vector<bool>& active, Iterate& at);
+  /// Moves `at` to a shape whose gaps and contact forces agree, in steps with both as unknowns: contact forces change
+  /// little where gaps do. The workspace contains the contact forces; see OtherContact::straighten(). converged: close
+  /// enough for Newton's method on the shape alone.
+  Outcome correct_pushes(const LoadState& load_state, const std::vector<bool>& active, Iterate& at);
 
-  /// Negative eigenvalues that the constraints leave, at the last equilibrium: ways to snap away from it.
+  /// Number of negative eigenvalues under the constraints at the last equilibrium: its unstable modes.
   [[nodiscard]] int unstable_modes() const { return factor_.negative; }
 
-  /// Are the forces in balance at the last equilibrium, too?
+  /// Is the residual at the last equilibrium within its tolerance, too?
   [[nodiscard]] bool balanced() const;
   [[nodiscard]] const Imbalance& imbalance() const { return imbalance_; }
 
-  /// Why the last solve got stuck.
+  /// The reason why the last solve failed.
   [[nodiscard]] const char* why_stuck() const { return ending_.why; }
 
   /// Is an element of the last shape inverted?
@@ -70,51 +75,51 @@ class Newton {
     Eigen::VectorXd move, change;  // of unknowns and of multipliers
     supports::Freedoms::Size size;
   };
-  /// A step and what it left to do over step . (step - left): Broyden's update.
+  /// Broyden's update: a step, and the step that remained after it over step . (step - left).
   struct Secant {
     Eigen::VectorXd step, left, left_change;
   };
   enum class Advance { none, made, arrived, interrupted };
-  /// How steps get on.
+  /// Records of convergence, for step-size control.
   struct Pace {
-    int poor = 0;         // in a row that were much shorter than Newton's
-    int same = 0;         // in a row that left as much to go
-    int downhill = 0;     // in a row that lead down and no nearer
-    double steepest = 0;  // slope of the merit function so far
-    bool slow = false;    // are they of a stiffness that was made positive element by element
+    int poor = 0;         // consecutive steps much shorter than Newton's
+    int same = 0;         // consecutive steps after which as much remained
+    int downhill = 0;     // consecutive steps that decreased the merit function only
+    double steepest = 0;  // steepest slope of the merit function until now
+    bool slow = false;    // do steps with an element-wise projected stiffness converge slowly
   };
   /// The last factorisation.
   struct Factored {
-    int negative = 0;        // eigenvalues that the constraints leave
-    bool doubtful = false;   // is there a doubt about these
-    bool looked_at = false;  // is it known how rounding shows in its steps
-    bool refines = false;    // do these want more than what its precision gives
-    double shift = 0;        // the first to try
-    Points shape{};          // where it was made
+    int negative = 0;        // negative eigenvalues under the constraints
+    bool doubtful = false;   // is their number uncertain
+    bool looked_at = false;  // was the effect of rounding on its steps checked
+    bool refines = false;    // do its steps need iterative refinement
+    double shift = 0;        // the first shift to try
+    Points shape{};          // the factorised shape
   };
-  /// What is solved for.
-  struct Asked {
-    const Demand* demand = nullptr;
+  /// The requested load state and active constraints.
+  struct Requested {
+    const LoadState* load_state = nullptr;
     const std::vector<bool>* active = nullptr;
   };
-  /// What it costs in the merit function to miss constraints [N], [MPa].
+  /// Weights of violated constraints in the merit function [N], [MPa].
   struct Price {
     Eigen::VectorXd multipliers{};  // before the step
-    Eigen::VectorXd above{};        // of what is missed, whatever its sign
+    Eigen::VectorXd above{};        // weights of the magnitudes of the violations
 
     void set(const Eigen::VectorXd& multipliers_before, const Eigen::VectorXd& changes, const Eigen::VectorXd& missed,
              double& slope);
   };
-  /// Of actuators' constraints, and of volumes that are kept.
+  /// The weights of the actuators' constraints and of the volume constraints of mixed elements.
   struct Prices {
     Price constraints{}, volumes{};
   };
-  /// How a solve is to end, and how the last one did.
+  /// The limits of a solve, and how the last one ended.
   struct Ending {
-    bool brief = false;    // after a few factors
-    double loose = 1;      // times its tolerances
-    bool rounded = false;  // did the last one get stuck by rounding, perhaps
-    const char* why = "";  // did the last one get stuck
+    bool brief = false;    // is the number of factorisations limited
+    double loose = 1;      // factor of the tolerances
+    bool rounded = false;  // may rounding be why the last one failed
+    const char* why = "";  // why the last one failed
   };
 
   void begin_steps();
@@ -128,7 +133,7 @@ class Newton {
   [[nodiscard]] bool last(const Step& step, double before) const;
   bool attempt(const Step& step, double& damping, const Iterate& from);
   bool attempt_whole(const Step& step, const Iterate& from);
-  bool labours(double damping);
+  bool stagnates(double damping);
   void note_pace(double damping);
   [[nodiscard]] double merit(const Balance& balance) const;
   [[nodiscard]] double weigh_constraints(const Iterate& at);
@@ -147,7 +152,7 @@ class Newton {
   [[nodiscard]] bool doubts_stability(const Iterate& at);
   void make_sure(const Iterate& at);
   bool improve_constraints();
-  void settle_gases(Iterate& at) const;
+  void correct_gases(Iterate& at) const;
   Advance reject(const Iterate& at);
   void record(double step_mm);
 
@@ -157,7 +162,7 @@ class Newton {
   Settings settings_;
   const ProgressCallback& progress_;
   SolveReport& report_;
-  Asked asked_;
+  Requested requested_;
   Balance balance_, trial_balance_;  // at the iterate, at the one being tried
   Step step_, next_;
   std::vector<Secant> secants_;  // of the factor at hand
@@ -167,7 +172,7 @@ class Newton {
   Pace pace_;
   Factored factor_;
   Imbalance imbalance_;
-  double missed_ = 0;  // the worst constraint, over its measure at rest [-]
+  double missed_ = 0;  // the largest constraint violation, over its rest measure [-]
 };
 
 }  // namespace softkin::physical

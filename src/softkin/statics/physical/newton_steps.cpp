@@ -11,44 +11,45 @@ namespace softkin::physical {
 
 namespace {
 
-constexpr double least_damping = 1e-3;
-/// Of the diagonal, that a step of a shape that anybody wants to see may move a vertex.
+constexpr double min_damping = 1e-3;
+/// Multiple of the diagonal; a step that moves a vertex farther than this has diverged.
 constexpr double runaway = 10;
-/// Of the merit function's slope, that a step must bring.
+/// Fraction of the merit function's slope by which a step must lower it.
 constexpr double worthwhile_descent = 1e-4;
-/// Of the steepest slope, that one must have to be followed for its own sake where nothing touches.
+/// Fraction of the steepest slope; without contact a flatter slope is not used as a criterion.
 constexpr double worthwhile_slope = 1e-4;
-/// By which it may rise, over its value.
-constexpr double most_rise = 1e-8;
-/// Quasi-Newton steps with one factor: each must be so much shorter than the one before, and so many cost as much as a
-/// factorisation.
+/// Relative rise of the merit function that is tolerated.
+constexpr double max_rise = 1e-8;
+/// Quasi-Newton steps with one factor: the largest ratio of the lengths of successive steps, and the number of steps
+/// that cost as much as a factorisation.
 constexpr double worthwhile_contraction = 0.6;
-constexpr int most_updates = 8;
-/// Of a step, that may be left to do along it.
-constexpr double most_along = 0.5;
-/// Of x . M x, that rounding has changed where it may be why they shrink too little.
+constexpr int max_updates = 8;
+/// Largest fraction of a step that may remain along its direction.
+constexpr double max_along = 0.5;
+/// Relative change of x . M x by rounding from which on rounding may be why steps shrink too little.
 constexpr double much_rounded = 5e-3;
-/// In steps with one that is there.
+/// Cost of a factorisation, in steps with an existing one.
 constexpr double cost_of_factor = 6;
 
 }  // namespace
 
-/// Is a step the last? What it leaves is what it is of the one before, or with a factor in double precision nothing.
+/// Is a step the last? The remaining error is the same fraction of the step as the step is of the one before, or zero
+/// with a factor in double precision.
 ///
-/// before  the whole step that it follows; 0: none
+/// before  largest move of the undamped step before it; 0: none
 bool Newton::last(const Step& step, double before) const {
-  constexpr double most_left = 0.02;  // of the tolerance
-  const double size = step.size.largest, share = before > 0 ? std::min(1.0, size / before) : 1;
-  return size < tolerance_mm() && (work_.saddle.factor().in_double() || share * size < most_left * tolerance_mm());
+  constexpr double max_left = 0.02;  // of the tolerance
+  const double size = step.size.largest, fraction = before > 0 ? std::min(1.0, size / before) : 1;
+  return size < tolerance_mm() && (work_.saddle.factor().in_double() || fraction * size < max_left * tolerance_mm());
 }
 
-/// Moves by `damping` times a step, less where something is in the way. False where the law has no energy, or where
-/// there is no way.
+/// Moves by `damping` times a step, or less where surfaces would pass through each other. False where the law has no
+/// energy, or where hardly any move is possible.
 bool Newton::attempt(const Step& step, double& damping, const Iterate& from) {
   trial_ = from;
   if (!advance_clear(system_, step.move, damping, work_, trial_.positions, team_)) return false;
   trial_.multipliers += damping * step.change;
-  system_.evaluate(trial_, *asked_.demand, *asked_.active, work_, trial_balance_, team_);
+  system_.evaluate(trial_, *requested_.load_state, *requested_.active, work_, trial_balance_, team_);
   return !trial_balance_.forbidden && trial_balance_.force.allFinite();
 }
 
@@ -57,9 +58,9 @@ bool Newton::attempt_whole(const Step& step, const Iterate& from) {
   return attempt(step, damping, from) && damping == 1;
 }
 
-/// Step that what was factorised last asks for, closer than the factor's precision gives it.
+/// Solves for the step of the last factorised matrix, more accurately than the factor's precision allows.
 ///
-/// returns  how far from it the factor's own is, over that; 0 where none comes out
+/// returns  relative difference of the factor's own step from it; 0 where the refinement fails
 double Newton::refine(const Balance& balance, const Iterate& at, Step& step) {
   constexpr double accuracy = 0.03, worthwhile = 0.3;
   constexpr int rounds = 6;
@@ -73,8 +74,8 @@ double Newton::refine(const Balance& balance, const Iterate& at, Step& step) {
   return remainder.apart;
 }
 
-/// Where rounding of the factor may be why step_ leads no farther, refines it; and so all that follow with this factor,
-/// if that is why, and the next factors are in double precision.
+/// Refines step_ where rounding of the factor may be why the next step is hardly shorter. If it is, all later steps
+/// with this factor are refined, and the next factors are in double precision.
 bool Newton::refine_first(const Iterate& at) {
   constexpr double slow = 0.25, much = 0.15;
   if (factor_.looked_at || work_.saddle.factor().in_double() || system_.contact() || system_.tendons().any())
@@ -87,7 +88,7 @@ bool Newton::refine_first(const Iterate& at) {
   return factor_.refines;
 }
 
-/// Step that the factor at hand asks for.
+/// Solves for the step with the current factor.
 void Newton::find(const Balance& balance, const Iterate& at, Step& step) {
   const bool refined = factor_.refines && !work_.saddle.factor().in_double() && refine(balance, at, step) > 0;
   if (!refined) work_.saddle.step(balance, step.move, step.change, team_);
@@ -99,37 +100,38 @@ void Newton::find(const Balance& balance, const Iterate& at, Step& step) {
   step.size = system_.freedoms().size_of(step.move, at.positions);
 }
 
-/// Where contacts or threads cut step after step, a way with less to go is shorter; where what slides has nothing to
-/// stop it, step after whole step is as long as the last; where there is no equilibrium a stiffness that was made
-/// positive leads down, but nowhere.
-bool Newton::labours(double damping) {
+/// Detects steps in a row that make hardly any progress. With contacts or fibres these are strongly damped steps, as a
+/// shorter load step is cheaper then, and with friction undamped steps of equal length, as parts slide without
+/// resistance. Else they lower the merit function alone, as steps with a projected stiffness do where there is no
+/// equilibrium.
+bool Newton::stagnates(double damping) {
   constexpr double poor = 0.2, same = 0.9;
-  constexpr int most_poor = 8, most_same = 12, most_downhill = 5;  // in a row
+  constexpr int max_poor = 8, max_same = 12, max_downhill = 5;  // in a row
   pace_.poor = damping < poor ? pace_.poor + 1 : 0;
   pace_.same = damping == 1 && next_.size.mean > same * step_.size.mean ? pace_.same + 1 : 0;
-  if (!system_.kinked()) return pace_.downhill >= most_downhill;
-  return pace_.poor >= most_poor || (rubs(work_) && pace_.same >= most_same);
+  if (!system_.kinked()) return pace_.downhill >= max_downhill;
+  return pace_.poor >= max_poor || (has_friction(work_) && pace_.same >= max_same);
 }
 
-/// Where hardly anything is unstable, a stiffness that was made positive element by element is far too stiff along it:
-/// steps are many, each nearly as long as the one before.
+/// Detects slow convergence with a stiffness that was projected element by element. Where few modes are unstable, it is
+/// far too stiff along these: many steps follow, each nearly as long as the one before.
 void Newton::note_pace(double damping) {
   constexpr double slow = 0.5;
   constexpr int few = 2;
   if (factor_.negative == 0)
-    pace_.slow = system_.limp();
+    pace_.slow = system_.has_wrinkling();
   else if (system_.contact() && factor_.negative <= few && damping == 1)
     pace_.slow |= next_.size.mean > slow * step_.size.mean;
 }
 
-/// How much of a length that was too long to try next: that at which a quadratic model is just good enough.
+/// Returns the factor of a damping that was too large: with it a quadratic model of the residual is just good enough.
 double Newton::shorter(double damping) const {
-  if (system_.contact() || system_.limp() || !std::isfinite(next_.size.mean)) return 0.5;
+  if (system_.contact() || system_.has_wrinkling() || !std::isfinite(next_.size.mean)) return 0.5;
   const double residue = (next_.move - (1 - damping) * step_.move).norm() / step_.move.norm();
   return std::min(0.5, damping / (2 * residue));
 }
 
-/// Newton step, as long as the simplified step that follows it is shorter. next_ is that step.
+/// Makes a Newton step, damped until the simplified step that follows it is shorter. next_ becomes that step.
 Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
   const auto ends = [this](const char* why) {
     ending_.why = why;
@@ -139,15 +141,15 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
   step_.size = system_.freedoms().size_of(step_.move, at.positions);
   if (factor_.refines && !work_.saddle.factor().in_double()) (void)refine(balance_, at, step_);
   if (!std::isfinite(step_.size.mean)) return ends("the stiffness is singular");
-  damping = system_.contact() ? 1 : std::min(1.0, 2 * damping);  // what was in the way may be out of it now
-  // where a gap closes the factor at hand knows nothing of what will push there, but the potential does
-  // forces that follow their normal forces have none
-  // a stiffness that was made positive leads down, if not straight; where little is left it leads to no unstable shape
+  damping = system_.contact() ? 1 : std::min(1.0, 2 * damping);  // the obstacle to the last step may be gone
+  // where a gap closes, the current factor lacks the contact force to come, but the potential contains it
+  // friction that follows its normal forces has no potential
+  // a projected stiffness gives a descent direction; near an equilibrium it leads to no unstable shape
   const bool potential = (system_.kinked() || !work_.factored.exact) && system_.conservative() &&
                          !(work_.contacts && work_.contacts->friction_follows);
   double slope = potential ? weigh_constraints(at) : 0;
   pace_.steepest = std::min(pace_.steepest, slope);
-  if (!system_.contact() && !system_.limp() && slope > worthwhile_slope * pace_.steepest) slope = 0;
+  if (!system_.contact() && !system_.has_wrinkling() && slope > worthwhile_slope * pace_.steepest) slope = 0;
   const double before = slope < 0 ? merit(balance_) : 0;
   for (;;) {
     double factor = 0.5;
@@ -155,13 +157,13 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
       if (last(step_, 0)) return accept(damping * step_.size.largest, damping == 1, at);
       const double rise = slope < 0 ? merit(trial_balance_) - before : 0;
       const bool lower = rise < worthwhile_descent * damping * slope;
-      // the step that follows a shortened one tells nothing that is asked for
+      // with contact the simplified step after a damped one is no criterion
       if (lower && system_.contact() && damping < 1) break;
-      // up to rounding: what is nearer by its steps and yet costs more goes round in circles where things touch
-      if (!(system_.contact() && rise > most_rise * std::abs(before))) {
+      // up to rounding: with contact, steps that get shorter while the merit function rises go round in circles
+      if (!(system_.contact() && rise > max_rise * std::abs(before))) {
         find(trial_balance_, trial_, next_);
         if (refine_first(at)) continue;
-        // near a singular stiffness the next step may be long although little is left
+        // near a singular stiffness the next step may be long although the residual is small
         const bool nearer =
             next_.size.mean < step_.size.mean || trial_balance_.force.norm() < 0.5 * balance_.force.norm();
         pace_.downhill = nearer ? 0 : pace_.downhill + lower;
@@ -170,23 +172,24 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
       }
     }
     damping *= factor;
-    if (!(damping >= least_damping)) {
+    if (!(damping >= min_damping)) {
       ending_.rounded = true;  // near a singular stiffness it may be by rounding, and nothing else shows it
       return ends("no length of a step comes nearer");
     }
   }
   if (damping * step_.size.largest > runaway * system_.model().diagonal_mm) return ends("the shape runs away");
   note_pace(damping);
-  if (labours(damping)) return ends("step after step hardly comes nearer");
-  if (slope < 0 && damping == 1 && !work_.factored.exact && (system_.contact() || system_.limp())) lengthen(damping);
+  if (stagnates(damping)) return ends("step after step hardly comes nearer");
+  if (slope < 0 && damping == 1 && !work_.factored.exact && (system_.contact() || system_.has_wrinkling()))
+    lengthen(damping);
   return accept(damping * step_.size.largest, false, at);
 }
 
-/// Away from a saddle a stiffness that was made positive leaves nearly as much to go along its step as that was long:
-/// goes on along it, twice as far as long as that leads down. Multipliers are those of the step.
+/// Away from a saddle point, a step with a projected stiffness leaves nearly its own length in the same direction.
+/// Doubles the step as long as that lowers the merit function. Multipliers are those of the step.
 void Newton::lengthen(double& damping) {
   constexpr double longest = 64;
-  if (!(step_.move.dot(next_.move) > most_along * step_.move.squaredNorm())) return;
+  if (!(step_.move.dot(next_.move) > max_along * step_.move.squaredNorm())) return;
   Step on = step_;
   on.change.setZero();
   double lowest = merit(trial_balance_);
@@ -196,7 +199,7 @@ void Newton::lengthen(double& damping) {
     const bool lower = attempt(on, more, nearer) && more == damping && merit(trial_balance_) < lowest;
     if (!lower) {
       trial_ = std::move(nearer);
-      system_.evaluate(trial_, *asked_.demand, *asked_.active, work_, trial_balance_, team_);
+      system_.evaluate(trial_, *requested_.load_state, *requested_.active, work_, trial_balance_, team_);
       return;
     }
     lowest = merit(trial_balance_);
@@ -208,7 +211,7 @@ void Newton::lengthen(double& damping) {
 bool Newton::update_next() {
   const double square = step_.move.squaredNorm(), part = step_.move.dot(next_.move) / square;
   const double size = next_.size.mean / step_.size.mean;
-  if (!(part < most_along && size < worthwhile_contraction * (1 - part))) return false;
+  if (!(part < max_along && size < worthwhile_contraction * (1 - part))) return false;
   const double scale = 1 / (square * (1 - part));
   secants_.push_back({step_.move, scale * next_.move, scale * next_.change});
   next_.move /= 1 - part;
@@ -226,7 +229,7 @@ Newton::Advance Newton::quasi_newton_steps(Iterate& at) {
   const auto slow = [&] {
     if (factor.rounded() > much_rounded && !system_.contact()) factor.distrust();
   };
-  for (int made = 1; made <= most_updates; ++made) {
+  for (int made = 1; made <= max_updates; ++made) {
     if (!update_next()) {
       slow();
       break;
@@ -271,7 +274,8 @@ bool Newton::shrink_fast() const {
 
 /// Steps with the factor of a shape close by, as long as they shrink fast enough.
 Newton::Advance Newton::steps_from_nearby(Iterate& at) {
-  if (!as_stiff_as_factorised(system_, at, *asked_.demand, *asked_.active, balance_, work_, team_)) return reject(at);
+  if (!as_stiff_as_factorised(system_, at, *requested_.load_state, *requested_.active, balance_, work_, team_))
+    return reject(at);
   find(balance_, at, step_);
   if (!std::isfinite(step_.size.mean) || !attempt_whole(step_, at)) return reject(at);
   const bool arrives = last(step_, 0);

@@ -10,22 +10,22 @@ void NodeLoads::add_cliques(linear::Cliques& cliques) {
   }
 }
 
-void NodeLoads::stiffness(const Iterate& at, const Demand& demand, bool projected, Term::Scratch& /*scratch*/,
+void NodeLoads::stiffness(const Iterate& at, const LoadState& load_state, bool projected, Term::Scratch& /*scratch*/,
                           LargeVector<double>& slots, Team& team) const {
   using Block = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
   team.pieces(parts(), [&](Index begin, Index end) {
     for (std::size_t f = begin; f < static_cast<std::size_t>(end); ++f) {
       const std::size_t count = nodes_of_part(f).size();
       double* out = slots.data() + 9 * slots_[f];
-      const double share = projected ? 0 : scale(f, demand) / 2;  // a load has no positive part of its own
-      if (share == 0) {
+      const double fraction = projected ? 0 : scale(f, load_state) / 2;  // a load has no positive part of its own
+      if (fraction == 0) {
         std::fill_n(out, 9 * count * (count + 1) / 2, 0.0);
         continue;
       }
       const Blocks blocks = slopes(f, at.positions);
       for (std::size_t i = 0; i < count; ++i)
         for (std::size_t j = 0; j <= i; ++j, out += 9)
-          Block(out, 3, 3) = share * (blocks[i][j] + blocks[j][i].transpose());
+          Block(out, 3, 3) = fraction * (blocks[i][j] + blocks[j][i].transpose());
     }
   });
 }
@@ -34,14 +34,14 @@ void NodeLoads::add_response(const Iterate& at, const Points& moves, const Term:
                              Points& force) const {
   if (symmetric()) return;
   for (std::size_t f = 0; f < parts(); ++f) {
-    const double share = scale(f, static_cast<const Scratch&>(scratch).demand) / 2;
-    if (share == 0) continue;
+    const double fraction = scale(f, static_cast<const Scratch&>(scratch).load_state) / 2;
+    if (fraction == 0) continue;
     const std::vector<Index>& nodes = nodes_of_part(f);
     const Blocks blocks = slopes(f, at.positions);
     for (std::size_t i = 0; i < nodes.size(); ++i)
       for (std::size_t j = 0; j < nodes.size(); ++j)
         force.row(nodes[i]) +=
-            (share * (blocks[i][j] - blocks[j][i].transpose()) * vertex_at(moves, nodes[j])).transpose();
+            (fraction * (blocks[i][j] - blocks[j][i].transpose()) * vertex_at(moves, nodes[j])).transpose();
   }
 }
 

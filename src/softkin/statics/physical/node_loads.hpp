@@ -4,18 +4,18 @@
 
 namespace softkin::physical {
 
-/// Loads of parts, each on a few nodes, such as a face, whose forces depend on where these are. They grow with the
-/// share of what is done at once or as a command says. The derivative of their forces is not symmetric by itself: the
-/// stiffness is its symmetric part, the rest is a response.
+/// Loads of parts, each on a few nodes, such as a face, whose forces depend on the positions of these. They grow with
+/// the load factor or with a command. The derivative of their forces is not symmetric by itself: the stiffness is its
+/// symmetric part, the rest is a response.
 class NodeLoads : public Term {
  public:
   struct Scratch : Term::Scratch {
-    Demand demand;  // of the last evaluation
+    LoadState load_state;  // of the last evaluation
   };
   [[nodiscard]] std::unique_ptr<Term::Scratch> new_scratch() const override { return std::make_unique<Scratch>(); }
 
   void add_cliques(linear::Cliques& cliques) override;
-  void stiffness(const Iterate& at, const Demand& demand, bool projected, Term::Scratch& scratch,
+  void stiffness(const Iterate& at, const LoadState& load_state, bool projected, Term::Scratch& scratch,
                  LargeVector<double>& slots, Team& team) const override;
   [[nodiscard]] bool symmetric() const override { return conservative(); }
   void add_response(const Iterate& at, const Points& moves, const Term::Scratch& scratch, Points& force) const override;
@@ -27,8 +27,10 @@ class NodeLoads : public Term {
   [[nodiscard]] virtual std::size_t parts() const = 0;
   /// At most six.
   [[nodiscard]] virtual const std::vector<Index>& nodes_of_part(std::size_t part) const = 0;
-  /// By what a part's load is multiplied.
-  [[nodiscard]] virtual double scale(std::size_t /*part*/, const Demand& demand) const { return demand.share; }
+  /// Returns the factor of a part's load.
+  [[nodiscard]] virtual double scale(std::size_t /*part*/, const LoadState& load_state) const {
+    return load_state.load_factor;
+  }
   /// Derivatives of the gradient of a part's nodes by its nodes, at a scale of 1.
   [[nodiscard]] virtual Blocks slopes(std::size_t part, const Points& positions) const = 0;
 

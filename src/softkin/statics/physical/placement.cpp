@@ -4,11 +4,11 @@ namespace softkin::physical {
 
 namespace {
 
-/// Moves shorter than this share of the robot's diagonal turn nothing that matters.
-constexpr double least_turning = 1e-4;
-/// What turns add to moves grows with their square; where something touches, no more than so many times that over the
-/// diagonal is believed.
-constexpr double most_turning = 30;
+/// Moves shorter than this fraction of the robot's diagonal cause no significant rotation.
+constexpr double min_turning = 1e-4;
+/// The correction of moves for rotations grows with their square. With contact, a correction is rejected if it exceeds
+/// this multiple of the square over the diagonal.
+constexpr double max_turning = 30;
 
 }  // namespace
 
@@ -26,16 +26,16 @@ Placement::Placement(const Model& model, const Body& body, const supports::Freed
   }
 }
 
-void Placement::hold(const Demand& demand, Points& positions) const {
-  freedoms_.hold(demand.share, positions);
-  supports_.place(demand.actuation, demand.share, positions);
+void Placement::hold(const LoadState& load_state, Points& positions) const {
+  freedoms_.hold(load_state.load_factor, positions);
+  supports_.place(load_state.actuation, load_state.load_factor, positions);
   for (std::size_t a = 0; a < moved_.size(); ++a)
     for (Index v = moved_[a].vertices[0]; v < moved_[a].vertices[1]; ++v)
-      positions(v, moved_[a].axis) += demand.actuation[a];
+      positions(v, moved_[a].axis) += load_state.actuation[a];
 }
 
-bool Placement::changes(const Demand& from, const Demand& to) const {
-  if (from.share != to.share) return true;
+bool Placement::changes(const LoadState& from, const LoadState& to) const {
+  if (from.load_factor != to.load_factor) return true;
   for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
     const Actuator& command = model_.actuators[a];
     const Index i = a;
@@ -44,12 +44,12 @@ bool Placement::changes(const Demand& from, const Demand& to) const {
   return false;
 }
 
-void Placement::velocity(Index actuator, const Demand& demand, Points& moves) const {
+void Placement::velocity(Index actuator, const LoadState& load_state, Points& moves) const {
   moves.setZero(model_.rest.rows(), 3);
   const Moved& moved = moved_[actuator];
   const auto& [first, end] = moved.vertices;
   if (end > first) moves.col(moved.axis).segment(first, end - first).setOnes();
-  supports_.add_velocity(actuator, demand.actuation, demand.share, moves);
+  supports_.add_velocity(actuator, load_state.actuation, load_state.load_factor, moves);
 }
 
 double Placement::command_of(Index actuator, const Points& positions) const {
@@ -60,9 +60,9 @@ double Placement::command_of(Index actuator, const Points& positions) const {
 }
 
 void Placement::advance(const Eigen::VectorXd& step, double scale, Scratch& scratch, Body::Scratch& elastic,
-                        Points& positions, Team& team, const Demand* held) const {
+                        Points& positions, Team& team, const LoadState* held) const {
   freedoms_.expand(scale * step, positions, scratch.moves);
-  if (held && !contact_) {  // where things touch the turns that it brings meet more of them
+  if (held && !contact_) {  // with contact, rotations from moving supports would cause more contacts
     Points there = positions;
     hold(*held, there);
     scratch.moves += there - positions;
@@ -72,14 +72,14 @@ void Placement::advance(const Eigen::VectorXd& step, double scale, Scratch& scra
     if (held) hold(*held, positions);
   };
   const double length = scratch.moves.cwiseAbs().maxCoeff();
-  if (length < least_turning * model_.diagonal_mm) return move();
+  if (length < min_turning * model_.diagonal_mm) return move();
   body_.turning(positions, scratch.moves, elastic, scratch.lacking, team);
   move();
   const Points straight = contact_ ? positions : Points();
   std::vector<supports::Pose> poses = turning_->poses(positions);
   turning_->step(scratch.lacking, positions, poses, team);
-  // what holds a body by contact alone is not in the way of its turns
-  if (contact_ && largest_move(straight, positions) > most_turning * length * length / model_.diagonal_mm)
+  // a body held by contact alone has no resistance to rotation, and its correction may be far too large
+  if (contact_ && largest_move(straight, positions) > max_turning * length * length / model_.diagonal_mm)
     positions = straight;
 }
 

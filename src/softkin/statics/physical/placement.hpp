@@ -8,25 +8,26 @@
 
 namespace softkin::physical {
 
-/// Where a demand holds the vertices that are no unknowns, and how the others move: what is fixed, supports that turn,
-/// obstacles that are moved, rigid regions.
+/// Positions of the vertices that are no unknowns under a load state (fixed vertices, turning supports, moved
+/// obstacles), and moves of the others, with rigid regions.
 class Placement {
  public:
   /// model, body and freedoms must outlive the object.
-  /// like  of a model that is held elsewhere by the same; null: none
+  /// like  placement of a model with the same supports at other places; null: none
   Placement(const Model& model, const Body& body, const supports::Freedoms& freedoms, const Placement* like);
 
-  /// Puts what is fixed or commanded to move where a demand has it, and rigid regions into the pose that fits best.
-  void hold(const Demand& demand, Points& positions) const;
-  /// Does a change of demand move what holds the robot or stands around it?
-  [[nodiscard]] bool changes(const Demand& from, const Demand& to) const;
-  /// Derivative of what hold() places by a command, #V by 3 [mm per unit of command].
-  void velocity(Index actuator, const Demand& demand, Points& moves) const;
-  /// The command at which a shape has an obstacle [mm] or a turning support [degrees] where they are.
+  /// Moves fixed and commanded vertices to their places under a load state, and rigid regions into their best-fit
+  /// poses.
+  void hold(const LoadState& load_state, Points& positions) const;
+  /// Does a change of the load state move supports or obstacles?
+  [[nodiscard]] bool changes(const LoadState& from, const LoadState& to) const;
+  /// Computes the derivative of the places that hold() sets by a command, #V by 3 [mm per unit of command].
+  void velocity(Index actuator, const LoadState& load_state, Points& moves) const;
+  /// Returns the command at which an obstacle [mm] or a turning support [degrees] stands as in a shape.
   [[nodiscard]] double command_of(Index actuator, const Points& positions) const;
-  /// By how much a support turns at most from one demand to another [degrees].
-  [[nodiscard]] double largest_turn(const Demand& from, const Demand& to) const {
-    return supports_.largest_turn(from.actuation, from.share, to.actuation, to.share);
+  /// Returns the largest rotation of a support between two load states [degrees].
+  [[nodiscard]] double largest_turn(const LoadState& from, const LoadState& to) const {
+    return supports_.largest_turn(from.actuation, from.load_factor, to.actuation, to.load_factor);
   }
 
   struct Scratch {
@@ -34,18 +35,18 @@ class Placement {
   };
   /// Moves positions by scale times a step; elements turn with it instead of growing: equal to Freedoms::move to first
   /// order, and far better where a step bends the robot.
-  /// held  what is fixed or commanded to move comes to where this has it
+  /// held  load state to whose places fixed and commanded vertices move; null: these stay
   void advance(const Eigen::VectorXd& step, double scale, Scratch& scratch, Body::Scratch& elastic, Points& positions,
-               Team& team, const Demand* held = nullptr) const;
+               Team& team, const LoadState* held = nullptr) const;
 
  private:
   const Model& model_;
   const Body& body_;
   const supports::Freedoms& freedoms_;
-  bool contact_;  // things may touch
+  bool contact_;  // contact is possible
   supports::Turning supports_;
   std::shared_ptr<const supports::GlobalStep> turning_;
-  /// Of the obstacle that an actuator moves; of another none.
+  /// The vertices of the obstacle that an actuator moves; none for other actuators.
   struct Moved {
     std::array<Index, 2> vertices{0, 0};
     int axis = 0;

@@ -5,50 +5,51 @@
 
 namespace softkin::physical {
 
-/// First-order change of shape and multipliers from one demand to another, with the factor at hand.
+/// Adds the first-order change of shape and multipliers from one load state to another, with the current factorisation.
 ///
 /// returns  the largest move of a vertex [mm]
-double predict(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
+double predict(const System& system, const LoadState& here, const LoadState& there, const std::vector<bool>& active,
                Workspace& work, Team& team, Iterate& at);
 
-/// The same change of shape to first order alone, without what turns add: #V by 3 [mm].
-[[nodiscard]] Points first_order_moves(const System& system, const Demand& here, const Demand& there,
+/// Returns the first-order change of shape alone, without the correction for rotations: #V by 3 [mm].
+[[nodiscard]] Points first_order_moves(const System& system, const LoadState& here, const LoadState& there,
                                        const std::vector<bool>& active, Workspace& work, Team& team, const Iterate& at);
 
 struct ClearPrediction {
-  Points predicted, straight;     // as predict() gives it; without what turns add
-  std::optional<double> move_mm;  // the largest of a vertex, as far as it is clear; none where a shorter way is better:
-                                  // supports are in each other's way, or little of a long one is left
-  bool cut = false;               // is it shorter than predicted
+  Points predicted, straight;     // by predict(); without the correction for rotations
+  std::optional<double> move_mm;  // largest move of a vertex, without collision; none where a shorter step is better:
+                                  // supports collide, or little of a long motion is left
+  bool cut = false;               // does a collision shorten the motion
 };
-/// The same, less far where otherwise something would pass through something.
-ClearPrediction predict_clear(const System& system, const Demand& here, const Demand& there,
+/// Predicts as predict() does, but ends the motion before surfaces would pass through each other.
+ClearPrediction predict_clear(const System& system, const LoadState& here, const LoadState& there,
                               const std::vector<bool>& active, Workspace& work, Team& team, Iterate& at);
 
-/// Brings what is held to its place, and lets the body follow it as if nothing else changed. False where something is
-/// in the way, or the stiffness has no step.
-bool carry_held(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
+/// Moves the supports to their places at the target state, with the body following as if nothing else changed. Returns
+/// false if a collision blocks the motion, or the stiffness is singular.
+bool carry_held(const System& system, const LoadState& here, const LoadState& there, const std::vector<bool>& active,
                 Workspace& work, Team& team, Iterate& at);
 
-/// The equilibrium under other commands by second order, from the derivative that was asked for at the shape: what the
-/// tangent leaves out of balance there, through the factor at hand. The workspace keeps it.
+/// Extrapolates the equilibrium under other commands to second order, from the derivative computed at the shape: the
+/// residual along the tangent is corrected with the current factorisation. The workspace stores the result.
 ///
-/// returns  false where no derivative is known, something may touch, or the law has no energy there
+/// returns  false where no derivative is stored, contact is possible, or the law has no energy there
 /// source   as geodesic acceleration, Transtrum and Sethna 2012
-bool foresee(const System& system, const Demand& here, const Demand& there, Workspace& work, Team& team,
-             const Iterate& at, Points& positions);
+bool extrapolate(const System& system, const LoadState& here, const LoadState& there, Workspace& work, Team& team,
+                 const Iterate& at, Points& positions);
 
-/// Moves `at` to where foresee() and the tangent lead. False where nothing was foreseen from there.
-bool follow_foreseen(const System& system, const Demand& here, const Demand& there, const std::vector<bool>& active,
-                     Workspace& work, Team& team, Iterate& at);
+/// Moves `at` to the equilibrium stored by extrapolate(), and from there along the tangent. Returns false if none is
+/// stored for `at`.
+bool follow_extrapolated(const System& system, const LoadState& here, const LoadState& there,
+                         const std::vector<bool>& active, Workspace& work, Team& team, Iterate& at);
 
-/// Moves `at` to where the caller foretold the equilibrium of a demand. False where nothing was.
-bool follow_foretold(const Demand& here, const Demand& there, Workspace& work, Iterate& at);
+/// Moves `at` to the caller's initial guess for the load state `there`. Returns false if there is none.
+bool follow_initial_guess(const LoadState& here, const LoadState& there, Workspace& work, Iterate& at);
 
-/// The stiffness at an equilibrium, for predictions of those around it.
+/// Predicts the equilibria around a given one by its stiffness.
 class Predictor {
  public:
-  /// at: of a known actuation, with multipliers.
+  /// at: the given equilibrium, with its actuation and multipliers
   Predictor(const System& system, Workspace& work, const State& at, Team& team);
 
   [[nodiscard]] State predict(const Actuation& actuation, Team& team);

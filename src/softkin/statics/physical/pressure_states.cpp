@@ -29,8 +29,8 @@ void Equilibria::drop_vertices(Points& points) const {
   if (system_.pressures() && points.rows() > 0) points.conservativeResize(system_.pressures()->first, 3);
 }
 
-/// Those of one step of Newton's from none: with the law's own stiffness A, and B that by the pressures, at an
-/// equilibrium the step is (0, p), whatever A is.
+/// Finds the pressures by one step of Newton's method from zero: with the law's own stiffness A, and B that by the
+/// pressures, the step at an equilibrium is (0, p), whatever A is.
 void Equilibria::find_pressures(State& at, Team& team) const {
   const Index actuators = system_.actuators();
   const bool known = at.knows(actuators) && at.multipliers.size() == actuators;
@@ -38,17 +38,17 @@ void Equilibria::find_pressures(State& at, Team& team) const {
   Workspace& work = lease.work();
   State loaded = at;
   if (!known) loaded.multipliers = Eigen::VectorXd::Zero(actuators);
-  const Demand demand{at.actuation.size() == actuators ? at.actuation : system_.model().rest_actuation(),
-                      at.share >= 0 ? at.share : 1};
+  const LoadState load_state{at.actuation.size() == actuators ? at.actuation : system_.model().rest_actuation(),
+                             at.load_factor >= 0 ? at.load_factor : 1};
   std::vector<bool> active(actuators);
   for (Index a = 0; a < actuators; ++a) active[a] = !known && system_.measures().constrains(a);
   system_.set_time(at.history, at.elapsed_s, work, team);
   const Iterate shape = system_.iterate(loaded);
   hold_friction(system_, shape, work, team);
   Balance balance;
-  system_.evaluate(shape, demand, active, work, balance, team);
+  system_.evaluate(shape, load_state, active, work, balance, team);
   if (balance.forbidden || !balance.force.allFinite()) return;
-  (void)system_.factorise(shape, demand, active, balance, {System::Stiffness::exact, 0, true}, work, team);
+  (void)system_.factorise(shape, load_state, active, balance, {System::Stiffness::exact, 0, true}, work, team);
   Eigen::VectorXd step, change;
   work.saddle.first_step(balance, step, change);
   Points moves;

@@ -10,13 +10,13 @@ std::unique_ptr<const Pressures> pressures_of(const Model& model, const Pressure
   if (std::none_of(model.elements.materials.begin(), model.elements.materials.end(),
                    [](const Material& m) { return m.mixed; }))
     return nullptr;
-  constexpr double share = 30;  // of the diagonal, one over it, is a pressure of one shear modulus
+  constexpr double fraction = 30;  // a pressure of one shear modulus is the diagonal over this [mm]
   auto pressures = std::make_unique<Pressures>();
   pressures->first = model.rest.rows();
   pressures->of.assign(model.elements.tetrahedra.size(), {-1, -1, -1, -1});
   double shear = 0;
   const Growers growers = growers_of(model);
-  std::map<std::array<Index, 3>, Index> known;  // by material, what lets it grow, and corner
+  std::map<std::array<Index, 3>, Index> known;  // by material, growth and corner
   for (std::size_t e = 0; e < model.elements.tetrahedra.size(); ++e) {
     const Index material = model.elements.tetrahedron_roles[e].material;
     const Material& of = model.elements.materials[material];
@@ -32,8 +32,8 @@ std::unique_ptr<const Pressures> pressures_of(const Model& model, const Pressure
     }
   }
   if (pressures->corners.empty()) return nullptr;
-  // a power of two: pressures come back from MPa bit by bit
-  pressures->unit = like ? like->unit : std::exp2(std::round(std::log2(share * shear / model.diagonal_mm)));
+  // a power of two, so that the conversion from and to MPa is exact
+  pressures->unit = like ? like->unit : std::exp2(std::round(std::log2(fraction * shear / model.diagonal_mm)));
   return pressures;
 }
 
@@ -55,11 +55,11 @@ std::unique_ptr<const Model> with_vertices(const Model& model, const Pressures& 
 }
 
 SplitLaw split(const ElasticLaw& law, bool quadratic) {
-  constexpr double most_kept = 2;  // of the bulk part, over the shear modulus
+  constexpr double max_kept = 2;  // of the bulk part, over the shear modulus
   SplitLaw result{law};
   double& bulk = bulk_part(result.law);
   const double whole = bulk, shear = shear_modulus(law);
-  bulk = std::min(most_kept * shear, 0.5 * whole);
+  bulk = std::min(max_kept * shear, 0.5 * whole);
   result.softness = 1 / (whole - bulk);
   if (!quadratic) result.smoothing = 1 / shear;
   return result;

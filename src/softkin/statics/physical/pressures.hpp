@@ -5,26 +5,26 @@
 
 namespace softkin::physical {
 
-/// The pressures of elements that keep their volume by them (energy/pressure.hpp), a vertex more for each behind those
-/// of the robot, whose x is the pressure over `unit` and whose y and z are held: what knows of vertices knows of them.
-/// One for each corner, material and what lets it grow: where two of them meet, stress jumps.
+/// The pressures of mixed elements (energy/pressure.hpp). Each is an additional vertex after those of the robot, whose
+/// x is the pressure over `unit` and whose y and z are fixed, so that code for vertices applies to pressures, too.
+/// There is one for each corner, material and growth: stress is discontinuous where these meet.
 struct Pressures {
   Index first = 0;                       // of the vertices
-  std::vector<Index> corners;            // of each: where it stands
+  std::vector<Index> corners;            // vertex at which each of them is located
   std::vector<std::array<Index, 4>> of;  // vertices by tetrahedron and corner; -1: it has none
-  double unit = 1;                       // [MPa/mm]: makes them about as large as moves
+  double unit = 1;                       // [MPa/mm]: scales pressures to the size of moves
 
   [[nodiscard]] Index count() const { return corners.size(); }
 };
 
-/// None where no material is mixed. like: of a robot with other numbers; null: none
+/// Returns none if no material is mixed. like: those of the same robot with other parameters; null: none
 [[nodiscard]] std::unique_ptr<const Pressures> pressures_of(const Model& model, const Pressures* like);
 
-/// The model with these vertices.
+/// Returns the model with these vertices added.
 [[nodiscard]] std::unique_ptr<const Model> with_vertices(const Model& model, const Pressures& pressures);
 
-/// The law of a mixed material without that part of its bulk modulus which the pressures stand for. What is left, up to
-/// two shear moduli, locks nothing, and makes the stiffness without them positive where the body is stable.
+/// The law of a mixed material without the part of its bulk modulus that the pressures represent. The rest, up to two
+/// shear moduli, causes no locking, and keeps the stiffness without pressures positive where the body is stable.
 struct SplitLaw {
   ElasticLaw law;
   double softness = 0;   // of the pressures [1/MPa]

@@ -6,8 +6,8 @@ namespace softkin::physical {
 
 namespace {
 
-/// Else it may be another load that comes to its end.
-bool voltages_alone_change(const Model& model, const Demand& from, const Demand& here) {
+/// Are voltages all that changes? Else another load may have reached its limit.
+bool voltages_alone_change(const Model& model, const LoadState& from, const LoadState& here) {
   for (Index a = 0; a < std::ssize(model.actuators); ++a)
     if (from.actuation[a] != here.actuation[a] && !under_voltage(model.actuators[a])) return false;
   return true;
@@ -15,7 +15,7 @@ bool voltages_alone_change(const Model& model, const Demand& from, const Demand&
 
 }  // namespace
 
-std::string pull_in_text(const Model& model, const Demand& from, const Demand& here, const Points& positions) {
+std::string pull_in_text(const Model& model, const LoadState& from, const LoadState& here, const Points& positions) {
   const std::string has = voltages_alone_change(model, from, here) ? "has" : "may have";
   std::string text;
   for (Index a = 0; a < std::ssize(model.actuators); ++a) {

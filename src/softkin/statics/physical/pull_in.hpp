@@ -6,12 +6,12 @@
 
 namespace softkin::physical {
 
-/// Where a way ends along which voltages rise: "; the voltage of ..." for each of them, with its value, and where its
-/// layer has the largest field; "" where none rises.
+/// Describes the end of a path along which voltages rise: "; the voltage of ..." for each of them, with its value, and
+/// where its layer has the largest field; "" where none rises.
 ///
-/// from, here  demands at the begin and at the end of the way
+/// from, here  load states at the start and at the end of the path
 /// positions   the last equilibrium, #V by 3 [mm]
-[[nodiscard]] std::string pull_in_text(const Model& model, const Demand& from, const Demand& here,
+[[nodiscard]] std::string pull_in_text(const Model& model, const LoadState& from, const LoadState& here,
                                        const Points& positions);
 
 }  // namespace softkin::physical

@@ -6,10 +6,10 @@ namespace softkin::physical {
 
 namespace {
 
-/// Share of a constraint's own compliance below which what it adds to others is rounding [-].
+/// Fraction of a constraint's own compliance below which the part independent of other constraints is rounding [-].
 constexpr double dependent = 1e-9;
 
-/// visit(value) of every entry of the diagonal, but of pressures.
+/// Calls visit(value) for every entry of the diagonal except those of pressures.
 template <class Visit>
 void each_diagonal(const supports::ReducedMatrix& matrix, LargeVector<double>& values, const Visit& visit) {
   const linear::BlockColumns& columns = matrix.columns();
@@ -62,15 +62,16 @@ void Saddle::solve_factorised(const Matrix& matrix, Precision precision, const B
   close();
 }
 
-/// Is there a change of shape that keeps the active measures and loses energy? Rayleigh's and Ritz's method on inverse
-/// iterates of the last factorisation, however it is rounded: energies are those of the stiffness itself.
+/// Is there a change of shape that keeps the active measures and decreases the energy? The Rayleigh-Ritz method on
+/// inverse iterates of the last factorisation finds it; rounding of the factorisation does not matter, as the energies
+/// are those of the stiffness itself.
 bool Saddle::loses_energy(const Matrix& matrix, Team& team) {
   constexpr int iterates = 5;
   constexpr double rounding = 1e-12;  // over the mean diagonal
   const Index size = slopes_.rows();
   Balance right;
   right.constraint.setZero(measures_.count());
-  Eigen::VectorXd next = lopsided(size), multipliers;
+  Eigen::VectorXd next = unsymmetric(size), multipliers;
   Eigen::MatrixXd basis(next.size(), iterates);
   for (int i = 0; i < iterates; ++i) {
     right.force = -next;
@@ -82,7 +83,7 @@ bool Saddle::loses_energy(const Matrix& matrix, Team& team) {
   }
   Eigen::MatrixXd image = Eigen::MatrixXd::Zero(basis.rows(), iterates);
   linear::subtract_product(matrix.layout->reduced.columns(), matrix.values, basis, image, team);
-  for (Index i = 0; i < std::ssize(compliance_); ++i)  // what gives way is no constraint, but stiff
+  for (Index i = 0; i < std::ssize(compliance_); ++i)  // a compliant measure is a stiffness, not a constraint
     if (compliance_[i] > 0) image -= slopes_.col(i) * (slopes_.col(i).transpose() * basis) / compliance_[i];
   return symmetric_eigenvalues(-(basis.transpose() * image)).minCoeff() < -rounding * spectrum_.mean;
 }
@@ -101,19 +102,19 @@ void Saddle::solve_without_tendons(Eigen::Ref<Eigen::MatrixXd> right_sides, Team
   reduced.to_unknowns(in_columns_, right_sides);
 }
 
-/// How tensions of tendons follow moves, V^T moves.
+/// Returns the changes of tendon tensions with moves, V^T moves.
 Eigen::MatrixXd Saddle::followed(const Eigen::Ref<const Eigen::MatrixXd>& moves) const {
-  return tendons_.turned(moves) + rubbing_.rates * (tendons_.along.transpose() * moves);
+  return tendons_.turned(moves) + friction_.rates * (tendons_.along.transpose() * moves);
 }
 
 void Saddle::solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team) {
   solve_without_tendons(right_sides, team);
   if (tendons_.count() == 0) return;
-  right_sides -= rubbing_.along * (rubbing_.inverse * followed(right_sides));
+  right_sides -= friction_.along * (friction_.inverse * followed(right_sides));
 }
 
-/// What a factorisation is to solve for: what the active constraints pull with, the segments of tendons that rub, and
-/// for a step the force of the balance.
+/// Sets the right-hand sides of a factorisation: the forces of the active constraints, the segments of tendons with
+/// friction, and for a step the residual force.
 void Saddle::ask(const Balance* step) {
   const Eigen::Index count = slopes_.cols(), segments = tendons_.count();
   solutions_.resize(slopes_.rows(), count + segments + (step ? 1 : 0));
@@ -122,16 +123,16 @@ void Saddle::ask(const Balance* step) {
   if (step) solutions_.col(count + segments) = -step->force;
 }
 
-/// What the constraints leave of the stiffness, from their responses.
+/// Computes the responses, the Schur complement and the inertia under the constraints.
 void Saddle::close() {
   const Index count = active_.size();
   spectrum_.unstable = spectrum_.negative;
   if (tendons_.count() == 0) {
     responses_ = solutions_.leftCols(count);
   } else {
-    rubbing_.free = solutions_.leftCols(count);
-    rubbing_.along = solutions_.middleCols(count, tendons_.count());
-    rubbing_.stretches = tendons_.along.transpose() * rubbing_.along;
+    friction_.free = solutions_.leftCols(count);
+    friction_.along = solutions_.middleCols(count, tendons_.count());
+    friction_.stretches = tendons_.along.transpose() * friction_.along;
     const Eigen::MatrixXd rates = tendons_.rates(slips_, Eigen::VectorXd::Zero(tendons_.count()), {});
     spectrum_.unstable = negative_with_tendons(rates);
     set_rates(rates);
@@ -141,17 +142,18 @@ void Saddle::close() {
     spectrum_.unstable -= static_cast<int>((symmetric_eigenvalues(schur_matrix_).array() < -dependent).count());
 }
 
-/// How tensions of tendons follow their lengths, in what was factorised.
+/// Sets the rates of change of tendon tensions with segment lengths, for the last factorisation.
 void Saddle::set_rates(const Eigen::MatrixXd& rates) {
   const Eigen::Index segments = tendons_.count();
-  rubbing_.rates = rates;
-  rubbing_.inverse = inverse_of(Eigen::MatrixXd::Identity(segments, segments) + tendons_.turned(rubbing_.along) +
-                                rubbing_.rates * rubbing_.stretches);
-  responses_ = rubbing_.free - rubbing_.along * (rubbing_.inverse * followed(rubbing_.free));
+  friction_.rates = rates;
+  friction_.inverse = inverse_of(Eigen::MatrixXd::Identity(segments, segments) + tendons_.turned(friction_.along) +
+                                 friction_.rates * friction_.stretches);
+  responses_ = friction_.free - friction_.along * (friction_.inverse * followed(friction_.free));
 }
 
-/// Negative eigenvalues of the stiffness with what sticking tendons add to it by their lengths, made symmetric: of
-/// rates S_jk T_j with a symmetric S, S_jk sqrt(T_j T_k), which never takes stiffness away as the mean of both would.
+/// Returns the number of negative eigenvalues of the stiffness with the symmetrised contribution of the lengths of
+/// sticking tendons: from rates S_jk T_j with a symmetric S, S_jk sqrt(T_j T_k). It never reduces the stiffness, as the
+/// mean of both would.
 ///
 /// source  Haynsworth 1968: the inertia of K + W D W^T is that of K and of -1/D - W^T K^-1 W, less that of -1/D
 int Saddle::negative_with_tendons(const Eigen::MatrixXd& rates) const {
@@ -168,14 +170,14 @@ int Saddle::negative_with_tendons(const Eigen::MatrixXd& rates) const {
     vectors.col(i) = eigen.vectors.col(kept[i]);
     inverse[i] = 1 / eigen.values[kept[i]];
   }
-  Eigen::MatrixXd inner = vectors.transpose() * rubbing_.stretches * vectors;
+  Eigen::MatrixXd inner = vectors.transpose() * friction_.stretches * vectors;
   inner = -0.5 * (inner + inner.transpose()).eval();
   inner.diagonal() -= inverse;
   const auto below = (symmetric_eigenvalues(inner).array() < 0).count();
   return spectrum_.negative + static_cast<int>(below - inner.rows());
 }
 
-/// Tensions of held lengths, over what they are, after a change of their multipliers.
+/// Sets the tensions of cables with commanded lengths, over the current ones, after a change of their multipliers.
 void Saddle::grow(const Eigen::VectorXd& change, Eigen::VectorXd& growth) const {
   for (const TendonColumns::Tendon& tendon : tendons_.tendons)
     for (std::size_t i = 0; i < active_.size(); ++i)
@@ -196,45 +198,45 @@ void Saddle::close_constraints() {
     schur_ = MinimumNorm(scale_.asDiagonal() * schur * scale_.asDiagonal(), dependent);
 }
 
-/// Turns a step without tendons' columns, K^-1 of what is asked, into that with them and with the constraints, with
-/// friction by its secants over it; by its slopes, where the balance knows no slips.
+/// Completes a step without the tendons' columns, K^-1 of its right-hand side, by these columns and the constraints.
+/// Friction is taken by its secants over the step, or by its tangents where the balance contains no slips.
 void Saddle::rub(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd& change) {
-  constexpr int most_rounds = 60;
-  constexpr double settled = 1e-6;  // of lengthenings, over the largest
+  constexpr int max_rounds = 60;
+  constexpr double accuracy = 1e-6;  // of lengthenings, over the largest
   const bool known = balance.slips.size() > 0;
   const Eigen::VectorXd& slips = known ? balance.slips : slips_;
   const Index count = active_.size();
-  // of the step without tendons, then of what the constraints pull with: by the few numbers that tendons and
-  // constraints know of them
+  // the step without tendons, then the responses of the constraints, in the few coordinates of tendons and constraints
   Eigen::MatrixXd all(step.size(), 1 + count);
-  all << step, rubbing_.free;
+  all << step, friction_.free;
   const Eigen::MatrixXd turned = tendons_.turned(all), stretched = tendons_.along.transpose() * all,
-                        turns = tendons_.turned(rubbing_.along), met = slopes_.transpose() * all,
-                        held = slopes_.transpose() * rubbing_.along;
+                        turns = tendons_.turned(friction_.along), met = slopes_.transpose() * all,
+                        held = slopes_.transpose() * friction_.along;
   const Eigen::MatrixXd one = Eigen::MatrixXd::Identity(tendons_.count(), tendons_.count());
   Eigen::VectorXd lengthening = Eigen::VectorXd::Zero(tendons_.count());
   Eigen::VectorXd growth = balance.growth.size() > 0 ? balance.growth : Eigen::VectorXd::Ones(measures_.count());
   Eigen::MatrixXd rates;
-  for (int round = 0; round < most_rounds; ++round) {
+  for (int round = 0; round < max_rounds; ++round) {
     rates = tendons_.rates(slips, lengthening, growth);
     const Eigen::MatrixXd tensions =
-        inverse_of(one + turns + rates * rubbing_.stretches) * (turned + rates * stretched);
-    const Eigen::MatrixXd lengths = stretched - rubbing_.stretches * tensions;
+        inverse_of(one + turns + rates * friction_.stretches) * (turned + rates * stretched);
+    const Eigen::MatrixXd lengths = stretched - friction_.stretches * tensions;
     Eigen::VectorXd now = lengths.col(0);
     if (count > 0) {
       Eigen::MatrixXd left = met - held * tensions;
       if (compliance_.size() > 0) left.rightCols(count).diagonal() += compliance_;
-      const Eigen::VectorXd more = MinimumNorm(left.rightCols(count), dependent).solve(asked_of(balance, left.col(0)));
+      const Eigen::VectorXd more =
+          MinimumNorm(left.rightCols(count), dependent).solve(requested_of(balance, left.col(0)));
       now -= lengths.rightCols(count) * more;
       if (known) grow(more, growth);
     }
     const double moved = (now - lengthening).cwiseAbs().maxCoeff();
     lengthening = now;
-    if (!known || !now.allFinite() || moved <= settled * now.cwiseAbs().maxCoeff()) break;
+    if (!known || !now.allFinite() || moved <= accuracy * now.cwiseAbs().maxCoeff()) break;
   }
   set_rates(rates);
   close_constraints();
-  step -= rubbing_.along * (rubbing_.inverse * (turned.col(0) + rates * stretched.col(0)));
+  step -= friction_.along * (friction_.inverse * (turned.col(0) + rates * stretched.col(0)));
   meet_constraints(balance, step, change);
 }
 
@@ -250,7 +252,7 @@ void Saddle::first_step(const Balance& balance, Eigen::VectorXd& step, Eigen::Ve
   complete(balance, step, change);
 }
 
-/// Adds to a step of the stiffness alone what tendons and constraints add.
+/// Adds the contributions of tendons and constraints to a step of the stiffness alone.
 void Saddle::complete(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd& change) {
   if (tendons_.count() > 0)
     rub(balance, step, change);
@@ -258,19 +260,21 @@ void Saddle::complete(const Balance& balance, Eigen::VectorXd& step, Eigen::Vect
     meet_constraints(balance, step, change);
 }
 
-/// What constraints miss, and a step without them so much more.
-Eigen::VectorXd Saddle::asked_of(const Balance& balance, const Eigen::VectorXd& more) const {
-  Eigen::VectorXd asked = more;
-  for (Index i = 0; i < std::ssize(asked); ++i) asked[i] += measures_.sign(active_[i]) * balance.constraint[active_[i]];
-  return asked;
+/// Returns the constraint violations, increased by `more`, those of a step without constraints.
+Eigen::VectorXd Saddle::requested_of(const Balance& balance, const Eigen::VectorXd& more) const {
+  Eigen::VectorXd requested = more;
+  for (Index i = 0; i < std::ssize(requested); ++i)
+    requested[i] += measures_.sign(active_[i]) * balance.constraint[active_[i]];
+  return requested;
 }
 
-/// Change of the multipliers that closes the constraints, of which a step without them misses so much more.
+/// Returns the change of the multipliers that satisfies the constraints, the violations of which a step without them
+/// increases by `more`.
 Eigen::VectorXd Saddle::closing(const Balance& balance, const Eigen::VectorXd& more) const {
-  return scale_.cwiseProduct(schur_.solve(scale_.cwiseProduct(asked_of(balance, more))));
+  return scale_.cwiseProduct(schur_.solve(scale_.cwiseProduct(requested_of(balance, more))));
 }
 
-/// Adds to a step without constraints what closes them.
+/// Adds the change that satisfies the constraints to a step without them.
 void Saddle::meet_constraints(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd& change) const {
   change.setZero(measures_.count());
   if (active_.empty()) return;

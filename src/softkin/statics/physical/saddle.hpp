@@ -11,7 +11,7 @@
 
 namespace softkin::physical {
 
-/// What the matrix of a factorisation looks like.
+/// The layout of a factorised matrix.
 struct Layout {
   linear::BlockPattern pattern;  // over vertices
   supports::ReducedMatrix reduced;
@@ -21,14 +21,16 @@ struct Layout {
 };
 
 /// The equations of a Newton step, factorised: K step + G change = -force, G^T step - C change = -sign constraint, with
-/// the stiffness K over the unknowns, a column of G per active constraint, its slope with its sign, and their
-/// compliances C >= 0, 0 but for sealed chambers. Where constraints contradict each other, what misses them least.
+/// the stiffness K over the unknowns, a column of G per active constraint, its gradient with its sign, and their
+/// compliances C >= 0, 0 except for sealed chambers. Constraints that contradict each other are satisfied by least
+/// squares.
 ///
-/// Tendons that rub add few columns: K becomes K + U V^T, by Woodbury's formula, and a measure's multiplier pulls with
-/// another column than its slope. As friction is either whole or stiff, a step takes it by its secants over that step.
+/// Tendons with friction add few columns: K becomes K + U V^T, by Woodbury's formula, and the force of a measure's
+/// multiplier is another column than the measure's gradient. As friction is either fully mobilised or stiff, a step
+/// takes it by its secants over that step.
 ///
-/// K may hold pressures, each with a negative eigenvalue of its own: what is left of K's inertia is that of the shape
-/// with pressures that follow it (Haynsworth 1968).
+/// K may contain pressures, each with a negative eigenvalue of its own: the other eigenvalues have the inertia of the
+/// shape with pressures that follow it (Haynsworth 1968).
 ///
 /// source  Nocedal, Wright 2006, Numerical optimization, section 16.2: the Schur complement of the constraints
 class Saddle {
@@ -38,60 +40,60 @@ class Saddle {
   /// measures  must outlive the object
   Saddle(const supports::ActuatorMeasures& measures, std::shared_ptr<const Layout> layout, Precision usual);
 
-  /// Which measures are active, per actuator.
+  /// Sets which measures are active, per actuator.
   void activate(const std::vector<bool>& active);
   /// G, to be written for these before factorise() or couple().
   [[nodiscard]] Eigen::MatrixXd& slopes() { return slopes_; }
   /// C, the same; no rows: 0.
   [[nodiscard]] Eigen::VectorXd& compliance() { return compliance_; }
-  /// What the multipliers pull with; no columns: with G.
+  /// The forces of the multipliers, a column each; no columns: those of G.
   [[nodiscard]] Eigen::MatrixXd& pulls() { return pulls_; }
   [[nodiscard]] TendonColumns& tendons() { return tendons_; }
-  /// The slips at which what the last factorisation holds is to be taken; see Balance.
+  /// The slips at which friction of tendons in the last factorisation is taken; see Balance.
   [[nodiscard]] Eigen::VectorXd& slips() { return slips_; }
 
-  /// What is factorised.
+  /// The matrix to factorise.
   struct Matrix {
     const std::shared_ptr<const Layout>& layout;
     LargeVector<double>& values;  // of its columns
     double shift;                 // times the mean diagonal, added to the values
     LargeVector<double>* spare;   // memory that may be lost; null: none
   };
-  /// step  of this balance, to be solved for together with the responses, for first_step(); null: of none
+  /// step  the balance of a step that is solved for together with the responses, for first_step(); null: none
   void factorise(const Matrix& matrix, const Balance* step, Team& team);
-  /// What the last factorisation holds of the active measures, from other slopes.
+  /// Computes the responses and the Schur complement of the last factorisation with other slopes.
   void couple(Team& team);
 
-  /// Every column becomes nearly its solution, as linear::MixedLdlt says, with the last factorisation.
+  /// Replaces every column by nearly its solution with the last factorisation; for the accuracy see linear::MixedLdlt.
   void solve(Eigen::Ref<Eigen::MatrixXd> right_sides, Team& team);
 
   /// Newton step of a balance; change: of all multipliers.
   void step(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd& change, Team& team);
-  /// That of the balance with which the last factorisation was made.
+  /// Newton step of the balance with which the last factorisation was made.
   void first_step(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd& change);
-  /// What the next step would change multipliers by, without one: G^T K^-1 force needs no solve, but with tendons that
-  /// rub.
+  /// Changes the multipliers as the next step would: G^T K^-1 force needs no solve, except with tendons that have
+  /// friction.
   void correct_multipliers(const Balance& balance, Eigen::VectorXd& multipliers, Team& team);
 
   [[nodiscard]] linear::MixedLdlt& factor() { return factor_; }
   [[nodiscard]] const linear::MixedLdlt& factor() const { return factor_; }
-  /// Asked of the next factorisation.
+  /// The precision of the next factorisation.
   [[nodiscard]] Precision& precision() { return precision_; }
   /// Constraints of the factorisation.
   [[nodiscard]] const std::vector<Index>& active() const { return active_; }
   /// K^-1 pulls
   [[nodiscard]] const Eigen::MatrixXd& responses() const { return responses_; }
-  /// S, which makes the diagonal of the next 1.
+  /// S, which scales the diagonal of the Schur complement to 1.
   [[nodiscard]] const Eigen::VectorXd& scale() const { return scale_; }
   /// S (G^T K^-1 pulls + C) S; singular where constraints depend on each other.
   [[nodiscard]] const MinimumNorm& schur() const { return schur_; }
 
-  /// Of the last factorisation.
+  /// The diagonal and the inertia of the last factorisation.
   struct Spectrum {
     double stiffest = 0;  // the largest of the diagonal [N/mm],
     double mean = 0;      // and their mean
-    int negative = 0;     // negative eigenvalues, but those that pressures have of their own,
-    int unstable = 0;     // and those that the constraints leave
+    int negative = 0;     // negative eigenvalues, except those of pressures,
+    int unstable = 0;     // and those that remain under the constraints
   };
   [[nodiscard]] const Spectrum& spectrum() const { return spectrum_; }
 
@@ -108,7 +110,7 @@ class Saddle {
   void rub(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd& change);
   void complete(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd& change);
   [[nodiscard]] Eigen::MatrixXd followed(const Eigen::Ref<const Eigen::MatrixXd>& moves) const;
-  [[nodiscard]] Eigen::VectorXd asked_of(const Balance& balance, const Eigen::VectorXd& more) const;
+  [[nodiscard]] Eigen::VectorXd requested_of(const Balance& balance, const Eigen::VectorXd& more) const;
   [[nodiscard]] Eigen::VectorXd closing(const Balance& balance, const Eigen::VectorXd& more) const;
   void meet_constraints(const Balance& balance, Eigen::VectorXd& step, Eigen::VectorXd& change) const;
 
@@ -121,15 +123,15 @@ class Saddle {
   Eigen::VectorXd compliance_;
   TendonColumns tendons_;
   Eigen::VectorXd slips_;
-  /// What tendons' columns make of the responses.
-  struct Rubbing {
+  /// The contribution of tendons' columns to the responses.
+  struct CableFriction {
     Eigen::MatrixXd free{};       // K^-1 of the pulls without these columns,
     Eigen::MatrixXd along{};      // and of their U
     Eigen::MatrixXd stretches{};  // U^T along
-    Eigen::MatrixXd rates{};      // with which V^T is that by the turns and rates U^T
+    Eigen::MatrixXd rates{};      // V^T is the part by turning angles plus rates U^T
     Eigen::MatrixXd inverse{};    // (1 + V^T along)^-1
   };
-  Rubbing rubbing_;
+  CableFriction friction_;
   Eigen::MatrixXd solutions_;   // of the last factorisation: responses, then the step without constraints
   Eigen::MatrixXd in_columns_;  // right-hand sides in the order of the layout, where it has its own
   Eigen::VectorXd scale_;

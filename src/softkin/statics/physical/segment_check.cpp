@@ -6,39 +6,39 @@ namespace softkin::physical {
 
 namespace {
 
-/// Of the secant, that the tangent at the begin may miss its end by for that alone to be enough; that the tangent at
-/// either end may miss the other end by, and both together, where both are known.
-constexpr double most_missed_ahead = 0.1, most_missed_at_an_end = 0.4, most_missed_together = 0.2;
-/// Newton's step in the middle of the curve by the tangents may be so long, over the secant.
-constexpr double most_off_balance = 0.05;
-/// Segments that move no vertex farther than this share of the diagonal are not checked.
-constexpr double least_checked = 1e-3;
-/// Segments are halved so many times, with so many corrections in all.
-constexpr int most_halvings = 7, most_middle_corrections = 60;
-/// A middle may be so far from its equilibrium, over the secant.
+/// Maximum errors of tangents, over the secant: of the tangent at the begin if it is to suffice alone; of the tangents
+/// at either end, and of their sum, if both are known.
+constexpr double max_missed_ahead = 0.1, max_missed_at_an_end = 0.4, max_missed_together = 0.2;
+/// Maximum Newton step in the middle of the curve that the tangents define, over the secant.
+constexpr double max_off_balance = 0.05;
+/// Segments that move no vertex farther than this fraction of the diagonal are not checked.
+constexpr double min_checked = 1e-3;
+/// Maximum number of successive halvings of a segment, and of all corrections of middles.
+constexpr int max_segment_halvings = 7, max_middle_corrections = 60;
+/// Accuracy of the equilibrium in a middle, over the secant.
 constexpr double middle_accuracy = 1e-3;
-/// Of a segment, over which supports move for a tangent.
+/// Fraction of a segment over which supports move for a tangent.
 constexpr double rate_difference = 1e-3;
 
 }  // namespace
 
 bool SegmentCheck::is_short(const System& system, double move_mm) {
-  return move_mm <= least_checked * system.model().diagonal_mm;
+  return move_mm <= min_checked * system.model().diagonal_mm;
 }
 
-SegmentCheck::SegmentCheck(Settler& settler, StepTracer& tracer, const Equilibria::Options& options, const Demand& from,
-                           const Demand& to)
-    : ArcLength(settler, tracer, options, {from, to}) {}
+SegmentCheck::SegmentCheck(Corrector& corrector, StepTracer& tracer, const Equilibria::Options& options,
+                           const LoadState& from, const LoadState& to)
+    : ArcLength(corrector, tracer, options, {from, to}) {}
 
 double SegmentCheck::size(const Points& moves) const {
   return system_.largest_move(Points::Zero(moves.rows(), 3), moves);
 }
 
-/// Newton's step in the middle of a segment is short; a step of the factorisation at hand.
+/// Is Newton's step in the middle of a segment short? The step uses the current factorisation.
 ///
-/// aside  of the middle of the curve, from that of the secant
+/// aside  offset of the middle of the curve from the middle of the secant
 bool SegmentCheck::is_balanced_between(const SegmentEnd& low, const SegmentEnd& high, const Points& aside) {
-  const Demand there = demand(0.5 * (low.factor + high.factor));
+  const LoadState there = load_state(0.5 * (low.factor + high.factor));
   Iterate middle = *low.at;
   middle.positions = 0.5 * (low.at->positions + high.at->positions) + aside;
   middle.multipliers = 0.5 * (low.at->multipliers + high.at->multipliers);
@@ -47,13 +47,14 @@ bool SegmentCheck::is_balanced_between(const SegmentEnd& low, const SegmentEnd& 
   evaluate(high);
   return step && !balance.inverted &&
          system_.freedoms().size_of(*step, middle.positions).largest <=
-             most_off_balance * size(high.at->positions - low.at->positions);
+             max_off_balance * size(high.at->positions - low.at->positions);
 }
 
-/// Does the tangent at the begin predict the end? Where it was extrapolated the end is enough.
+/// Does the tangent at the begin predict the end? If the prediction was an extrapolation, the error at the end
+/// suffices.
 bool SegmentCheck::is_predicted(const SegmentEnd& low, const SegmentEnd& high, const Points& predicted) {
   const Points secant = high.at->positions - low.at->positions;
-  if (size(predicted - secant) > most_missed_ahead * size(secant)) return false;
+  if (size(predicted - secant) > max_missed_ahead * size(secant)) return false;
   return low.rate.rows() == 0 || is_balanced_between(low, high, ((high.factor - low.factor) * low.rate - secant) / 4);
 }
 
@@ -61,7 +62,7 @@ bool SegmentCheck::is_predicted(const SegmentEnd& low, const SegmentEnd& high, c
 bool SegmentCheck::is_retraced(const SegmentEnd& low, const SegmentEnd& high) {
   const Points secant = high.at->positions - low.at->positions;
   const Points behind = (high.factor - low.factor) * high.rate - secant;
-  return size(behind) <= most_missed_at_an_end * size(secant) && is_balanced_between(low, high, -behind / 4);
+  return size(behind) <= max_missed_at_an_end * size(secant) && is_balanced_between(low, high, -behind / 4);
 }
 
 bool SegmentCheck::tangents_agree(const SegmentEnd& low, const SegmentEnd& high) const {
@@ -69,9 +70,9 @@ bool SegmentCheck::tangents_agree(const SegmentEnd& low, const SegmentEnd& high)
   const Points secant = high.at->positions - low.at->positions;
   const Points ahead = length * low.rate - secant, behind = length * high.rate - secant;
   const double whole = size(secant);
-  return size(ahead) <= most_missed_ahead * whole ||
-         (size(ahead) <= most_missed_at_an_end * whole && size(behind) <= most_missed_at_an_end * whole &&
-          size(ahead + behind) <= most_missed_together * whole);
+  return size(ahead) <= max_missed_ahead * whole ||
+         (size(ahead) <= max_missed_at_an_end * whole && size(behind) <= max_missed_at_an_end * whole &&
+          size(ahead + behind) <= max_missed_together * whole);
 }
 
 bool SegmentCheck::agree(const SegmentEnd& low, const SegmentEnd& high) {
@@ -82,7 +83,7 @@ bool SegmentCheck::agree(const SegmentEnd& low, const SegmentEnd& high) {
 SegmentCheck::Verdict SegmentCheck::check(SegmentEnd low, SegmentEnd high, const Points& predicted, bool changed) {
   if (is_predicted(low, high, predicted)) return Verdict::confirmed;
   const bool extrapolated = low.rate.rows() == 0;
-  // the factorisation at hand is of a shape nearby, and mostly good enough
+  // the current factorisation is of a nearby shape, and mostly good enough
   const bool at_hand = !changed && !turns();
   if (at_hand) {
     high.rate = rate_towards(low, high);
@@ -102,7 +103,7 @@ SegmentCheck::Verdict SegmentCheck::check(SegmentEnd low, SegmentEnd high, const
 SegmentCheck::Verdict SegmentCheck::check_by_middles(const SegmentEnd& low, const SegmentEnd& high) {
   const double energy = report_.energy, gradient_norm = report_.gradient_norm, step_mm = report_.step_mm;
   iterations_ = report_.iterations;
-  const Verdict verdict = check_halves(low, high, most_halvings);
+  const Verdict verdict = check_halves(low, high, max_segment_halvings);
   report_.energy = energy;
   report_.gradient_norm = gradient_norm;
   report_.step_mm = step_mm;
@@ -112,69 +113,69 @@ SegmentCheck::Verdict SegmentCheck::check_by_middles(const SegmentEnd& low, cons
 
 /// Do supports turn on the path?
 bool SegmentCheck::turns() const {
-  return system_.placement().largest_turn(demand(0), demand(1)) > 0;
+  return system_.placement().largest_turn(load_state(0), load_state(1)) > 0;
 }
 
-/// Of the workspace, which a middle leaves with its own.
+/// Evaluates an end of a segment, because the workspace contains the evaluation of a middle.
 void SegmentCheck::evaluate(const SegmentEnd& end) {
   Balance balance;
-  system_.evaluate(*end.at, demand(end.factor), settler_.active, work_, balance, team_);
+  system_.evaluate(*end.at, load_state(end.factor), corrector_.active, work_, balance, team_);
 }
 
 bool SegmentCheck::factorise(const SegmentEnd& end) {
-  return settler_.prepare(demand(end.factor), *end.at) >= 0;
+  return corrector_.prepare(load_state(end.factor), *end.at) >= 0;
 }
 
-/// The tangent of the path at one end, by the factorisation at hand. What is held on an arc moves along its tangent on
-/// a small part of the segment alone.
+/// Returns the tangent of the path at one end, with the current factorisation. A support that moves on an arc follows
+/// its tangent over a small part of the segment only.
 Points SegmentCheck::rate_towards(const SegmentEnd& other, const SegmentEnd& at) {
   const double change = (turns() ? rate_difference : 1) * (other.factor - at.factor);
-  return first_order_moves(system_, demand(at.factor), demand(at.factor + change), settler_.active, work_, team_,
-                           *at.at) /
+  return first_order_moves(system_, load_state(at.factor), load_state(at.factor + change), corrector_.active, work_,
+                           team_, *at.at) /
          change;
 }
 
 SegmentCheck::Verdict SegmentCheck::check_halves(const SegmentEnd& low, const SegmentEnd& high, int depth) {
   const bool short_segment = is_short(system_, system_.largest_move(low.at->positions, high.at->positions)) &&
                              is_short(system_, (high.factor - low.factor) * size(low.rate));
-  if (short_segment || (depth < most_halvings && agree(low, high))) return Verdict::confirmed;
-  if (depth == 0 || report_.iterations - iterations_ > most_middle_corrections) return Verdict::unclear;
+  if (short_segment || (depth < max_segment_halvings && agree(low, high))) return Verdict::confirmed;
+  if (depth == 0 || report_.iterations - iterations_ > max_middle_corrections) return Verdict::unclear;
   Point found;
   const Verdict verdict = find_middle(low, high, found);
   if (verdict != Verdict::confirmed) return verdict;
-  if (corrected_ <= most_off_balance * size(high.at->positions - low.at->positions) && tangents_agree(low, high))
+  if (corrected_ <= max_off_balance * size(high.at->positions - low.at->positions) && tangents_agree(low, high))
     return Verdict::confirmed;
-  const SegmentEnd middle{&found.at, found.share, rate(found, rate_difference * (high.factor - low.factor)),
+  const SegmentEnd middle{&found.at, found.load_factor, rate(found, rate_difference * (high.factor - low.factor)),
                           found.negative};
   const Verdict first = check_halves(low, middle, depth - 1);
   return first == Verdict::confirmed ? check_halves(middle, high, depth - 1) : first;
 }
 
-/// Change of the positions by the load factor, over a small change of that.
+/// Returns the derivative of the positions by the load factor, as a difference over a small change.
 Points SegmentCheck::rate(const Point& point, double change) const {
   Points ahead = point.at.positions;
   system_.freedoms().move(point.ahead, change / point.slope, ahead);
-  system_.placement().hold(demand(point.share + change), ahead);
+  system_.placement().hold(load_state(point.load_factor + change), ahead);
   return (ahead - point.at.positions) / change;
 }
 
-/// The equilibrium on the plane across the secant, half way along the cubic through both ends whose tangents are no
-/// longer than the secant.
+/// Finds the equilibrium on the plane normal to the secant, from the middle of the cubic through both ends whose
+/// tangents are no longer than the secant.
 SegmentCheck::Verdict SegmentCheck::find_middle(const SegmentEnd& low, const SegmentEnd& high, Point& middle) {
   const double length = high.factor - low.factor;
   const Points secant = high.at->positions - low.at->positions;
   const double whole = size(secant);
   const auto shortened = [&](const SegmentEnd& end) { return std::min(1.0, whole / (length * size(end.rate))); };
   const double begins = shortened(low), ends = shortened(high);
-  Point from{.at = *low.at, .share = low.factor};
+  Point from{.at = *low.at, .load_factor = low.factor};
   middle = from;
-  middle.share = 0.5 * (low.factor + high.factor) + length * (begins - ends) / 8;
+  middle.load_factor = 0.5 * (low.factor + high.factor) + length * (begins - ends) / 8;
   middle.at.positions =
       0.5 * (low.at->positions + high.at->positions) + length * (begins * low.rate - ends * high.rate) / 8;
   middle.at.multipliers = 0.5 * (low.at->multipliers + high.at->multipliers);
-  const Demand there = demand(middle.share);
+  const LoadState there = load_state(middle.load_factor);
   system_.placement().hold(there, middle.at.positions);
-  settler_.give_loads(there, middle.at);
+  corrector_.give_loads(there, middle.at);
   from.ahead.resize(system_.freedoms().size());
   system_.freedoms().reduce(secant, middle.at.positions, from.ahead);
   if (!(from.ahead.norm() > 0)) return Verdict::unclear;
@@ -184,9 +185,9 @@ SegmentCheck::Verdict SegmentCheck::find_middle(const SegmentEnd& low, const Seg
   bool found = correct(from, 0.5 * whole, middle_accuracy * whole, middle);
   const auto is_passed = [&] {
     return middle.negative > std::max(low.negative, high.negative) || !(middle.slope > 0) ||
-           !(low.factor < middle.share && middle.share < high.factor);
+           !(low.factor < middle.load_factor && middle.load_factor < high.factor);
   };
-  // what is stiff buckles where it is pressed by a shape that is not quite the equilibrium
+  // at a shape that is not quite an equilibrium, compressed stiff parts may seem to buckle
   if (found && is_passed()) found = correct(from, 0.5 * whole, options_.tolerance_mm, middle);
   corrected_ = system_.largest_move(begun, middle.at.positions);
   const bool held = found && holds(middle), passed = found && is_passed();

@@ -15,13 +15,13 @@ struct SegmentEnd {
 /// Checks whether two equilibria are the ends of one segment of a load path without a limit point in between: a step
 /// whose corrector converged may have passed one, and then ends on another branch, which may be as stable.
 ///
-/// A segment is confirmed where the tangent at one end predicts the other, or where the tangents at both ends agree
-/// with its secant, and where besides the middle of the curve by these tangents is nearly an equilibrium: under many
-/// times a limit load tangents may agree by chance. Else the equilibrium in the middle of the shapes, not of the loads,
-/// is found across the secant (the load factor is an unknown, so it exists on an unstable branch, too): if it is
-/// unstable, or its load factor is not between those of the ends, a limit point is passed; else both halves are
-/// checked. Half of the loads would not do, since a limit load may be any fraction of what is requested, while the
-/// shapes on the way to and from a limit point are spread over the whole secant.
+/// A segment is confirmed if the tangent at one end predicts the other end, or the tangents at both ends agree with its
+/// secant, and if in addition the middle of the curve by these tangents is nearly an equilibrium: under many times a
+/// limit load tangents may agree by chance. Otherwise the equilibrium in the middle of the shapes, not of the loads, is
+/// found across the secant (the load factor is an unknown, so it exists on an unstable branch, too). If it is unstable,
+/// or its load factor is not between those of the ends, a limit point is passed; otherwise both halves are checked.
+/// Half of the loads would not do, since a limit load may be any fraction of the requested one, while the shapes before
+/// and after a limit point are spread over the whole secant.
 ///
 /// source  Crisfield 1991, Non-linear finite element analysis of solids and structures 1, chapter 9
 class SegmentCheck : ArcLength {
@@ -29,18 +29,18 @@ class SegmentCheck : ArcLength {
   enum class Verdict { confirmed, passes_limit_point, unclear, interrupted };
 
   /// All must outlive the object.
-  SegmentCheck(Settler& settler, StepTracer& tracer, const Equilibria::Options& options, const Demand& from,
-               const Demand& to);
+  SegmentCheck(Corrector& corrector, StepTracer& tracer, const Equilibria::Options& options, const LoadState& from,
+               const LoadState& to);
 
-  /// Is a segment that moves a vertex by so much too short to be checked?
+  /// Is a segment with this largest move of a vertex too short to be checked?
   [[nodiscard]] static bool is_short(const System& system, double move_mm);
 
-  /// Of a step that was taken, whose last factorisation is that of a shape near its end.
+  /// Checks an accepted step, whose last factorisation is of a shape near its end.
   ///
   /// low        without a rate where the end was extrapolated from the equilibria before
   /// high       without a rate
   /// predicted  moves that the step began with [mm]
-  /// changed    cables that were held slacken, or others pull: the factorisation at hand is of other ones
+  /// changed    has the set of active cables changed: the current factorisation is of the other set
   [[nodiscard]] Verdict check(SegmentEnd low, SegmentEnd high, const Points& predicted, bool changed);
 
   /// Has the workspace no longer a factorisation near the end?
@@ -63,7 +63,7 @@ class SegmentCheck : ArcLength {
   [[nodiscard]] double size(const Points& moves) const;
 
   int iterations_ = 0;
-  double corrected_ = 0;  // by what the last middle moved from the cubic [mm]
+  double corrected_ = 0;  // distance of the last middle from the cubic [mm]
   bool lost_factor_ = false;
 };
 

@@ -19,7 +19,7 @@ struct Weights {
   }
 };
 
-/// Coefficients of the splines through so many values, per value.
+/// Returns the coefficients of the splines through `count` values, per value.
 Eigen::MatrixXd coefficients_of(Index count) {
   const Index size = count + 2;
   Eigen::MatrixXd equations = Eigen::MatrixXd::Zero(size, size), values = Eigen::MatrixXd::Zero(size, count);
@@ -33,7 +33,7 @@ Eigen::MatrixXd coefficients_of(Index count) {
   return inverse_of(equations) * values;
 }
 
-/// Values along one axis replaced by coefficients.
+/// Replaces the values along one axis by spline coefficients.
 void filter(int axis, std::array<Index, 3>& counts, std::vector<Vec3>& values) {
   const Eigen::MatrixXd of = coefficients_of(counts[axis]);
   std::array<Index, 3> wider = counts;

@@ -8,26 +8,26 @@ namespace softkin::physical {
 
 namespace {
 
-// Shifts are shares of the stiffness' mean diagonal.
-constexpr double least_shift = 1e-9, most_shift = 1e3;
-constexpr double close_shift = 1.1;  // over the one that is not enough
-constexpr int most_inverse_iterations = 60;
-constexpr double settled = 1e-6;  // relative change of the curvature
+// Shifts are relative to the mean diagonal of the stiffness.
+constexpr double min_shift = 1e-9, max_shift = 1e3;
+constexpr double close_shift = 1.1;  // relative to the largest shift that is not enough
+constexpr int max_inverse_iterations = 60;
+constexpr double accuracy = 1e-6;  // relative change of the curvature
 
-// Inverse iterations to what is nearly the softest change of shape, the share of the diagonal by which it is tried, and
-// of its curvature by which that may have changed.
+// Inverse iterations that approximate the softest change of shape, the trial move along it relative to the diagonal,
+// and the relative change of its curvature that is tolerated.
 constexpr int soft_iterations = 3;
 constexpr double difference = 1e-6, as_stiff = 0.25;
 
 }  // namespace
 
-bool as_stiff_as_factorised(const System& system, const Iterate& at, const Demand& demand,
+bool as_stiff_as_factorised(const System& system, const Iterate& at, const LoadState& load_state,
                             const std::vector<bool>& active, const Balance& balance, Workspace& work, Team& team) {
   if (!work.factored.softest) {
     Balance right;
     right.constraint = Eigen::VectorXd::Zero(system.actuators());
     Eigen::VectorXd next, multipliers;
-    Workspace::Softest softest{lopsided(system.freedoms().size()).normalized(), 0};
+    Workspace::Softest softest{unsymmetric(system.freedoms().size()).normalized(), 0};
     for (int i = 0; i < soft_iterations; ++i) {
       right.force = -softest.direction;
       system.drop_pressures(right.force);
@@ -45,39 +45,39 @@ bool as_stiff_as_factorised(const System& system, const Iterate& at, const Deman
   const double reach = difference * system.model().diagonal_mm / largest;
   system.freedoms().move(direction, reach, beside.positions);
   Balance there;
-  system.evaluate(beside, demand, active, work, there, team);
+  system.evaluate(beside, load_state, active, work, there, team);
   Eigen::VectorXd moves = direction;
   system.drop_pressures(moves);
   double curvature = moves.dot(there.force - balance.force) / reach;
-  for (Index a = 0; a < std::ssize(balance.compliance); ++a)  // of what is sealed in chambers
+  for (Index a = 0; a < std::ssize(balance.compliance); ++a)  // of fillings of sealed chambers
     if (active[a] && balance.compliance[a] > 0)
       curvature += std::pow((there.constraint[a] - balance.constraint[a]) / reach, 2) / balance.compliance[a];
   const double expected = work.factored.softest->curvature;
   return std::abs(curvature - expected) <= as_stiff * expected;
 }
 
-LowestMode lowest_mode(const System& system, const Iterate& at, const Demand& demand, const std::vector<bool>& active,
-                       Workspace& work, Team& team, SolveReport& report) {
+LowestMode lowest_mode(const System& system, const Iterate& at, const LoadState& load_state,
+                       const std::vector<bool>& active, Workspace& work, Team& team, SolveReport& report) {
   Balance balance;
-  system.evaluate(at, demand, active, work, balance, team);
+  system.evaluate(at, load_state, active, work, balance, team);
   double mean = 0;
   const auto negative = [&](double shift) {
     ++report.factorisations;
     ++report.factorisations_in_double;
-    const int count = system.factorise(at, demand, active, balance, {System::Stiffness::exact, shift}, work, team);
+    const int count = system.factorise(at, load_state, active, balance, {System::Stiffness::exact, shift}, work, team);
     if (shift == 0) mean = work.saddle.spectrum().mean;
     return count;
   };
   const Temporarily twice(work.saddle.precision(),
-                          linear::MixedLdlt::Precision::twice);  // curvatures are differences of what hardly differs
+                          linear::MixedLdlt::Precision::twice);  // curvatures are differences of nearly equal numbers
   LowestMode mode;
   mode.unstable = negative(0);
   mode.mean = mean;
   if (mode.unstable == 0) return mode;
-  double low = 0, high = least_shift;
+  double low = 0, high = min_shift;
   for (; negative(high) > 0; high *= 10) {
     low = high;
-    if (high > most_shift) return mode;
+    if (high > max_shift) return mode;
   }
   while (low > 0 && high > close_shift * low) {
     const double middle = std::sqrt(low * high);
@@ -87,16 +87,16 @@ LowestMode lowest_mode(const System& system, const Iterate& at, const Demand& de
   // the constraints are met by every step, so that the iteration stays among the directions that keep them
   Balance right;
   right.constraint = Eigen::VectorXd::Zero(system.actuators());
-  Eigen::VectorXd vector = lopsided(system.freedoms().size()), next, multipliers;
+  Eigen::VectorXd vector = unsymmetric(system.freedoms().size()), next, multipliers;
   system.drop_pressures(vector);
   vector.normalize();
-  for (int i = 0; i < most_inverse_iterations; ++i) {
+  for (int i = 0; i < max_inverse_iterations; ++i) {
     right.force = -vector;
     work.saddle.step(right, next, multipliers, team);
     system.drop_pressures(next);
     const double curvature = 1 / vector.dot(next) - high * mean;
     vector = next.normalized();
-    if (i > 2 && std::abs(curvature - mode.curvature) < settled * std::abs(curvature)) break;
+    if (i > 2 && std::abs(curvature - mode.curvature) < accuracy * std::abs(curvature)) break;
     mode.curvature = curvature;
   }
   Index largest = 0;
@@ -107,16 +107,16 @@ LowestMode lowest_mode(const System& system, const Iterate& at, const Demand& de
 
 namespace {
 
-/// Lagrangian of the shape, but for constants: potential, and active measures by multipliers that are given; what is
-/// sealed in chambers by what it stores, kept volumes by the pressures of another shape.
-double lagrangian(const System& system, const Demand& demand, const Balance& balance, const Points& positions,
+/// Returns the Lagrangian of the shape, except for constants: the potential, active measures with given multipliers,
+/// the energy of fillings of sealed chambers, and kept volumes with the pressures of another shape.
+double lagrangian(const System& system, const LoadState& load_state, const Balance& balance, const Points& positions,
                   const Points& pressed, const Eigen::VectorXd& multipliers) {
   double energy = balance.energy + system.pressure_work(pressed, balance.force);
   for (Index a = 0; a < system.actuators(); ++a) {
     if (!system.measures().measures(a)) continue;
     const Filling* filling = system.measures().filling(a);
-    if (filling && filling->gives_way())
-      energy += filling->energy(demand.actuation[a], system.measures().value(a, positions));
+    if (filling && filling->yields())
+      energy += filling->energy(load_state.actuation[a], system.measures().value(a, positions));
     else if (multipliers[a] != 0)
       energy += system.measures().sign(a) * multipliers[a] * system.measures().value(a, positions);
   }
@@ -125,15 +125,15 @@ double lagrangian(const System& system, const Demand& demand, const Balance& bal
 
 }  // namespace
 
-Descent step_down(const System& system, const Demand& demand, const std::vector<bool>& active, double& shift,
+Descent step_down(const System& system, const LoadState& load_state, const std::vector<bool>& active, double& shift,
                   Iterate& at, Workspace& work, Team& team) {
   Descent down;
   Balance balance, there;
   Eigen::VectorXd step, change;
-  for (; shift < most_shift; shift *= 4) {
-    system.evaluate(at, demand, active, work, balance, team);
+  for (; shift < max_shift; shift *= 4) {
+    system.evaluate(at, load_state, active, work, balance, team);
     ++down.factorisations;
-    const int modes = system.factorise(at, demand, active, balance, {System::Stiffness::exact, shift}, work, team);
+    const int modes = system.factorise(at, load_state, active, balance, {System::Stiffness::exact, shift}, work, team);
     down.factorisations_in_double += work.saddle.factor().in_double();
     if (modes > 0) continue;
     work.saddle.step(balance, step, change, team);
@@ -142,23 +142,23 @@ Descent step_down(const System& system, const Demand& demand, const std::vector<
     double scale = 1;
     if (!advance_clear(system, step, scale, work, trial.positions, team)) continue;
     trial.multipliers += scale * change;
-    system.evaluate(trial, demand, active, work, there, team);
+    system.evaluate(trial, load_state, active, work, there, team);
     if (there.forbidden || !there.force.allFinite()) continue;
-    if (!(lagrangian(system, demand, there, trial.positions, at.positions, at.multipliers) <
-          lagrangian(system, demand, balance, at.positions, at.positions, at.multipliers)))
+    if (!(lagrangian(system, load_state, there, trial.positions, at.positions, at.multipliers) <
+          lagrangian(system, load_state, balance, at.positions, at.positions, at.multipliers)))
       continue;
     at = std::move(trial);
-    shift = std::max(least_shift, shift / 4);
+    shift = std::max(min_shift, shift / 4);
     down.lower = true;
     break;
   }
   return down;
 }
 
-double potential(const System& system, const Iterate& at, const Demand& demand, const std::vector<bool>& active,
+double potential(const System& system, const Iterate& at, const LoadState& load_state, const std::vector<bool>& active,
                  Workspace& work, Team& team) {
   Balance balance;
-  system.evaluate(at, demand, active, work, balance, team);
+  system.evaluate(at, load_state, active, work, balance, team);
   return balance.energy + balance.load_energy;
 }
 

@@ -1,12 +1,12 @@
 #pragma once
 
-#include <softkin/statics/physical/settling.hpp>
+#include <softkin/statics/physical/corrector.hpp>
 #include <string>
 #include <utility>
 
 namespace softkin::physical {
 
-/// Notes what each step of a continuation costs and why it is taken or not, in SolveReport::trace.
+/// Records the cost of each step of a continuation, and why it is taken or not, in SolveReport::trace.
 class StepTracer {
  public:
   /// report must outlive the object
@@ -47,20 +47,20 @@ class StepTracer {
   Counts before_;
 };
 
-/// What goes from equilibrium to equilibrium works with.
+/// Base of classes that follow a path of equilibria: references to their common data.
 class Follower {
  protected:
   /// All must outlive the object.
-  Follower(Settler& settler, StepTracer& tracer, const Equilibria::Options& options)
-      : settler_(settler),
+  Follower(Corrector& corrector, StepTracer& tracer, const Equilibria::Options& options)
+      : corrector_(corrector),
         tracer_(tracer),
         options_(options),
-        system_(settler.system()),
-        work_(settler.work()),
-        team_(settler.team()),
-        report_(settler.report()) {}
+        system_(corrector.system()),
+        work_(corrector.work()),
+        team_(corrector.team()),
+        report_(corrector.report()) {}
 
-  Settler& settler_;
+  Corrector& corrector_;
   StepTracer& tracer_;
   const Equilibria::Options& options_;
   const System& system_;

@@ -5,13 +5,13 @@ namespace softkin::physical {
 
 namespace {
 
-/// A body that is held is this many times as stiff as the robot about is: modulus times diagonal.
-constexpr double firmness = 1e4;
-/// Share of that at which a body is nearly released.
+/// Stiffness of a held body, over the approximate stiffness of the robot: modulus times diagonal.
+constexpr double stiffness_scale = 1e4;
+/// Fraction of that stiffness at which a body is nearly released.
 constexpr double loosest = 1e-8;
 
-/// Share of the stiffness at a command from 0 to 1, and its derivative.
-double firm_share(double command) {
+/// Fraction of the stiffness at a command from 0 to 1, and its derivative.
+double firm_fraction(double command) {
   return (std::pow(loosest, 1 - command) - loosest) / (1 - loosest);
 }
 
@@ -22,7 +22,7 @@ double firm_slope(double command) {
 }  // namespace
 
 Surroundings::Surroundings(const Model& model)
-    : model_(model), stiffest_(firmness * model.contact.modulus_MPa * model.diagonal_mm) {
+    : model_(model), stiffest_(stiffness_scale * model.contact.modulus_MPa * model.diagonal_mm) {
   for (Index a = 0; a < std::ssize(model.actuators); ++a) any_ = any_ || loads(a);
 }
 
@@ -31,7 +31,7 @@ bool Surroundings::loads(Index command) const {
   return actuator.is<ForceCommand>() || actuator.is<HoldCommand>();
 }
 
-/// Adds what a body's springs pull with.
+/// Adds the forces of a body's springs.
 void Surroundings::add_spring(const FreeBody& body, double stiffness, const Points& positions, Points& gradient) const {
   const double each = stiffness / static_cast<double>(body.vertices.size());
   for (const Index v : body.vertices) gradient.row(v) += each * (positions.row(v) - model_.rest.row(v));
@@ -43,16 +43,16 @@ void Surroundings::add_force(const ForceCommand& force, double newtons, Points& 
     gradient(place.vertices[i], force.axis) -= newtons * place.weights[i];
 }
 
-void Surroundings::evaluate(const Iterate& at, const Demand& demand, Scratch& /*scratch*/, Sum& sum,
+void Surroundings::evaluate(const Iterate& at, const LoadState& load_state, Scratch& /*scratch*/, Sum& sum,
                             Team& /*team*/) const {
   if (!any_) return;
   const Points& positions = at.positions;
   double energy = 0;
   for (std::size_t a = 0; a < model_.actuators.size(); ++a) {
-    const double command = demand.actuation[a];
+    const double command = load_state.actuation[a];
     if (const auto* hold = model_.actuators[a].as<HoldCommand>()) {
       const FreeBody& body = model_.bodies[hold->body];
-      const double stiffness = stiffest_ * firm_share(command);
+      const double stiffness = stiffest_ * firm_fraction(command);
       add_spring(body, stiffness, positions, sum.gradient);
       for (const Index v : body.vertices)
         energy += 0.5 * stiffness / static_cast<double>(body.vertices.size()) *
@@ -75,13 +75,13 @@ void Surroundings::add_cliques(linear::Cliques& cliques) {
     for (const Index v : body.vertices) cliques.add(std::array<Index, 1>{v});
 }
 
-void Surroundings::stiffness(const Iterate& /*at*/, const Demand& demand, bool /*projected*/, Scratch& /*scratch*/,
-                             LargeVector<double>& slots, Team& /*team*/) const {
+void Surroundings::stiffness(const Iterate& /*at*/, const LoadState& load_state, bool /*projected*/,
+                             Scratch& /*scratch*/, LargeVector<double>& slots, Team& /*team*/) const {
   if (!any_body()) return;
   std::vector<double> of_body(model_.bodies.size());
   for (std::size_t a = 0; a < model_.actuators.size(); ++a)
     if (const auto* hold = model_.actuators[a].as<HoldCommand>())
-      of_body[hold->body] = stiffest_ * firm_share(demand.actuation[a]);
+      of_body[hold->body] = stiffest_ * firm_fraction(load_state.actuation[a]);
   double* slot = slots.data() + 9 * first_slot_;
   for (std::size_t b = 0; b < of_body.size(); ++b) {
     const std::size_t count = model_.bodies[b].vertices.size();
@@ -90,7 +90,7 @@ void Surroundings::stiffness(const Iterate& /*at*/, const Demand& demand, bool /
   }
 }
 
-void Surroundings::add_change(const Demand& from, const Demand& to, const Points& positions, Scratch& scratch,
+void Surroundings::add_change(const LoadState& from, const LoadState& to, const Points& positions, Scratch& scratch,
                               Points& force, Team& team) const {
   Points slope;
   for (Index a = 0; a < std::ssize(model_.actuators); ++a) {
@@ -106,11 +106,11 @@ void Surroundings::add_change(const Demand& from, const Demand& to, const Points
   }
 }
 
-void Surroundings::add_derivative(Index command, const Demand& demand, const Points& positions, Scratch& /*scratch*/,
-                                  Points& force, Team& /*team*/) const {
+void Surroundings::add_derivative(Index command, const LoadState& load_state, const Points& positions,
+                                  Scratch& /*scratch*/, Points& force, Team& /*team*/) const {
   const Actuator& actuator = model_.actuators[command];
   if (const auto* hold = actuator.as<HoldCommand>())
-    add_spring(model_.bodies[hold->body], stiffest_ * firm_slope(demand.actuation[command]), positions, force);
+    add_spring(model_.bodies[hold->body], stiffest_ * firm_slope(load_state.actuation[command]), positions, force);
   if (const auto* newtons = actuator.as<ForceCommand>()) add_force(*newtons, 1, force);
 }
 

@@ -5,11 +5,11 @@
 
 namespace softkin::physical {
 
-/// What is done to bodies and to the robot: springs that hold bodies where they are at rest, forces on these and at
-/// places of the robot.
+/// Loads from outside on bodies and on the robot: springs that hold bodies at their positions at rest, and forces on
+/// bodies and at places of the robot.
 ///
-/// A body is held by a spring at each of its vertices. Of a command between 0 and 1 their stiffness falls by the same
-/// factor for every part of the way, to nothing at 0: the body settles where it is free while it is being released.
+/// A body is held by a spring at each of its vertices. Between a command of 1 and 0 their stiffness falls by the same
+/// factor over equal parts of the path, to zero at 0, so that the body comes to equilibrium while it is released.
 class Surroundings : public Term {
  public:
   /// model must outlive the object.
@@ -19,26 +19,26 @@ class Surroundings : public Term {
   [[nodiscard]] bool any_body() const { return !model_.bodies.empty(); }
 
   /// Energy of the springs, less the work of the forces.
-  void evaluate(const Iterate& at, const Demand& demand, Scratch& scratch, Sum& sum, Team& team) const override;
+  void evaluate(const Iterate& at, const LoadState& load_state, Scratch& scratch, Sum& sum, Team& team) const override;
 
   /// Adds every vertex of a body.
   void add_cliques(linear::Cliques& cliques) override;
-  void stiffness(const Iterate& at, const Demand& demand, bool projected, Scratch& scratch, LargeVector<double>& slots,
-                 Team& team) const override;
+  void stiffness(const Iterate& at, const LoadState& load_state, bool projected, Scratch& scratch,
+                 LargeVector<double>& slots, Team& team) const override;
 
-  /// A force, or what holds a body.
+  /// Is a command a force on a body or the robot, or the hold of a body?
   [[nodiscard]] bool loads(Index command) const override;
   [[nodiscard]] bool holds(Index command) const { return model_.actuators[command].is<HoldCommand>(); }
-  /// What a command of a force adds to the gradient, linear in it [N].
+  /// Adds the contribution of a force command to the gradient, linear in it [N].
   void add_force(Index command, double newtons, Points& gradient) const {
     add_force(std::get<ForceCommand>(model_.actuators[command].drive), newtons, gradient);
   }
-  /// To first order, from the first demand on.
-  void add_change(const Demand& from, const Demand& to, const Points& positions, Scratch& scratch, Points& force,
+  /// Adds the change to first order, at the load state `from`.
+  void add_change(const LoadState& from, const LoadState& to, const Points& positions, Scratch& scratch, Points& force,
                   Team& team) const override;
-  /// Of a force or a hold.
-  void add_derivative(Index command, const Demand& demand, const Points& positions, Scratch& scratch, Points& force,
-                      Team& team) const override;
+  /// Adds the derivative by a force or hold command.
+  void add_derivative(Index command, const LoadState& load_state, const Points& positions, Scratch& scratch,
+                      Points& force, Team& team) const override;
 
  private:
   void add_spring(const FreeBody& body, double stiffness, const Points& positions, Points& gradient) const;
@@ -49,8 +49,8 @@ class Surroundings : public Term {
   }
 
   const Model& model_;
-  double stiffest_ = 0;  // of a body that is held [N/mm]
-  bool any_ = false;     // is there a command to evaluate
+  double stiffest_ = 0;  // stiffness of the springs at a command of 1 [N/mm]
+  bool any_ = false;     // whether there is a command to evaluate
   std::int64_t first_slot_ = 0;
 };
 

@@ -7,23 +7,24 @@ namespace softkin::physical {
 
 namespace {
 
-/// Of the shape to begin with: strains of half its square.
+/// Mean slope of the initial shape; its strains are half of the square.
 constexpr double mean_slope = 0.3;
-/// How smoothly wrinkles begin, over the square of the strain that the loads call up; and at most. Smoother ones pull
-/// the sheet together, sharper ones make the way long.
+/// Smoothing of wrinkling, over the square of the strain under the loads, and its maximum. With more smoothing the
+/// sheet contracts, with less the path becomes long.
 constexpr double smooth = 50, widest_barrier = 1e-4;
-/// By which pressures are to stretch the sheets at first: below it they are too stiff in their plane for their loads.
-constexpr double least_strain = 1e-3;
-/// Of the first residual, with which its equations are solved.
+/// Strain to which pressures are to stretch the sheets at first; below it the sheets are too stiff in their plane for
+/// their loads.
+constexpr double min_strain = 1e-3;
+/// Relative residual to which the initial shape is solved, and maximum number of iterations.
 constexpr double begin_accuracy = 1e-3;
 constexpr int begin_rounds = 2000;
-/// Where something stands in the way: rounds of going on, and of what is free then how much is gone.
-constexpr int way_rounds = 40;
+/// Motion near an obstacle: maximum number of partial moves, and the fraction of the free motion that each covers.
+constexpr int motion_rounds = 40;
 constexpr double of_free = 0.9;
 
-/// What pushes: loads and what chambers are filled with, whatever that takes.
-Eigen::VectorXd push_of(const System& system, const Demand& there, const std::vector<bool>& active, const Iterate& at,
-                        Workspace& work, Team& team) {
+/// Returns the driving forces: the loads, and unit pressures in the chambers whose measures are active.
+Eigen::VectorXd push_of(const System& system, const LoadState& there, const std::vector<bool>& active,
+                        const Iterate& at, Workspace& work, Team& team) {
   Balance balance;
   system.evaluate(at, there, active, work, balance, team);
   Eigen::VectorXd push = -balance.force, unit(push.size());
@@ -37,7 +38,7 @@ Eigen::VectorXd push_of(const System& system, const Demand& there, const std::ve
   return push;
 }
 
-/// Moves under an even tension, of sheets alone: what elements hold stays.
+/// Moves of the vertices of sheets alone under a uniform tension. Vertices of elements are fixed.
 class Drum {
  public:
   Drum(const System& system, const Points& positions) : system_(system), positions_(positions) {
@@ -45,7 +46,7 @@ class Drum {
     for (const Index v : system.layers()->alone()) alone_[v] = true;
   }
 
-  /// Conjugate gradients.
+  /// Solves for the moves by conjugate gradients.
   [[nodiscard]] Points moves(Eigen::VectorXd left) {
     left = kept(left);
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(left.size()), along = left;
@@ -79,7 +80,7 @@ class Drum {
     system_.freedoms().reduce(forces, positions_, out);
     return out;
   }
-  /// Of vectors over the unknowns, the part that sheets alone have.
+  /// Returns the part of a vector over the unknowns that belongs to vertices of sheets alone.
   [[nodiscard]] Eigen::VectorXd kept(const Eigen::VectorXd& unknowns) const { return reduced(expanded(unknowns)); }
   [[nodiscard]] Eigen::VectorXd stiffness(const Eigen::VectorXd& unknowns) const {
     Points forces = Points::Zero(positions_.rows(), 3);
@@ -92,14 +93,14 @@ class Drum {
   std::vector<bool> alone_;
 };
 
-/// Moves as far as nothing passes through anything: what comes near something stops there, all else goes on.
+/// Moves vertices without penetration: a vertex stops when it comes near a surface, while the others continue.
 void move_clear(const System& system, Points moves, Points& positions, Workspace& work, Team& team) {
   if (!system.contact()) {
     positions += moves;
     return;
   }
   const Contacts& contacts = *system.contacts();
-  for (int round = 0; round < way_rounds && !moves.isZero(0); ++round) {
+  for (int round = 0; round < motion_rounds && !moves.isZero(0); ++round) {
     const double free = contacts.longest_step(positions, positions + moves, *work.contacts, team);
     const double gone = free < 1 ? of_free * free : 1;
     positions += gone * moves;
@@ -112,8 +113,8 @@ void move_clear(const System& system, Points moves, Points& positions, Workspace
 
 }  // namespace
 
-std::optional<Swelling> swell(const System& system, const Demand& there, const std::vector<bool>& active, Iterate& at,
-                              Workspace& work, Team& team) {
+std::optional<Swelling> swell(const System& system, const LoadState& there, const std::vector<bool>& active,
+                              Iterate& at, Workspace& work, Team& team) {
   Iterate begin = at;
   for (Index a = 0; a < system.actuators(); ++a)
     if (!active[a] && system.measures().given_load(a))
@@ -122,13 +123,13 @@ std::optional<Swelling> swell(const System& system, const Demand& there, const s
   const Eigen::VectorXd push = push_of(system, there, active, begin, work, team);
   if (push.isZero(0) || !push.allFinite()) return std::nullopt;
   const Points moves = Drum(system, begin.positions).moves(push);
-  const double slope = system.layers()->mean_slope(moves);  // at 1 N/mm: the tension at which it were 1
+  const double slope = system.layers()->mean_slope(moves);  // under 1 N/mm; the tension for slope 1
   if (!(slope > 0)) return std::nullopt;
   move_clear(system, mean_slope / slope * moves, begin.positions, work, team);
   at = std::move(begin);
   const double strain = slope / system.layers()->stiffness_N_mm();
-  return Swelling{std::min(widest_barrier, smooth * std::pow(std::max(strain, least_strain), 2)),
-                  std::max(1.0, least_strain / strain)};
+  return Swelling{std::min(widest_barrier, smooth * std::pow(std::max(strain, min_strain), 2)),
+                  std::max(1.0, min_strain / strain)};
 }
 
 }  // namespace softkin::physical

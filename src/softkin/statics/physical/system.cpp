@@ -10,10 +10,11 @@
 
 namespace softkin::physical {
 
-Demand between(const Demand& from, const Demand& to, double share) {
-  if (share == 1) return to;
-  return {from.actuation + share * (to.actuation - from.actuation), from.share + share * (to.share - from.share),
-          from.fading + share * (to.fading - from.fading)};
+LoadState between(const LoadState& from, const LoadState& to, double fraction) {
+  if (fraction == 1) return to;
+  return {from.actuation + fraction * (to.actuation - from.actuation),
+          from.load_factor + fraction * (to.load_factor - from.load_factor),
+          from.fading + fraction * (to.fading - from.fading)};
 }
 
 System::System(const Model& model) : System(model, nullptr) {}
@@ -50,7 +51,7 @@ System::System(const Model& given, std::unique_ptr<const Pressures> pressures, c
   }
   if (model.magnetism) magnets_ = std::make_unique<const Magnets>(model, body_.element_slots());
   if (like)
-    share_layout(*like);
+    reuse_layout(*like);
   else
     make_layout();
   if (model.contact.any())
@@ -71,34 +72,34 @@ void System::make_layout() {
                                                          pressures_ ? pressures_->corners : std::vector<Index>());
   supports::ReducedMatrix reduced(*freedoms_, pattern);
   auto symbolic = std::make_shared<const linear::FrontTree>(linear::make_front_tree(reduced.columns()));
-  linear::require_memory(*symbolic, sizeof(float));  // before what takes long
+  linear::require_memory(*symbolic, sizeof(float));  // before the long computations
   coupling_.layout =
       std::make_shared<const Layout>(Layout{std::move(pattern), std::move(reduced), std::move(symbolic),
                                             coupling_.cliques.slots.back(), coupling_.cliques.fingerprint()});
   check_contact_at_rest(model_);
 }
 
-void System::share_layout(const System& like) {
+void System::reuse_layout(const System& like) {
   if (model_.held.fixed != like.model_.held.fixed || model_.rest != like.model_.rest)
     throw InvalidInput("a robot with another number has another mesh or is held otherwise");
   if (coupling_.cliques.fingerprint() !=
-      like.coupling_.layout->fingerprint)  // as where a cable's point is in another element
+      like.coupling_.layout->fingerprint)  // for example if a cable's point lies in another element
     return make_layout();
   freedoms_ = std::make_unique<const supports::Freedoms>(*like.freedoms_, model_);
   coupling_.layout = like.coupling_.layout;
 }
 
-void System::evaluate(const Iterate& at, const Demand& demand, const std::vector<bool>& active, Workspace& work,
+void System::evaluate(const Iterate& at, const LoadState& load_state, const std::vector<bool>& active, Workspace& work,
                       Balance& balance, Team& team) const {
   balance.evaluation = ++work.evaluated;
   work.gradient.setZero(at.positions.rows(), 3);
   Term::Sum sum{work.gradient};
-  each_term(work, [&](const Term& term, Term::Scratch& scratch) { term.evaluate(at, demand, scratch, sum, team); });
+  each_term(work, [&](const Term& term, Term::Scratch& scratch) { term.evaluate(at, load_state, scratch, sum, team); });
   balance.energy = sum.energy;
   balance.inverted = sum.inverted;
   balance.forbidden = sum.forbidden;
   work.left_field = work.left_field || sum.left_field;
-  actuator_loads_.evaluate(at, demand, active, work.slopes, work.gradient, balance);
+  actuator_loads_.evaluate(at, load_state, active, work.slopes, work.gradient, balance);
   balance.force.resize(freedoms_->size());
   freedoms_->reduce(work.gradient, at.positions, balance.force);
 }
@@ -120,13 +121,13 @@ void System::set_time(std::shared_ptr<const ViscousHistory> history, double elap
   body_.set_time(std::move(history), elapsed_s, work.elastic, team);
 }
 
-Demand System::unbalanced(const Iterate& at, const Demand& demand, Workspace& work, Team& team) const {
+LoadState System::unbalanced(const Iterate& at, const LoadState& load_state, Workspace& work, Team& team) const {
   Balance balance;
-  evaluate(at, demand, std::vector<bool>(actuators(), false), work, balance, team);
+  evaluate(at, load_state, std::vector<bool>(actuators(), false), work, balance, team);
   work.fading.force = work.gradient;
-  constexpr double balanced = 1e-6;  // of what elements pull with: Newton's method does not need a way for that
+  constexpr double balanced = 1e-6;  // of the internal forces: Newton's method corrects smaller residuals directly
   const Imbalance left = imbalance(balance, work, team);
-  return {demand.actuation, demand.share, left.residual > balanced * left.pull ? 1.0 : 0.0};
+  return {load_state.actuation, load_state.load_factor, left.residual > balanced * left.pull ? 1.0 : 0.0};
 }
 
 void System::require_last(const Balance& balance, const Workspace& work) {
@@ -135,13 +136,13 @@ void System::require_last(const Balance& balance, const Workspace& work) {
 
 Imbalance System::imbalance(const Balance& balance, const Workspace& work, Team& team) const {
   require_last(balance, work);
-  constexpr double roundings = 16;  // of a vertex's elements
+  constexpr double roundings = 16;  // rounding errors of the forces at a vertex
   const double pull = body_.largest_pull(work.elastic, team);
   return {freedoms_->largest(balance.force), work.layers ? std::max(pull, work.layers->pulls.maxCoeff()) : pull,
           roundings * std::numeric_limits<double>::epsilon() * work.saddle.spectrum().stiffest * model_.diagonal_mm};
 }
 
-/// Another layout where the one that there is does not hold what couples now.
+/// Makes another layout if the current one lacks slots for the vertices that are coupled now.
 void System::give_slots(const Iterate& at, Workspace& work, Team& team) const {
   bool lacking = false;
   each_term(work, [&](const Term& term, Term::Scratch& scratch) { lacking = lacking || term.lacks_slots(scratch); });
@@ -156,24 +157,24 @@ void System::give_slots(const Iterate& at, Workspace& work, Team& team) const {
   work.stiffness.slots.resize(9 * static_cast<std::size_t>(work.stiffness.layout->slots));
 }
 
-void System::assemble(const Iterate& at, const Demand& demand, const Balance& balance, Stiffness kind, Workspace& work,
-                      Team& team) const {
+void System::assemble(const Iterate& at, const LoadState& load_state, const Balance& balance, Stiffness kind,
+                      Workspace& work, Team& team) const {
   require_last(balance, work);
   work.stiffness.assembled = kind == Stiffness::exact ? balance.evaluation : 0;
   give_slots(at, work, team);
   each_term(work, [&](const Term& term, Term::Scratch& scratch) {
-    term.stiffness(at, demand, kind == Stiffness::projected, scratch, work.stiffness.slots, team);
+    term.stiffness(at, load_state, kind == Stiffness::projected, scratch, work.stiffness.slots, team);
   });
   actuator_loads_.stiffness(at, work.stiffness.slots, team);
 }
 
-int System::factorise(const Iterate& at, const Demand& demand, const std::vector<bool>& active, const Balance& balance,
-                      const Factoring& factoring, Workspace& work, Team& team) const {
-  assemble(at, demand, balance, factoring.kind, work, team);
+int System::factorise(const Iterate& at, const LoadState& load_state, const std::vector<bool>& active,
+                      const Balance& balance, const Factoring& factoring, Workspace& work, Team& team) const {
+  assemble(at, load_state, balance, factoring.kind, work, team);
   work.stiffness.layout->reduced.reduce(work.stiffness.layout->pattern, work.stiffness.slots, work.gradient,
                                         at.positions, work.stiffness.values, team);
   ask(at, active, balance, work);
-  const bool spares = multiplies_unknowns(work) && !contacts_;  // nothing else is to be multiplied with the slots
+  const bool spares = multiplies_unknowns(work) && !contacts_;  // the slots are not needed for other products
   LargeVector<double>* spare = spares ? &work.stiffness.slots : nullptr;
   if (spare) work.stiffness.assembled = 0;
   if (!spare && !contacts_) work.stiffness.layout->pattern.gather(work.stiffness.slots, work.stiffness.blocks, team);
@@ -191,7 +192,7 @@ void System::couple(const Iterate& at, const std::vector<bool>& active, const Ba
   work.saddle.couple(team);
 }
 
-/// Hands the active measures and their slopes to the factorisation.
+/// Passes the active measures and their gradients to the factorisation.
 void System::ask(const Iterate& at, const std::vector<bool>& active, const Balance& balance, Workspace& work) const {
   work.saddle.activate(active);
   work.factored.softest.reset();
@@ -211,11 +212,12 @@ void System::reduce_slopes(const Iterate& at, const Balance& balance, const Work
     freedoms_->reduce(work.slopes[active[i]], at.positions, slopes.col(i));
     slopes.col(i) *= measures().sign(active[i]);
   }
-  if (std::none_of(active.begin(), active.end(), [&](Index a) { return tendons().rubs(a); })) return pulls.resize(0, 0);
+  if (std::none_of(active.begin(), active.end(), [&](Index a) { return tendons().has_friction(a); }))
+    return pulls.resize(0, 0);
   pulls = slopes;
   Points pull;
   for (Index i = 0; i < slopes.cols(); ++i) {
-    if (!tendons().rubs(active[i])) continue;
+    if (!tendons().has_friction(active[i])) continue;
     actuator_loads_.pull(active[i], at, pull);
     freedoms_->reduce(pull, at.positions, pulls.col(i));
     pulls.col(i) *= measures().sign(active[i]);
@@ -228,8 +230,8 @@ Eigen::VectorXd System::compliance(const Balance& balance, const Workspace& work
   return Eigen::VectorXd::NullaryExpr(active.size(), [&](Eigen::Index i) { return balance.compliance[active[i]]; });
 }
 
-Points System::upset_by_held(const Iterate& at, const Demand& to, const std::vector<bool>& active, Workspace& work,
-                             Balance& balance, Team& team) const {
+Points System::residual_change_by_supports(const Iterate& at, const LoadState& to, const std::vector<bool>& active,
+                                           Workspace& work, Balance& balance, Team& team) const {
   balance.constraint.setZero(actuators());
   Points moves = at.positions, force;
   placement_->hold(to, moves);
@@ -244,15 +246,15 @@ Points System::upset_by_held(const Iterate& at, const Demand& to, const std::vec
   return force;
 }
 
-void System::upset(const Iterate& at, const Demand& from, const Demand& to, const std::vector<bool>& active,
-                   Workspace& work, Balance& balance, Team& team) const {
-  Points force = upset_by_held(at, to, active, work, balance, team);
+void System::residual_change(const Iterate& at, const LoadState& from, const LoadState& to,
+                             const std::vector<bool>& active, Workspace& work, Balance& balance, Team& team) const {
+  Points force = residual_change_by_supports(at, to, active, work, balance, team);
   actuator_loads_.add_change(at, from, to, active, work.slopes, balance.constraint, force);
   if (tendons().any()) {
     balance.slips = tendons().slips(at);
     balance.growth = Eigen::VectorXd::Ones(actuators());
     for (Index a = 0; a < actuators(); ++a)
-      if (tendons().rubs(a) && measures().given_load(a) && at.multipliers[a] != 0)
+      if (tendons().has_friction(a) && measures().given_load(a) && at.multipliers[a] != 0)
         balance.growth[a] = measures().given(a, to.actuation[a]) / at.multipliers[a];
   }
   each_term(work, [&](const Term& term, Term::Scratch& scratch) {
@@ -262,19 +264,19 @@ void System::upset(const Iterate& at, const Demand& from, const Demand& to, cons
   freedoms_->reduce(force, at.positions, balance.force);
 }
 
-void System::measure(const Iterate& at, const Demand& demand, Workspace& work, ElementDeformation& out,
+void System::measure(const Iterate& at, const LoadState& load_state, Workspace& work, ElementDeformation& out,
                      Team& team) const {
   Balance balance;
-  evaluate(at, demand, std::vector<bool>(actuators(), false), work, balance, team);
+  evaluate(at, load_state, std::vector<bool>(actuators(), false), work, balance, team);
   out.reactions = work.gradient;
   for (Index a = 0; a < actuators(); ++a)
     add_cap_force(model_, model_.actuators[a], at.positions, at.multipliers[a], out.reactions);
   for (Index v = 0; v < out.reactions.rows(); ++v)
     for (int axis = 0; axis < 3; ++axis)
       if (model_.held.support_of[v][axis] < 0) out.reactions(v, axis) = 0;
-  each_term(work, [&](const Term& term, Term::Scratch& scratch) { term.tell(at, demand, scratch, out, team); });
+  each_term(work, [&](const Term& term, Term::Scratch& scratch) { term.describe(at, load_state, scratch, out, team); });
   for (Index a = 0; a < actuators(); ++a) {
-    if (!tendons().rubs(a)) continue;
+    if (!tendons().has_friction(a)) continue;
     out.tendons.resize(actuators());
     out.tendons[a] = tendons().forces(a, at.multipliers[a], at);
   }
@@ -314,18 +316,18 @@ void System::multiply(const Iterate& at, const Eigen::MatrixXd& vectors, Workspa
   }
 }
 
-void System::command_force(const Iterate& at, const Demand& demand, Index actuator, Workspace& work, Points& force,
-                           Team& team) const {
-  actuator_loads_.derivative(actuator, at, demand.actuation[actuator], force);
+void System::command_force(const Iterate& at, const LoadState& load_state, Index actuator, Workspace& work,
+                           Points& force, Team& team) const {
+  actuator_loads_.derivative(actuator, at, load_state.actuation[actuator], force);
   each_term(work, [&](const Term& term, Term::Scratch& scratch) {
-    term.add_derivative(actuator, demand, at.positions, scratch, force, team);
+    term.add_derivative(actuator, load_state, at.positions, scratch, force, team);
   });
 }
 
-void System::add_pull(const Iterate& at, const Demand& demand, const Balance& balance, const Points& moves,
+void System::add_pull(const Iterate& at, const LoadState& load_state, const Balance& balance, const Points& moves,
                       Workspace& work, Points& force, Team& team) const {
   require_last(balance, work);
-  if (work.stiffness.assembled != balance.evaluation) assemble(at, demand, balance, Stiffness::exact, work, team);
+  if (work.stiffness.assembled != balance.evaluation) assemble(at, load_state, balance, Stiffness::exact, work, team);
   work.stiffness.layout->pattern.gather(work.stiffness.slots, work.stiffness.blocks, team);
   Points pulled;
   work.stiffness.layout->pattern.multiply(work.stiffness.blocks, moves, pulled, team);

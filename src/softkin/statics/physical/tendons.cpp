@@ -7,16 +7,16 @@ namespace softkin::physical {
 
 namespace {
 
-/// Way that sticks as friction grows to its limit, over the cable's length at rest.
-constexpr double creep_share = 1e-4;
-/// Turn below which it counts less than it is [rad].
+/// Slip over which friction grows to its limit, over the cable's length at rest.
+constexpr double creep_fraction = 1e-4;
+/// Turn below which friction is reduced to be smooth [rad].
 constexpr double straight = 2e-3;
 
-/// Of a slip over the creep, from which it goes on slipping: what is remembered follows to 1 but for rounding.
+/// Slip over the creep from which a cable is slipping: the stored lengths follow to 1, apart from rounding.
 constexpr double whole = 1 - 1e-6;
 
-/// Share of the limit, towards the motor, at a slip over the creep.
-double friction_share(double slip) {
+/// Returns the fraction of the friction limit, towards the motor, at a slip over the creep.
+double friction_fraction(double slip) {
   return std::clamp(slip, -1.0, 1.0);
 }
 
@@ -27,10 +27,10 @@ double friction_slope(double slip) {
 double friction_secant(double slip, double change) {
   constexpr double least = 1e-9;
   if (std::abs(change) < least) return friction_slope(slip);
-  return (friction_share(slip + change) - friction_share(slip)) / change;
+  return (friction_fraction(slip + change) - friction_fraction(slip)) / change;
 }
 
-/// theta^2 / sqrt(theta^2 + straight^2) of two directions, and that by their scalar product, times -1.
+/// theta^2 / sqrt(theta^2 + straight^2) of two directions, and its derivative by their scalar product, times -1.
 struct Turn {
   double angle = 0, slope = 0;
   Turn(const Vec3& before, const Vec3& after) {
@@ -45,21 +45,21 @@ struct Turn {
 
 }  // namespace
 
-/// A cable in a shape: n segments, n eyelets where they begin; the first is that of its sheath.
-struct Tendons::Way {
+/// The path of a cable in a shape: n segments, and n eyelets where they begin. The first eyelet stands for the sheath.
+struct Tendons::TendonPath {
   std::vector<Vec3> points, directions;
-  Eigen::VectorXd lengths, beyond;           // of segments; of the way beyond the eyelets [mm]
-  Eigen::VectorXd limits, slips, share;      // mu theta; slip over the creep; tensions over that at the motor
-  std::vector<std::array<Vec3, 3>> turns{};  // slopes of the angles by the point before, the eyelet, the one after
+  Eigen::VectorXd lengths, beyond;           // of segments; of the path behind the eyelets [mm]
+  Eigen::VectorXd limits, slips, fraction;   // mu theta; slip over the creep; tensions over that at the motor
+  std::vector<std::array<Vec3, 3>> turns{};  // gradients of the angles by the points before, at and after the eyelet
 };
 
 Tendons::Tendons(const Model& model) : model_(model), cables_(model.actuators.size()) {
   for (std::size_t a = 0; a < cables_.size(); ++a) {
     const Actuator& actuator = model.actuators[a];
-    if (!softkin::rubs(actuator)) continue;
+    if (!softkin::has_friction(actuator)) continue;
     const auto& cable = std::get<CableDrive>(actuator.drive);
     cables_[a] = {remembered_, static_cast<Index>(cable.points.size()) - 1, cable.friction, cable.sheath,
-                  creep_share * actuator.rest_measure};
+                  creep_fraction * actuator.rest_measure};
     remembered_ += cables_[a].count;
   }
 }
@@ -68,47 +68,47 @@ const std::vector<EmbeddedPoint>& Tendons::points_of(Index actuator) const {
   return std::get<CableDrive>(model_.actuators[actuator].drive).points;
 }
 
-Tendons::Way Tendons::way(Index actuator, const Points& positions) const {
+Tendons::TendonPath Tendons::path(Index actuator, const Points& positions) const {
   const Cable& cable = cables_[actuator];
-  Way way;
-  for (const EmbeddedPoint& point : points_of(actuator)) way.points.push_back(point.at(positions));
-  const Index count = std::ssize(way.points) - 1;
-  way.lengths.resize(count);
-  way.beyond.resize(count);
-  way.limits.setZero(count);
-  way.turns.resize(count, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
+  TendonPath path;
+  for (const EmbeddedPoint& point : points_of(actuator)) path.points.push_back(point.at(positions));
+  const Index count = std::ssize(path.points) - 1;
+  path.lengths.resize(count);
+  path.beyond.resize(count);
+  path.limits.setZero(count);
+  path.turns.resize(count, {Vec3::Zero(), Vec3::Zero(), Vec3::Zero()});
   for (Index j = 0; j < count; ++j) {
-    const Vec3 step = way.points[j + 1] - way.points[j];
-    way.lengths[j] = step.norm();
-    way.directions.emplace_back(step / way.lengths[j]);
+    const Vec3 step = path.points[j + 1] - path.points[j];
+    path.lengths[j] = step.norm();
+    path.directions.emplace_back(step / path.lengths[j]);
   }
   double beyond = 0;
-  for (Index j = count; j-- > 0;) way.beyond[j] = beyond += way.lengths[j];
-  way.limits[0] = cable.sheath;
+  for (Index j = count; j-- > 0;) path.beyond[j] = beyond += path.lengths[j];
+  path.limits[0] = cable.sheath;
   for (Index j = 1; j < count; ++j) {
-    const Vec3 &before = way.directions[j - 1], &after = way.directions[j];
+    const Vec3 &before = path.directions[j - 1], &after = path.directions[j];
     const Turn turn(before, after);
-    way.limits[j] = cable.friction * turn.angle;
+    path.limits[j] = cable.friction * turn.angle;
     const double cosine = before.dot(after);
-    auto& slopes = way.turns[j];
-    slopes[0] = turn.slope / way.lengths[j - 1] * (after - cosine * before);
-    slopes[2] = -turn.slope / way.lengths[j] * (before - cosine * after);
+    auto& slopes = path.turns[j];
+    slopes[0] = turn.slope / path.lengths[j - 1] * (after - cosine * before);
+    slopes[2] = -turn.slope / path.lengths[j] * (before - cosine * after);
     slopes[1] = -slopes[0] - slopes[2];
   }
-  return way;
+  return path;
 }
 
-Tendons::Way Tendons::way(Index actuator, const Iterate& at) const {
-  Way found = way(actuator, at.positions);
+Tendons::TendonPath Tendons::path(Index actuator, const Iterate& at) const {
+  TendonPath found = path(actuator, at.positions);
   const Cable& cable = cables_[actuator];
   const Index count = found.lengths.size();
   found.slips.setZero(count);
-  found.share.resize(count);
+  found.fraction.resize(count);
   double exponent = 0;
   for (Index j = 0; j < count; ++j) {
     if (!at.eyelets.empty()) found.slips[j] = (at.eyelets[cable.memory + j] - found.beyond[j]) / cable.creep;
-    exponent += found.limits[j] * friction_share(found.slips[j]);
-    found.share[j] = std::exp(-exponent);
+    exponent += found.limits[j] * friction_fraction(found.slips[j]);
+    found.fraction[j] = std::exp(-exponent);
   }
   return found;
 }
@@ -127,8 +127,8 @@ std::vector<double> Tendons::lengths(const Points& positions) const {
 std::vector<double> Tendons::lengths(const Points& positions, const Eigen::VectorXd& slips) const {
   std::vector<double> all;
   for (Index a = 0; a < std::ssize(cables_); ++a) {
-    if (!rubs(a)) continue;
-    for (const double beyond : way(a, positions).beyond)
+    if (!has_friction(a)) continue;
+    for (const double beyond : path(a, positions).beyond)
       all.push_back(beyond + cables_[a].creep * (slips.size() == remembered_ ? slips[all.size()] : 1));
   }
   return all;
@@ -148,23 +148,23 @@ void Tendons::slide(const Points& positions, std::vector<double>& eyelets) const
 Eigen::VectorXd Tendons::slips(const Iterate& at) const {
   Eigen::VectorXd all(remembered_);
   for (Index a = 0; a < std::ssize(cables_); ++a) {
-    if (!rubs(a)) continue;
-    const Way found = way(a, at);
+    if (!has_friction(a)) continue;
+    const TendonPath found = path(a, at);
     all.segment(cables_[a].memory, found.slips.size()) = found.slips;
   }
   return all;
 }
 
-Eigen::VectorXd Tendons::shares(Index actuator, const Iterate& at) const {
-  return way(actuator, at).share;
+Eigen::VectorXd Tendons::fractions(Index actuator, const Iterate& at) const {
+  return path(actuator, at).fraction;
 }
 
 void Tendons::pull(Index actuator, const Iterate& at, Points& force) const {
-  const Way found = way(actuator, at);
+  const TendonPath found = path(actuator, at);
   std::vector<Vec3> vectors(found.points.size(), Vec3::Zero());
-  for (Index j = 0; j < std::ssize(found.share); ++j) {
-    vectors[j] -= found.share[j] * found.directions[j];
-    vectors[j + 1] += found.share[j] * found.directions[j];
+  for (Index j = 0; j < std::ssize(found.fraction); ++j) {
+    vectors[j] -= found.fraction[j] * found.directions[j];
+    vectors[j + 1] += found.fraction[j] * found.directions[j];
   }
   force.setZero(at.positions.rows(), 3);
   spread(actuator, vectors, force);
@@ -172,9 +172,9 @@ void Tendons::pull(Index actuator, const Iterate& at, Points& force) const {
 
 void Tendons::add_response(Index actuator, double tension, const Iterate& at, const Points& moves,
                            Points& force) const {
-  const Way found = way(actuator, at);
+  const TendonPath found = path(actuator, at);
   const double creep = cables_[actuator].creep;
-  const Index count = found.share.size();
+  const Index count = found.fraction.size();
   std::vector<Vec3> steps, vectors(found.points.size(), Vec3::Zero());
   for (const EmbeddedPoint& point : points_of(actuator)) steps.push_back(point.at(moves));
   Eigen::VectorXd slip(count);  // of the moves
@@ -185,9 +185,9 @@ void Tendons::add_response(Index actuator, double tension, const Iterate& at, co
     double turn = 0;
     if (j > 0)
       for (int k = 0; k < 3; ++k) turn += found.turns[j][k].dot(steps[j - 1 + k]);
-    change -= cables_[actuator].friction * turn * friction_share(found.slips[j]) +
+    change -= cables_[actuator].friction * turn * friction_fraction(found.slips[j]) +
               found.limits[j] * friction_slope(found.slips[j]) * slip[j] / creep;
-    const Vec3 more = tension * found.share[j] * change * found.directions[j];
+    const Vec3 more = tension * found.fraction[j] * change * found.directions[j];
     vectors[j] -= more;
     vectors[j + 1] += more;
   }
@@ -195,20 +195,20 @@ void Tendons::add_response(Index actuator, double tension, const Iterate& at, co
 }
 
 TendonForces Tendons::forces(Index actuator, double tension, const Iterate& at) const {
-  const Way found = way(actuator, at);
-  double sticks = 0, all = 0;  // by the same sums: what sticks as a whole is exactly 1
+  const TendonPath found = path(actuator, at);
+  double sticks = 0, all = 0;  // by the same sums: the fraction of a cable that sticks entirely is exactly 1
   for (Index j = 0; j < std::ssize(found.slips); ++j) {
     all += found.limits[j];
     if (std::abs(found.slips[j]) < whole) sticks += found.limits[j];
   }
-  return {tension * found.share[found.share.size() - 1], all > 0 ? sticks / all : 0};
+  return {tension * found.fraction[found.fraction.size() - 1], all > 0 ? sticks / all : 0};
 }
 
 TendonColumns Tendons::columns(const Iterate& at, const supports::Freedoms& freedoms) const {
   TendonColumns columns;
   Index count = 0;
   for (Index a = 0; a < std::ssize(cables_); ++a) {
-    if (!rubs(a) || at.multipliers[a] == 0) continue;
+    if (!has_friction(a) || at.multipliers[a] == 0) continue;
     const Cable& cable = cables_[a];
     columns.tendons.push_back({count, cable.count, a, cable.memory, cable.creep, at.multipliers[a]});
     count += cable.count;
@@ -219,9 +219,9 @@ TendonColumns Tendons::columns(const Iterate& at, const supports::Freedoms& free
   Points slope;
   for (const TendonColumns::Tendon& tendon : columns.tendons) {
     const Index a = tendon.actuator;
-    const Way found = way(a, at);
+    const TendonPath found = path(a, at);
     const double friction = cables_[a].friction;
-    columns.tensions.segment(tendon.begin, tendon.count) = at.multipliers[a] * found.share;
+    columns.tensions.segment(tendon.begin, tendon.count) = at.multipliers[a] * found.fraction;
     columns.limits.segment(tendon.begin, tendon.count) = found.limits;
     std::vector<Vec3> vectors(found.points.size());
     for (Index j = 0; j < tendon.count; ++j) {
@@ -231,10 +231,10 @@ TendonColumns Tendons::columns(const Iterate& at, const supports::Freedoms& free
       slope.setZero(at.positions.rows(), 3);
       spread(a, vectors, slope);
       freedoms.reduce(slope, at.positions, along.col(tendon.begin + j));
-      const double share = friction * friction_share(found.slips[j]);
-      if (j == 0 || share == 0) continue;
+      const double fraction = friction * friction_fraction(found.slips[j]);
+      if (j == 0 || fraction == 0) continue;
       std::fill(vectors.begin(), vectors.end(), Vec3::Zero());
-      for (int k = 0; k < 3; ++k) vectors[j - 1 + k] = share * found.turns[j][k];
+      for (int k = 0; k < 3; ++k) vectors[j - 1 + k] = fraction * found.turns[j][k];
       slope.setZero(at.positions.rows(), 3);
       spread(a, vectors, slope);
       freedoms.reduce(slope, at.positions, turns.col(tendon.begin + j));

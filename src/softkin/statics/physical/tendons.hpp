@@ -8,85 +8,86 @@
 
 namespace softkin::physical {
 
-/// What tendons that rub add to a Newton step: how the tension of every segment follows moves of the shape, of all
-/// tendons that pull, q segments together. No factor holds it, as it is not symmetric and couples all of a tendon; it
-/// is of few columns.
+/// The contribution of tendons with friction to a Newton step: how the tension of every segment changes with the shape,
+/// for all q segments of the active tendons. It is not symmetric and couples all vertices of a tendon. It is therefore
+/// not part of the factorisation, but a product of matrices with few columns.
 struct TendonColumns {
   struct Tendon {
     Index begin = 0, count = 0;      // of its segments
-    Index actuator = 0, memory = 0;  // of its first eyelet among slips
+    Index actuator = 0, memory = 0;  // its actuator; index of its first eyelet among the slips
     double creep = 1;                // [mm]
     double tension = 0;              // at the motor [N]
   };
   std::vector<Tendon> tendons{};
-  Eigen::SparseMatrix<double> along{};  // unknowns by q: slopes of the segments' lengths
+  Eigen::SparseMatrix<double> along{};  // unknowns by q: gradients of the segments' lengths
   Eigen::SparseMatrix<double>
-      turns{};                 // the same: of the tensions' logarithms by the turns where segments begin, times -1
+      turns{};                 // unknowns by q: gradients of -log(tension), by the turn at the begin of each segment
   Eigen::VectorXd tensions{};  // of segments [N]
-  Eigen::VectorXd limits{};    // mu theta of the eyelet where each begins [-]
+  Eigen::VectorXd limits{};    // mu theta at the eyelet where each segment begins [-]
 
   [[nodiscard]] Index count() const { return tensions.size(); }
 
-  /// How tensions follow moves, a column each, by the turns that change [N].
+  /// Returns the changes of the tensions under moves, a column each, that are due to changed turns [N].
   [[nodiscard]] Eigen::MatrixXd turned(const Eigen::Ref<const Eigen::MatrixXd>& moves) const;
 
-  /// How tensions follow the segments' lengths beside that [N/mm]: friction is taken by its secants from these slips to
-  /// those after the segments have become longer by so much; by its slopes where that is nothing.
+  /// Returns the derivatives of the tensions by the segments' lengths, apart from the turns [N/mm]. Friction is
+  /// linearised by its secants from `slips` to the slips after `lengthening`, or by its derivatives if that is zero.
   ///
-  /// growth  per actuator, of tensions at the motor meanwhile, over what they are [-]; empty: 1
+  /// growth  ratio of the new to the current tension at the motor, per actuator [-]; empty: 1
   [[nodiscard]] Eigen::MatrixXd rates(const Eigen::VectorXd& slips, const Eigen::VectorXd& lengthening,
                                       const Eigen::VectorXd& growth) const;
 };
 
-/// Coulomb friction of cables, pulled at their first point, at every turn of their way: the tension behind eyelet i is
-/// that before it times exp(-mu theta_i) where the cable slips there towards the motor, times exp(+mu theta_i) where it
-/// slips away, and between where it sticks. Each eyelet remembers the length beyond it at which it does not rub;
-/// friction grows with the difference and is whole at the creep; where it slips farther what is remembered follows.
+/// Coulomb friction of cables, pulled at their first point, at every turn of their path. The tension behind eyelet i is
+/// the tension before it times exp(-mu theta_i) if the cable slips there towards the motor, times exp(+mu theta_i) if
+/// it slips away, and lies in between if it sticks. For each eyelet the cable length behind it at which friction is
+/// zero is stored. Friction grows with the difference from that length and is fully mobilised at the creep. If the
+/// cable slips farther, the stored length follows.
 ///
 /// source     Euler, Eytelwein: the capstan; design: DESIGN.md, section 10
-/// deviation  turns count theta^2 / sqrt(theta^2 + 2e-3^2), which is smooth where the way is straight
+/// deviation  turns count as theta^2 / sqrt(theta^2 + 2e-3^2), which is smooth where the path is straight
 class Tendons {
  public:
   /// model must outlive the object.
   explicit Tendons(const Model& model);
 
   [[nodiscard]] bool any() const { return remembered_ > 0; }
-  [[nodiscard]] bool rubs(Index actuator) const { return cables_[actuator].memory >= 0; }
-  /// Numbers that are remembered: per eyelet of every cable that rubs.
+  [[nodiscard]] bool has_friction(Index actuator) const { return cables_[actuator].memory >= 0; }
+  /// Returns the number of stored lengths, one per eyelet of every cable with friction.
   [[nodiscard]] std::size_t remembered() const { return remembered_; }
 
-  /// What is remembered where nothing rubs: the lengths beyond each eyelet [mm].
+  /// Returns the stored lengths at which friction is zero: the cable lengths behind each eyelet [mm].
   [[nodiscard]] std::vector<double> lengths(const Points& positions) const;
-  /// The same where it rubs as far from that as slips say; those of another robot, in which nothing rubs: as far as it
-  /// does where it was pulled.
+  /// Returns the stored lengths that give these slips. If `slips` are of another robot, without friction, every cable
+  /// has slipped towards the motor by the creep, as after being pulled.
   [[nodiscard]] std::vector<double> lengths(const Points& positions, const Eigen::VectorXd& slips) const;
-  /// Lets what is remembered follow to within the creep.
+  /// Moves the stored lengths to within the creep of the current ones.
   void slide(const Points& positions, std::vector<double>& eyelets) const;
-  /// Of every eyelet, towards the motor, over its creep [-]; 0 where nothing is remembered.
+  /// Returns the slip of every eyelet, towards the motor, over its creep [-]; 0 if no lengths are stored.
   [[nodiscard]] Eigen::VectorXd slips(const Iterate& at) const;
 
-  // Of a cable that rubs, of one segment after the other.
-  /// Tensions over that at the motor [-].
-  [[nodiscard]] Eigen::VectorXd shares(Index actuator, const Iterate& at) const;
-  /// What it pulls with per tension at the motor, #V by 3 [-].
+  // The functions below are for one cable with friction.
+  /// Returns the tensions of its segments over the tension at the motor [-].
+  [[nodiscard]] Eigen::VectorXd fractions(Index actuator, const Iterate& at) const;
+  /// Computes its nodal forces per tension at the motor, #V by 3 [-].
   void pull(Index actuator, const Iterate& at, Points& force) const;
-  /// Adds what moves of the vertices change of what it pulls with, as its tensions change [N].
+  /// Adds the change of its nodal forces under moves of the vertices that is due to changed tensions [N].
   void add_response(Index actuator, double tension, const Iterate& at, const Points& moves, Points& force) const;
   [[nodiscard]] TendonForces forces(Index actuator, double tension, const Iterate& at) const;
 
-  /// Of all that rub and pull at an iterate.
+  /// Returns the columns of all active tendons with friction at an iterate.
   [[nodiscard]] TendonColumns columns(const Iterate& at, const supports::Freedoms& freedoms) const;
 
  private:
   struct Cable {
-    Index memory = -1;  // of its first eyelet; negative: it does not rub
-    Index count = 0;    // of its eyelets, and segments
+    Index memory = -1;  // index of its first eyelet; negative: no friction
+    Index count = 0;    // number of its eyelets and of its segments
     double friction = 0, sheath = 0, creep = 1;
   };
-  struct Way;
+  struct TendonPath;
   [[nodiscard]] const std::vector<EmbeddedPoint>& points_of(Index actuator) const;
-  [[nodiscard]] Way way(Index actuator, const Points& positions) const;
-  [[nodiscard]] Way way(Index actuator, const Iterate& at) const;
+  [[nodiscard]] TendonPath path(Index actuator, const Points& positions) const;
+  [[nodiscard]] TendonPath path(Index actuator, const Iterate& at) const;
   void spread(Index actuator, const std::vector<Vec3>& vectors, Points& force) const;
 
   const Model& model_;

@@ -33,12 +33,12 @@ class Tractions::Load {
   }
 
   [[nodiscard]] Vec3 whole() const { return outwards_ * normal_ + deformation_ * turned_; }
-  /// Without the pressure.
+  /// Returns the load without the pressure.
   [[nodiscard]] Vec3 traction(double pressure_MPa) const { return whole() + pressure_MPa * normal_; }
-  /// Times the area at rest: the area vector.
+  /// Returns the area vector per area at rest.
   [[nodiscard]] const Vec3& normal() const { return normal_; }
 
-  /// How it changes with the deformation.
+  /// Returns the derivative of the load along a change of the deformation.
   [[nodiscard]] Vec3 change(const Plane& by) const {
     const Vec3 normal = by.col(0).cross(deformation_.col(1)) + deformation_.col(0).cross(by.col(1));
     const Eigen::Matrix2d half = deformation_.transpose() * by, metric = half + half.transpose();
@@ -85,7 +85,7 @@ Tractions::Tractions(const Model& model) : model_(model) {
         both << edges.u, edges.v;
         frame << first, normal.cross(first);
         const Eigen::Matrix2d edges_in_frame = frame.transpose() * both;
-        face.places.push_back({&point, loaded.share * point.weight * edges_in_frame.determinant(),
+        face.places.push_back({&point, loaded.fraction * point.weight * edges_in_frame.determinant(),
                                edges_in_frame.inverse(), frame.transpose() * traction.traction_MPa,
                                normal.dot(traction.traction_MPa)});
       }
@@ -101,12 +101,12 @@ void Tractions::each_place(const Points& positions, const Visit& visit) const {
     for (const Place& place : face.places) visit(face, place, Load(face, place, positions));
 }
 
-void Tractions::evaluate(const Iterate& at, const Demand& demand, Term::Scratch& scratch, Sum& sum,
+void Tractions::evaluate(const Iterate& at, const LoadState& load_state, Term::Scratch& scratch, Sum& sum,
                          Team& /*team*/) const {
-  static_cast<Scratch&>(scratch).demand = demand;
+  static_cast<Scratch&>(scratch).load_state = load_state;
   double energy = 0;
   each_place(at.positions, [&](const Face& face, const Place& place, const Load& load) {
-    const double scale = scale_of(face, demand);
+    const double scale = scale_of(face, load_state);
     const Vec3 force = scale * place.area_mm2 * load.whole();
     Vec3 x = -middle_, move = Vec3::Zero();
     for (std::size_t i = 0; i < face.nodes.size(); ++i) {
@@ -145,8 +145,8 @@ Tractions::Blocks Tractions::slopes(std::size_t number, const Points& positions)
   return blocks;
 }
 
-void Tractions::add_change(const Demand& from, const Demand& to, const Points& positions, Term::Scratch& /*scratch*/,
-                           Points& force, Team& /*team*/) const {
+void Tractions::add_change(const LoadState& from, const LoadState& to, const Points& positions,
+                           Term::Scratch& /*scratch*/, Points& force, Team& /*team*/) const {
   each_place(positions, [&](const Face& face, const Place& place, const Load& load) {
     const double change = scale_of(face, to) - scale_of(face, from);
     if (change == 0) return;
@@ -160,7 +160,7 @@ bool Tractions::loads(Index command) const {
   return model_.actuators[command].is<PressureCommand>();
 }
 
-void Tractions::add_derivative(Index command, const Demand& /*demand*/, const Points& positions,
+void Tractions::add_derivative(Index command, const LoadState& /*demand*/, const Points& positions,
                                Term::Scratch& /*scratch*/, Points& force, Team& /*team*/) const {
   if (!loads(command)) return;
   each_place(positions, [&](const Face& face, const Place& place, const Load& load) {

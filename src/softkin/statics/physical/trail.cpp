@@ -6,16 +6,17 @@ namespace softkin::physical {
 
 namespace {
 
-constexpr std::size_t most_passed = 8;
-/// Equilibria nearer to each other than this share of the step have too much to say.
-constexpr double least_spacing = 0.2;
-/// Vertices by which predictions are judged.
-constexpr Index most_looked_at = 1000;
-/// A prediction is worth it that misses less than this share of what a first-order one does, and less than so many
-/// tolerances: one that misses more may come to where the stiffness is not stable.
-constexpr double worth = 0.3, most_tolerances = 100;
+constexpr std::size_t max_passed = 8;
+/// Equilibria that are nearer to each other than this fraction of the step are not interpolated.
+constexpr double min_spacing = 0.2;
+/// Maximum number of vertices at which predictions are compared.
+constexpr Index max_inspected = 1000;
+/// A prediction is used if its estimated error is less than this fraction of the error of a first-order one, and less
+/// than this number of tolerances: a larger error may lead to an unstable stiffness.
+constexpr double worth = 0.3, max_tolerances = 100;
 
-/// Weights of the polynomial through values at `nodes`, from `first` on, `degree` + 1 of them, at zero.
+/// Returns the weights of the Lagrange polynomial through `degree` + 1 values at `nodes`, from `first` on, for its
+/// value at `at`.
 std::vector<double> lagrange(const std::vector<double>& nodes, std::size_t first, int degree, double at) {
   std::vector<double> weights(degree + 1, 1.0);
   for (std::size_t i = 0; i < weights.size(); ++i)
@@ -24,57 +25,58 @@ std::vector<double> lagrange(const std::vector<double>& nodes, std::size_t first
   return weights;
 }
 
-double length_of(const Demand& from, const Demand& to) {
-  return std::hypot((to.actuation - from.actuation).norm(), to.share - from.share);
+double length_of(const LoadState& from, const LoadState& to) {
+  return std::hypot((to.actuation - from.actuation).norm(), to.load_factor - from.load_factor);
 }
 
 }  // namespace
 
-void Trail::add(const Demand& demand, const std::vector<bool>& active, const Iterate& at) {
+void Trail::add(const LoadState& load_state, const std::vector<bool>& active, const Iterate& at) {
   if (!passed_.empty() && passed_.front().active != active) clear();
-  if (!passed_.empty() && length_of(passed_.front().demand, demand) == 0) passed_.erase(passed_.begin());
-  if (passed_.size() == most_passed) {
+  if (!passed_.empty() && length_of(passed_.front().load_state, load_state) == 0) passed_.erase(passed_.begin());
+  if (passed_.size() == max_passed) {
     std::rotate(passed_.begin(), passed_.end() - 1, passed_.end());
-    passed_.front() = {demand, active, at};
+    passed_.front() = {load_state, active, at};
   } else {
-    passed_.insert(passed_.begin(), {demand, active, at});
+    passed_.insert(passed_.begin(), {load_state, active, at});
   }
 }
 
-void Trail::note_tangent(const Demand& from, const Demand& to, double missed_mm) {
+void Trail::note_tangent(const LoadState& from, const LoadState& to, double missed_mm) {
   const double length = length_of(from, to);
   if (length > 0) curvature_ = missed_mm / (length * length);
 }
 
-/// Of the equilibria, along the step to come: 0 at the last one, 1 at its end; as many as are apart.
-std::vector<double> Trail::parameters(const Demand& to) const {
-  const Demand& here = passed_.front().demand;
-  const Eigen::VectorXd way = to.actuation - here.actuation;
+/// Returns the parameters of the equilibria along the next step: 0 at the last one, 1 at the end of the step. The list
+/// ends at the first equilibrium that is too near to another one.
+std::vector<double> Trail::parameters(const LoadState& to) const {
+  const LoadState& here = passed_.front().load_state;
+  const Eigen::VectorXd path = to.actuation - here.actuation;
   const double square = std::pow(length_of(here, to), 2);
   std::vector<double> result;
   for (const Passed& passed : passed_) {
-    const double along = way.dot(passed.demand.actuation - here.actuation) +
-                         (to.share - here.share) * (passed.demand.share - here.share);
+    const double along = path.dot(passed.load_state.actuation - here.actuation) +
+                         (to.load_factor - here.load_factor) * (passed.load_state.load_factor - here.load_factor);
     const double next = along / square;
-    if (std::any_of(result.begin(), result.end(), [&](double t) { return std::abs(t - next) < least_spacing; })) break;
+    if (std::any_of(result.begin(), result.end(), [&](double t) { return std::abs(t - next) < min_spacing; })) break;
     result.push_back(next);
   }
   return result;
 }
 
-bool Trail::lead(const Demand& here, const Demand& to, const std::vector<bool>& active, double tolerance_mm,
+bool Trail::lead(const LoadState& here, const LoadState& to, const std::vector<bool>& active, double tolerance_mm,
                  Iterate& at) const {
   if (passed_.size() < 3 || passed_.front().active != active || passed_.front().at.positions != at.positions)
     return false;
   const double length = length_of(here, to);
-  if (length_of(passed_.front().demand, here) > 0 || !(length > 0)) return false;
+  if (length_of(passed_.front().load_state, here) > 0 || !(length > 0)) return false;
   const std::vector<double> nodes = parameters(to);
   if (nodes.size() < 3) return false;
-  // how each degree would have foretold the last equilibrium, and from that what it misses at the next one
+  // the error of each degree in a prediction of the last equilibrium, and from that an estimate for the next one
   const Points& last = passed_.front().at.positions;
-  const Index stride = std::max<Index>(1, static_cast<Index>(last.rows()) / most_looked_at);
+  const Index stride = std::max<Index>(1, static_cast<Index>(last.rows()) / max_inspected);
   int best = 0;
-  double least = most_tolerances * tolerance_mm;
+  double least = max_tolerances * tolerance_mm;
   if (curvature_ >= 0) least = std::min(least, worth * curvature_ * length * length);
   for (int degree = 1; degree + 2 <= static_cast<int>(nodes.size()); ++degree) {
     const std::vector<double> weights = lagrange(nodes, 1, degree, 0);

@@ -5,37 +5,38 @@
 
 namespace softkin::physical {
 
-/// The equilibria that a path came through last, and where they lead.
+/// Predictor history: the last equilibria on a path, from which the next one is extrapolated.
 class Trail {
  public:
-  /// An equilibrium under a demand, reached from the last one; one that does not continue the trail begins another.
+  /// Adds an equilibrium at a load state, reached from the last one. An equilibrium that does not continue the history
+  /// starts a new one.
   ///
-  /// active  constraints that are held
-  void add(const Demand& demand, const std::vector<bool>& active, const Iterate& at);
+  /// active  which constraints are active
+  void add(const LoadState& load_state, const std::vector<bool>& active, const Iterate& at);
   void clear() { passed_.clear(); }
 
-  /// What a first-order prediction missed, on a way of so much actuation [mm].
-  void note_tangent(const Demand& from, const Demand& to, double missed_mm);
+  /// Records the error of a first-order prediction from one load state to another [mm].
+  void note_tangent(const LoadState& from, const LoadState& to, double missed_mm);
 
-  /// Moves `at`, the last equilibrium and that of `here`, to where the polynomials through the last equilibria lead.
-  /// Their degree is the one that would have foretold the last of them best.
+  /// Moves `at`, the last equilibrium, at load state `here`, to its extrapolation by polynomials through the last
+  /// equilibria. Their degree is the one that would have predicted the last of them best.
   ///
-  /// returns  false where they tell less than a first-order prediction does; `at` is unchanged then
+  /// returns  false if they are less accurate than a first-order prediction; `at` is unchanged then
   /// source   Allgower, Georg 1990, Numerical continuation methods, 6.3: predictors by interpolation; steps of any
   ///          length, with the projection on the step as parameter
-  [[nodiscard]] bool lead(const Demand& here, const Demand& to, const std::vector<bool>& active, double tolerance_mm,
-                          Iterate& at) const;
+  [[nodiscard]] bool lead(const LoadState& here, const LoadState& to, const std::vector<bool>& active,
+                          double tolerance_mm, Iterate& at) const;
 
  private:
   struct Passed {
-    Demand demand;
+    LoadState load_state;
     std::vector<bool> active;
     Iterate at;
   };
-  [[nodiscard]] std::vector<double> parameters(const Demand& to) const;
+  [[nodiscard]] std::vector<double> parameters(const LoadState& to) const;
 
-  std::vector<Passed> passed_;  // the last first
-  double curvature_ = -1;       // what tangents miss, over the square of the way [mm]; negative: not known
+  std::vector<Passed> passed_;  // the last one first
+  double curvature_ = -1;       // error of first-order predictions over the squared step [mm]; negative: unknown
 };
 
 }  // namespace softkin::physical

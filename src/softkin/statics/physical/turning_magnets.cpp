@@ -30,8 +30,8 @@ energy::FluxBlock<Q> uniform_flux(const Fields::Setting& setting) {
   return flux;
 }
 
-/// Flux density of one that is not, where the first `count` elements of a block are. False where it is not known for
-/// one of them: the shape is forbidden.
+/// Flux density of a field that varies in space, at the first `count` elements of a block. False where it is not known
+/// for one of them: the shape is forbidden.
 template <int K, int Q>
 bool set_flux(const Fields& fields, const Fields::Setting& setting, const energy::MagnetBlock<K, Q>& block,
               const energy::Shape<K>& shape, Index count, bool second, energy::FluxBlock<Q>& out) {
@@ -118,7 +118,7 @@ std::optional<double> TurningMagnets::add_gradient(const Fields& fields, const F
         magnet_force<K, Q>(set.blocks[b], flux, shape, pulls[b].gradient, pulls[b].energy);
       }
     });
-    for (Index b = 0; b < count; ++b) {  // by one thread: elements share vertices
+    for (Index b = 0; b < count; ++b) {  // by one thread: elements have common vertices
       const Pull& pull = pulls[b];
       for (int l = 0; l < std::min<Index>(lanes, set.count - lanes * b); ++l) {
         sum += pull.energy[l];

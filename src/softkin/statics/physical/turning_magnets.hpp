@@ -23,7 +23,7 @@ class TurningMagnets {
   void add_stiffness(const Fields& fields, const Fields::Setting& setting, const Points& positions, bool projected,
                      LargeVector<double>& slots, Team& team) const;
 
-  /// Adds what it has of a volume at rest, and that times where it is.
+  /// Adds the volume of the magnets at rest, and the integral of the position over it.
   void add_places(const Points& positions, double& volume, Vec3& sum) const;
 
  private:

@@ -3,7 +3,7 @@
 #include <softkin/statics/physical/body.hpp>
 #include <softkin/statics/physical/load_block.hpp>
 
-/// What the branches of a body remember, and what time does to them.
+/// The history of the Maxwell branches of a body, and its change with time.
 
 namespace softkin::physical {
 
@@ -11,17 +11,17 @@ using namespace energy;
 
 namespace {
 
-/// Lane by lane; what the lane before has is not made again.
-void set_shares(const Pack& time, double elapsed_s, BranchShares& shares, Pack& rate) {
+/// Sets the coefficients lane by lane; a lane with the relaxation time of the lane before copies its values.
+void set_fractions(const Pack& time, double elapsed_s, BranchFractions& fractions, Pack& rate) {
   for (int l = 0; l < lanes; ++l) {
     if (l > 0 && time[l] == time[l - 1]) {
-      for (Pack* each : {&shares.remembered, &shares.begun, &shares.ended, &rate}) (*each)[l] = (*each)[l - 1];
+      for (Pack* each : {&fractions.remembered, &fractions.begun, &fractions.ended, &rate}) (*each)[l] = (*each)[l - 1];
       continue;
     }
     const double x = elapsed_s / time[l], kept = std::exp(-x), mean = x > 0 ? -std::expm1(-x) / x : 1;
-    shares.remembered[l] = kept;
-    shares.begun[l] = std::max(0.0, mean - kept);
-    shares.ended[l] = 1 - mean;
+    fractions.remembered[l] = kept;
+    fractions.begun[l] = std::max(0.0, mean - kept);
+    fractions.ended[l] = 1 - mean;
     rate[l] = std::min(x, 1e12);  // finite
   }
 }
@@ -31,11 +31,11 @@ void set_shares(const Pack& time, double elapsed_s, BranchShares& shares, Pack& 
 void Body::set_time(std::shared_ptr<const ViscousHistory> history, double elapsed_s, Scratch& scratch,
                     Team& team) const {
   if (!viscous()) return;
-  const bool same_step = scratch.elapsed_s == elapsed_s && !scratch.shares.empty();
+  const bool same_step = scratch.elapsed_s == elapsed_s && !scratch.fractions.empty();
   if (same_step && scratch.history == history) return;
   scratch.history = std::move(history);
   scratch.elapsed_s = elapsed_s;
-  scratch.shares.resize(branches_);
+  scratch.fractions.resize(branches_);
   scratch.rates.resize(branches_);
   scratch.begun.resize(begun_);
   each_set([&]<int K, int Q>(const Set<K, Q>& set) {
@@ -44,8 +44,8 @@ void Body::set_time(std::shared_ptr<const ViscousHistory> history, double elapse
       for (Index b = begin; b < end; ++b) {
         const auto block = static_cast<std::size_t>(b), first = block * static_cast<std::size_t>(set.viscous.branches);
         for (std::size_t i = first; !same_step && i < first + static_cast<std::size_t>(set.viscous.branches); ++i)
-          set_shares(set.viscous.times[i], elapsed_s, scratch.shares[set.viscous.first_branch + i],
-                     scratch.rates[set.viscous.first_branch + i]);
+          set_fractions(set.viscous.times[i], elapsed_s, scratch.fractions[set.viscous.first_branch + i],
+                        scratch.rates[set.viscous.first_branch + i]);
         begin_step<Q>(branches_of(set, block, scratch),
                       scratch.begun.data() + set.viscous.first_begun + set.begun_each() * block);
       }
@@ -53,11 +53,11 @@ void Body::set_time(std::shared_ptr<const ViscousHistory> history, double elapse
   });
 }
 
-std::shared_ptr<const ViscousHistory> Body::flow(const Demand& demand, const Points& positions, Scratch& scratch,
+std::shared_ptr<const ViscousHistory> Body::flow(const LoadState& load_state, const Points& positions, Scratch& scratch,
                                                  double& lost_mJ, Team& team) const {
   auto after = std::make_shared<ViscousHistory>();
   after->strains.resize(strains_);
-  change_elements(demand, scratch, team);
+  change_elements(load_state, scratch, team);
   Pack lost{};
   std::vector<Pack> of_blocks;
   each(scratch, [&]<int K, int Q>(const Set<K, Q>& set, const std::vector<ElasticBlock<K, Q>>& blocks) {

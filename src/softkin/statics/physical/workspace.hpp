@@ -23,11 +23,11 @@ struct Workspace {
   Contacts::Scratch* contacts;  // where there is contact
   Layers::Scratch* layers;      // where there are some
 
-  bool left_field = false;      // was a shape where a field is not known, as outside a grid
-  std::uint64_t evaluated = 0;  // times
+  bool left_field = false;      // was a shape outside the domain of a field, as outside a grid
+  std::uint64_t evaluated = 0;  // number of evaluations
   /// The stiffness.
   struct Assembled {
-    std::uint64_t assembled = 0;             // by which evaluation it is the exact one in the slots; 0: by none
+    std::uint64_t assembled = 0;             // evaluation of which the slots contain the exact stiffness; 0: none
     std::shared_ptr<const Layout> layout{};  // of the slots
     LargeVector<double> slots{}, blocks{}, values{};
   };
@@ -37,25 +37,25 @@ struct Workspace {
   Placement::Scratch placing;  // of advance()
   std::vector<Points> slopes;  // of each active measure
 
-  /// Nearly its softest change of shape that the constraints leave, of length 1, and its curvature.
+  /// The approximate softest mode under the constraints, of length 1, and its curvature.
   struct Softest {
     Eigen::VectorXd direction;
     double curvature;
   };
-  /// Of what the last factorisation is.
+  /// The origin of the last factorisation.
   struct Factored {
-    std::uint64_t by = 0;            // of which evaluation,
-    Points shape;                    // in which shape,
-    bool exact = false;              // of the stiffness neither made positive nor shifted
-    std::optional<Softest> softest;  // where it was asked for
+    std::uint64_t by = 0;            // its evaluation,
+    Points shape;                    // its shape,
+    bool exact = false;              // is the stiffness neither made positive nor shifted,
+    std::optional<Softest> softest;  // if it was requested
   };
   Saddle saddle;  // the last factorisation
   Factored factored;
 
-  Points home;                    // equilibrium at which the last solve ended, and near which it factorised
-  Trail trail;                    // that led there
-  Slopes tangents;                // of an equilibrium
-  std::optional<State> foretold;  // where the caller has the next solve from home begin, multipliers in internal units
+  Points home;                         // equilibrium at which the last solve ended, and near which it factorised
+  Trail trail;                         // last equilibria on the path to `home`
+  Slopes tangents;                     // of an equilibrium
+  std::optional<State> initial_guess;  // from the caller, for the next solve from home; multipliers in internal units
 };
 
 }  // namespace softkin::physical

@@ -80,12 +80,12 @@ void face_second_derivative(const FacePoint<N>& p, const Vec3* nodes, Mat3 (&blo
 }
 
 /// Lengths below this are taken for zero [mm]: a segment so short pulls nowhere.
-constexpr double least_length = 1e-12;
+constexpr double min_length = 1e-12;
 
 double segment_length(const Vec3* nodes, Vec3* gradient) {
   const Vec3 across = nodes[1] - nodes[0];
   const double length = across.norm();
-  if (gradient && length > least_length) {
+  if (gradient && length > min_length) {
     gradient[0] -= across / length;
     gradient[1] += across / length;
   }
@@ -95,7 +95,7 @@ double segment_length(const Vec3* nodes, Vec3* gradient) {
 void segment_second_derivative(const Vec3* nodes, Mat3 (&blocks)[6][6]) {
   const Vec3 across = nodes[1] - nodes[0];
   const double length = across.norm();
-  if (length <= least_length) return;
+  if (length <= min_length) return;
   const Mat3 bend = (Mat3::Identity() - across * across.transpose() / (length * length)) / length;
   for (int i = 0; i < 2; ++i)
     for (int j = 0; j < 2; ++j) blocks[i][j] += i == j ? bend : Mat3(-bend);
@@ -188,13 +188,13 @@ double ActuatorMeasures::value(Index actuator, const Points& positions, Points* 
 std::vector<std::vector<ActuatorMeasures::Part>> ActuatorMeasures::parts_of(const Term& term) const {
   std::vector<std::vector<Part>> parts;
   for (int i = 0; i < term.count; ++i) {
-    auto& shares = parts.emplace_back();
+    auto& fractions = parts.emplace_back();
     if (term.nodes[i] < vertices_) {
-      shares.emplace_back(term.nodes[i], 1.0);
+      fractions.emplace_back(term.nodes[i], 1.0);
       continue;
     }
     const EmbeddedPoint& point = *points_[term.nodes[i] - vertices_];
-    for (std::size_t k = 0; k < point.vertices.size(); ++k) shares.emplace_back(point.vertices[k], point.weights[k]);
+    for (std::size_t k = 0; k < point.vertices.size(); ++k) fractions.emplace_back(point.vertices[k], point.weights[k]);
   }
   return parts;
 }
@@ -206,8 +206,8 @@ void ActuatorMeasures::add_cliques(linear::Cliques& cliques) {
       Term& term = terms_[a][t];
       term.parts = parts_of(term);
       std::vector<Index> vertices;
-      for (const auto& shares : term.parts)
-        for (const Part& part : shares) vertices.push_back(part.first);
+      for (const auto& fractions : term.parts)
+        for (const Part& part : fractions) vertices.push_back(part.first);
       sort_unique(vertices);
       const auto [found, is_new] = cliques_of_vertices.try_emplace(vertices, cliques_.size());
       if (is_new) {
@@ -215,8 +215,8 @@ void ActuatorMeasures::add_cliques(linear::Cliques& cliques) {
         cliques.add(vertices);
       }
       cliques_[found->second].terms.push_back(t);
-      for (auto& shares : term.parts)
-        for (Part& part : shares)
+      for (auto& fractions : term.parts)
+        for (Part& part : fractions)
           part.first =
               static_cast<Index>(std::lower_bound(vertices.begin(), vertices.end(), part.first) - vertices.begin());
     }
@@ -224,7 +224,7 @@ void ActuatorMeasures::add_cliques(linear::Cliques& cliques) {
 }
 
 void ActuatorMeasures::second_derivative(const Clique& clique, const Points& positions, double scale,
-                                         const Eigen::VectorXd& shares, LargeVector<double>& slots) const {
+                                         const Eigen::VectorXd& fractions, LargeVector<double>& slots) const {
   using Block = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
   const auto count = static_cast<std::int64_t>(clique.vertices.size());
   double* out = slots.data() + 9 * clique.slot;
@@ -236,24 +236,24 @@ void ActuatorMeasures::second_derivative(const Clique& clique, const Points& pos
     Vec3 nodes[6];
     for (int i = 0; i < term.count; ++i) nodes[i] = at(term.nodes[i], positions);
     term_second_derivative(term.count, nodes, blocks);
-    const double share = shares.size() > 0 ? scale * shares[t] : scale;
+    const double fraction = fractions.size() > 0 ? scale * fractions[t] : scale;
     for (int i = 0; i < term.count; ++i)
       for (int j = 0; j < term.count; ++j)
         for (const auto& [row, row_weight] : term.parts[i])
           for (const auto& [column, column_weight] : term.parts[j])
             if (row >= column)
               Block(out + 9 * (static_cast<std::int64_t>(row) * (row + 1) / 2 + column)) +=
-                  share * row_weight * column_weight * blocks[i][j];
+                  fraction * row_weight * column_weight * blocks[i][j];
   }
 }
 
 void ActuatorMeasures::second_derivatives(const Points& positions, const Eigen::VectorXd& scale,
-                                          const std::vector<Eigen::VectorXd>& shares, LargeVector<double>& slots,
+                                          const std::vector<Eigen::VectorXd>& fractions, LargeVector<double>& slots,
                                           Team& team) const {
   team.pieces(cliques_.size(), [&](Index begin, Index end) {
     for (Index i = begin; i < end; ++i) {
       const Index a = cliques_[i].actuator;
-      second_derivative(cliques_[i], positions, scale[a], shares[a], slots);
+      second_derivative(cliques_[i], positions, scale[a], fractions[a], slots);
     }
   });
 }

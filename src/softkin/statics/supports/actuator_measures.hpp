@@ -6,8 +6,8 @@
 
 namespace softkin::supports {
 
-/// What the cables and chambers of a robot measure: polyline lengths [mm] and enclosed volumes [mm^3], with their first
-/// and second derivatives in the vertices.
+/// The measures of the cables and chambers of a robot: polyline lengths [mm] and enclosed volumes [mm^3], with their
+/// first and second derivatives by the vertices.
 class ActuatorMeasures {
  public:
   /// model must outlive the object.
@@ -20,19 +20,21 @@ class ActuatorMeasures {
   /// At rest.
   [[nodiscard]] double rest(Index actuator) const { return rest_[actuator]; }
 
-  // In the equations of equilibrium an actuator's measure is held to what is commanded, or its multiplier, a tension
-  // [N] or gauge pressure [MPa], is given. What fills a sealed chamber holds its volume to what its pressure leaves it.
+  // In the equations of equilibrium an actuator's measure is constrained to the commanded value, or its multiplier, a
+  // tension [N] or gauge pressure [MPa], is given. The volume of a sealed chamber is constrained to that of its filling
+  // at its pressure.
 
-  /// Is its measure or what fills it commanded (else its load, or it is a dea, or what is done to the robot).
+  /// Is its measure or its filling commanded (else its load, or it is a dea, or it acts on the robot without a
+  /// measure)?
   [[nodiscard]] bool constrains(Index actuator) const { return roles_[actuator].constrains; }
-  /// Is a load of the robot itself commanded: tension, pressure or voltage.
+  /// Is a load of the robot itself commanded: tension, pressure or voltage?
   [[nodiscard]] bool given_load(Index actuator) const { return roles_[actuator].given_load; }
-  /// Of its multiplier times its measure in the potential: 1 for cables, -1 for chambers.
+  /// Sign of its multiplier times its measure in the potential: 1 for cables, -1 for chambers.
   [[nodiscard]] double sign(Index actuator) const { return roles_[actuator].sign; }
   /// Internal unit of a multiplier over that of the user: MPa per kPa, N per N.
   [[nodiscard]] double unit(Index actuator) const { return roles_[actuator].unit; }
-  /// The multiplier of a load by its command: what the scene's factor and offset make of it. They never make a cable
-  /// push.
+  /// Returns the multiplier of a load by its command, with the scene's factor and offset; of a cable it is never
+  /// negative.
   [[nodiscard]] double given(Index actuator, double command) const {
     const Role& role = roles_[actuator];
     return is_slack(actuator, command) ? 0 : role.unit * (role.factor * command + role.offset);
@@ -42,7 +44,7 @@ class ActuatorMeasures {
     const Role& role = roles_[actuator];
     return role.only_pulls && command >= 0 && role.factor * command + role.offset < 0;
   }
-  /// The other way round.
+  /// Returns the command by the multiplier of a load, the inverse of given().
   [[nodiscard]] double command(Index actuator, double multiplier) const {
     return (multiplier / roles_[actuator].unit - roles_[actuator].offset) / roles_[actuator].factor;
   }
@@ -50,9 +52,10 @@ class ActuatorMeasures {
   [[nodiscard]] double rate(Index actuator, double command) const {
     return is_slack(actuator, command) ? 0 : roles_[actuator].unit * roles_[actuator].factor;
   }
-  /// A cable, which gives way where it would push.
+  /// Is it a cable, which becomes slack instead of carrying compression?
   [[nodiscard]] bool only_pulls(Index actuator) const { return roles_[actuator].only_pulls; }
-  /// Demanded measure [mm, mm^3] by a command; that of a sealed chamber follows from its multiplier, too.
+  /// Returns the target of the measure [mm, mm^3] by a command; that of a sealed chamber depends on its multiplier,
+  /// too.
   [[nodiscard]] double target(Index actuator, const Eigen::VectorXd& actuation, double multiplier) const {
     const Filling* filling = roles_[actuator].filling;
     return filling ? filling->volume(actuation[actuator], multiplier) : actuation[actuator] * rest_[actuator];
@@ -62,17 +65,17 @@ class ActuatorMeasures {
     const Filling* filling = roles_[actuator].filling;
     return filling ? filling->by_command(multiplier) : rest_[actuator];
   }
-  /// The command that demands a measure.
+  /// Returns the command whose target is a measure.
   [[nodiscard]] double command_for(Index actuator, double measure, double multiplier) const {
     const Filling* filling = roles_[actuator].filling;
     return filling ? filling->command(measure, multiplier) : measure / rest_[actuator];
   }
-  /// What fills a sealed chamber whose amount is commanded; null: nothing that is.
+  /// Returns the filling of a sealed chamber whose amount is commanded; null: there is none.
   [[nodiscard]] const Filling* filling(Index actuator) const { return roles_[actuator].filling; }
   /// Is there such a chamber?
   [[nodiscard]] bool any_filling() const { return any_filling_; }
 
-  /// Value of an actuator's measure; gradient (#V by 3) where it is asked for.
+  /// Returns the value of an actuator's measure, and its gradient (#V by 3) if that is not null.
   [[nodiscard]] double value(Index actuator, const Points& positions, Points* gradient = nullptr) const;
 
   /// Adds the cliques of all second derivatives.
@@ -80,12 +83,12 @@ class ActuatorMeasures {
 
   /// Writes scale[a] times the second derivative of each actuator's measure into its slots, 9 values each.
   ///
-  /// shares  per actuator, of each of its parts; empty: 1
+  /// fractions  per actuator, of each of its parts; empty: 1
   void second_derivatives(const Points& positions, const Eigen::VectorXd& scale,
-                          const std::vector<Eigen::VectorXd>& shares, LargeVector<double>& slots, Team& team) const;
+                          const std::vector<Eigen::VectorXd>& fractions, LargeVector<double>& slots, Team& team) const;
 
  private:
-  /// A vertex by its place in a clique, and the share of a node that it has.
+  /// A vertex by its place in a clique, and its weight in a node.
   using Part = std::pair<Index, double>;
   /// A segment (2 nodes), a flat face (3) or a curved one (6: corners, then edges 01, 12, 20). Nodes beyond the
   /// vertices are embedded points.
@@ -110,7 +113,7 @@ class ActuatorMeasures {
   [[nodiscard]] Vec3 at(Index node, const Points& positions) const;
   void spread(Index node, const Vec3& vector, Points& gradient) const;
   [[nodiscard]] std::vector<std::vector<Part>> parts_of(const Term& term) const;
-  void second_derivative(const Clique& clique, const Points& positions, double scale, const Eigen::VectorXd& shares,
+  void second_derivative(const Clique& clique, const Points& positions, double scale, const Eigen::VectorXd& fractions,
                          LargeVector<double>& slots) const;
 
   Index vertices_;

@@ -237,16 +237,16 @@ void Freedoms::add_turning(const Points& gradient, const Points& positions,
   }
 }
 
-void Freedoms::hold(double share, Points& positions) const {
+void Freedoms::hold(double load_factor, Points& positions) const {
   for (Index v = 0; v < rest_.rows(); ++v)
     if (region_of_[v] < 0)
       for (int axis = 0; axis < 3; ++axis)
-        if (fixed_[v][axis]) positions(v, axis) = rest_(v, axis) + share * (held_(v, axis) - rest_(v, axis));
+        if (fixed_[v][axis]) positions(v, axis) = rest_(v, axis) + load_factor * (held_(v, axis) - rest_(v, axis));
   for (const Region& region : regions_) {
     Vec3 middle = center_of(region, positions);
     const Mat3 rotation = rotation_of(region, positions, middle);
     for (int axis = 0; axis < 3; ++axis)
-      if (!region.slides[axis]) middle[axis] = region.rest_center[axis] + share * region.displacement[axis];
+      if (!region.slides[axis]) middle[axis] = region.rest_center[axis] + load_factor * region.displacement[axis];
     for (Index i = 0; i < region.offsets.rows(); ++i)
       positions.row(region.vertices[i]) = (middle + rotation * region.offsets.row(i).transpose()).transpose();
   }

@@ -13,10 +13,10 @@ namespace softkin::supports {
 /// from that of moves by a length squared). x moves by T u to first order.
 class Freedoms {
  public:
-  /// scalars: the model's last vertices are such, each an unknown that stands at a corner and pushes what is around
-  ///          it, with nothing or little of its own on the diagonal: the corner of each
+  /// scalars: the corners of the model's last vertices, if these are scalar unknowns, such as pressures: each belongs
+  ///          to a corner, couples with the vertices around it, and has little or nothing on the diagonal
   Freedoms(const Model& model, const linear::BlockPattern& pattern, std::vector<Index> scalars = {});
-  /// The same unknowns of a model that is held elsewhere by the same.
+  /// The same unknowns of a model with the same supports at other places.
   Freedoms(const Freedoms& like, const Model& model);
 
   [[nodiscard]] Index size() const { return unknowns_.back(); }
@@ -45,12 +45,12 @@ class Freedoms {
   };
   [[nodiscard]] Size size_of(const Eigen::Ref<const Eigen::VectorXd>& unknowns, const Points& positions) const;
 
-  /// Adds what the gradient adds for turns to that second derivative, times unknowns.
+  /// Adds the contribution of the gradient to the second derivative by turns, times unknowns.
   void add_turning(const Points& gradient, const Points& positions, const Eigen::Ref<const Eigen::VectorXd>& unknowns,
                    Eigen::Ref<Eigen::VectorXd> out) const;
 
-  /// Puts what is fixed at rest + share (held - rest), and rigid regions into the pose that fits them best.
-  void hold(double share, Points& positions) const;
+  /// Moves fixed vertices to rest + load_factor (held - rest), and rigid regions into their best-fit poses.
+  void hold(double load_factor, Points& positions) const;
 
  private:
   friend class ReducedMatrix;

@@ -145,15 +145,15 @@ Eigen::VectorXd GlobalStep::gauss_newton_move(const Handles& slope, const std::v
   return solve_symmetric(normal, right);
 }
 
-/// Minimises sum_axis (dH' S dH - 2 dH' asked) over the poses, dH = H - H at the start.
-void GlobalStep::move_poses(const Handles& asked, std::vector<Pose>& poses) const {
+/// Minimises sum_axis (dH' S dH - 2 dH' requested) over the poses, dH = H - H at the start.
+void GlobalStep::move_poses(const Handles& requested, std::vector<Pose>& poses) const {
   const Handles start = handles_of(poses);
   const auto slope_at = [&](const Handles& handles, double& value) {
     const Handles moved = handles - start;
-    Handles slope = asked;
+    Handles slope = requested;
     for (const Group& group : groups_)
       for (const int axis : group.axes) slope.col(axis) -= group.schur * moved.col(axis);
-    value = -(moved.cwiseProduct(slope + asked)).sum();
+    value = -(moved.cwiseProduct(slope + requested)).sum();
     return slope;
   };
   double value = 0;
@@ -182,7 +182,7 @@ void GlobalStep::move_poses(const Handles& asked, std::vector<Pose>& poses) cons
 }
 
 void GlobalStep::step(const Points& residual, Points& positions, std::vector<Pose>& poses, Team& team) const {
-  Handles asked = handles_of(residual);
+  Handles requested = handles_of(residual);
   std::vector<Points> moves;
   for (const Group& group : groups_) {
     const Index count = group.free.size();
@@ -191,11 +191,11 @@ void GlobalStep::step(const Points& residual, Points& positions, std::vector<Pos
       for (const int axis : group.axes) move(i, axis) = residual(group.free[i], axis);
     if (count > 0) group.factor.front().solve(move, team);
     if (!regions_.empty())
-      for (const int axis : group.axes) asked.col(axis) -= group.coupling.transpose() * move.col(axis);
+      for (const int axis : group.axes) requested.col(axis) -= group.coupling.transpose() * move.col(axis);
   }
   if (!regions_.empty()) {
     const Handles before = handles_of(poses);
-    move_poses(asked, poses);
+    move_poses(requested, poses);
     const Handles moved = handles_of(poses) - before;
     for (std::size_t g = 0; g < groups_.size(); ++g)
       for (const int axis : groups_[g].axes) moves[g].col(axis) -= groups_[g].follow * moved.col(axis);

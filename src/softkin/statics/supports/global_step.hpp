@@ -13,8 +13,8 @@ struct Pose {
   Mat3 rotation;
 };
 
-/// The global step of Algorithm 1, Eq. (10), with what holds the robot: fixed vertices and axes are left out of the
-/// system, rigid regions move as one.
+/// The global step of Algorithm 1, Eq. (10), with supports: fixed vertices and axes are left out of the system, rigid
+/// regions move as one.
 ///
 /// A rigid region's vertices are [1 q] H with the 4 x 3 matrix H = [center; R^T]. All other vertices are eliminated
 /// with the constant factor, which leaves a small quadratic in the H of all regions; it is minimised over the poses by
@@ -26,18 +26,18 @@ class GlobalStep {
   /// throws  InvalidInput where a part is not held
   GlobalStep(const Model& model, const Eigen::SparseMatrix<double>& matrix, const std::vector<Index>& order = {});
 
-  /// Moves positions (#V by 3) by the step that residual (#V by 3) asks for; poses move along.
+  /// Moves positions (#V by 3) by the step for residual (#V by 3); poses move along.
   void step(const Points& residual, Points& positions, std::vector<Pose>& poses, Team& team) const;
 
-  /// Puts fixed vertices where they are held, turned as the actuation says, and rigid regions into their best-fit
+  /// Moves fixed vertices to their supports, turned by the actuation's angles, and rigid regions into their best-fit
   /// poses.
   [[nodiscard]] std::vector<Pose> project(const Eigen::VectorXd& actuation, Points& positions) const;
 
   /// Poses that fit best.
   [[nodiscard]] std::vector<Pose> poses(const Points& positions) const;
 
-  /// residual without what supports carry: fixed axes are zero, rigid regions keep net force and torque only, as
-  /// the root of the sum of squares [unit of residual].
+  /// Returns the residual without the forces of supports: fixed axes are zero, rigid regions keep net force and torque
+  /// only, as the root of the sum of squares [unit of residual].
   [[nodiscard]] double free_norm(const Points& residual, const std::vector<Pose>& poses) const;
 
  private:
@@ -58,7 +58,7 @@ class GlobalStep {
   [[nodiscard]] Handles handles_of(const std::vector<Pose>& poses) const;
   [[nodiscard]] Eigen::MatrixXd tangent_of(const std::vector<Pose>& poses, int axis) const;
   [[nodiscard]] Eigen::VectorXd gauss_newton_move(const Handles& slope, const std::vector<Pose>& poses) const;
-  void move_poses(const Handles& asked, std::vector<Pose>& poses) const;
+  void move_poses(const Handles& requested, std::vector<Pose>& poses) const;
 
   std::vector<Group> groups_;
   std::vector<RigidBody> regions_;

@@ -171,7 +171,7 @@ void ReducedMatrix::add_regions(const linear::BlockPattern& pattern, const Large
   }
 }
 
-/// What the gradient adds of the regions that turn.
+/// Adds the contribution of the gradient for regions that turn.
 void ReducedMatrix::add_turning(const Points& gradient, const Points& positions, LargeVector<double>& values) const {
   const Freedoms& f = *freedoms_;
   for (std::size_t r = 0; r < f.regions_.size(); ++r) {

@@ -28,7 +28,7 @@ class ReducedMatrix {
   [[nodiscard]] Index scalars() const { return freedoms_->scalars_.size(); }
 
   /// The second derivative in the unknowns of an energy with the given gradient and Hessian in x: T^T H T and, for
-  /// turns, what the gradient adds. values: of columns(). The Hessian is given by the slots of the pattern.
+  /// turns, the contribution of the gradient. values: of columns(). The Hessian is given by the slots of the pattern.
   void reduce(const linear::BlockPattern& pattern, const LargeVector<double>& slots, const Points& gradient,
               const Points& positions, LargeVector<double>& values, Team& team) const;
 

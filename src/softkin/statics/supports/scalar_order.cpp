@@ -47,10 +47,10 @@ std::vector<Index> last_links(const Graph& graph, const Others& others, const st
 
 }  // namespace
 
-/// An order of elimination. A scalar stands right behind its corner and the nodes on all edges that end there: what is
-/// eliminated before it then answers it by itself, as moves along edges do whatever differences of pressures there are
-/// (they are why Taylor's and Hood's elements are stable), and no pivot is small. Of linear elements, which smooth it,
-/// right behind its corner. Where the corner has no unknowns, behind all that it pushes.
+/// An order of elimination. A scalar comes right after its corner and the nodes on all edges that end there: its pivot
+/// then is not small, as the moves along edges that are eliminated before it respond to every difference of pressures
+/// (which is why Taylor-Hood elements are stable). Of linear elements, whose pressures are smoothed, it comes right
+/// after its corner. Where the corner has no unknowns, it comes after all vertices with which it couples.
 linear::Ordering Freedoms::ordering_of(const Model& model, const Graph& graph) const {
   const bool quadratic = !model.elements.edge_nodes.empty();
   if (scalars_.empty())

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double radians = std::numbers::pi / 180;
 
-/// Whole turns are left out, so that 360 degrees are none to the last digit.
+/// Omits whole turns, so that 360 degrees are exactly the same as 0.
 Mat3 rotation_by(const SupportTurn& turn, double degrees) {
   return rotation_about(std::remainder(degrees, 360.0) * radians * turn.axis);
 }
@@ -23,25 +23,25 @@ const SupportTurn* Turning::turn_of(Index actuator) const {
   return command ? &model_.held.turns[command->turn] : nullptr;
 }
 
-void Turning::place(const Eigen::VectorXd& actuation, double share, Points& positions) const {
+void Turning::place(const Eigen::VectorXd& actuation, double load_factor, Points& positions) const {
   for (Index a = 0; any() && a < actuation.size(); ++a) {
     const SupportTurn* turn = turn_of(a);
     if (turn == nullptr) continue;
-    const Mat3 rotation = rotation_by(*turn, share * actuation[a]);
+    const Mat3 rotation = rotation_by(*turn, load_factor * actuation[a]);
     for (const Index v : turn->vertices) {
       const Vec3 arm = model_.rest.row(v).transpose() - turn->about;
-      positions.row(v) = (turn->about + rotation * arm + share * turn->displacement).transpose();
+      positions.row(v) = (turn->about + rotation * arm + load_factor * turn->displacement).transpose();
     }
   }
 }
 
-void Turning::add_velocity(Index actuator, const Eigen::VectorXd& actuation, double share, Points& moves) const {
+void Turning::add_velocity(Index actuator, const Eigen::VectorXd& actuation, double load_factor, Points& moves) const {
   const SupportTurn* turn = turn_of(actuator);
   if (turn == nullptr) return;
-  const Mat3 rotation = rotation_by(*turn, share * actuation[actuator]);
+  const Mat3 rotation = rotation_by(*turn, load_factor * actuation[actuator]);
   for (const Index v : turn->vertices) {
     const Vec3 arm = model_.rest.row(v).transpose() - turn->about;
-    moves.row(v) += share * radians * turn->axis.cross(rotation * arm).transpose();
+    moves.row(v) += load_factor * radians * turn->axis.cross(rotation * arm).transpose();
   }
 }
 
@@ -58,13 +58,14 @@ double Turning::angle(Index actuator, const Points& positions) const {
   return std::atan2(sine, cosine) / radians;
 }
 
-double Turning::largest_turn(const Eigen::VectorXd& from, double from_share, const Eigen::VectorXd& to,
-                             double to_share) const {
+double Turning::largest_turn(const Eigen::VectorXd& from, double from_fraction, const Eigen::VectorXd& to,
+                             double to_fraction) const {
   double largest = 0;
   for (Index a = 0; any() && a < to.size(); ++a)
     if (turn_of(a) != nullptr)
-      largest = std::max(largest, std::abs(to[a] - from[a]) * std::max(std::abs(from_share), std::abs(to_share)) +
-                                      std::abs(to_share - from_share) * std::max(std::abs(from[a]), std::abs(to[a])));
+      largest =
+          std::max(largest, std::abs(to[a] - from[a]) * std::max(std::abs(from_fraction), std::abs(to_fraction)) +
+                                std::abs(to_fraction - from_fraction) * std::max(std::abs(from[a]), std::abs(to[a])));
   return largest;
 }
 

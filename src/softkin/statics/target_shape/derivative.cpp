@@ -9,15 +9,15 @@ using namespace energy;
 
 namespace {
 
-/// What rounding may add to a solution with the factor of K itself: more, and K is singular.
+/// Largest relative part of a solution by rounding, with the factor of K itself; above it K is singular.
 constexpr double singular = 1e-6, unbounded = std::numeric_limits<double>::infinity();
 /// Rounds with a factor from nearby that cost about as much as a new factor, and with one that is never exact.
-constexpr int symmetric_rounds = 8, most_rounds = 60;
+constexpr int symmetric_rounds = 8, max_rounds = 60;
 
 }  // namespace
 
 bool Tangent::solve_exactly(const System::Scratch& local, const Points& positions, const Eigen::MatrixXd& rights,
-                            const Accuracy& asked, Team& team, Eigen::MatrixXd& steps) {
+                            const Accuracy& requested, Team& team, Eigen::MatrixXd& steps) {
   const auto precondition_all = [&](Eigen::MatrixXd& columns) {
     factor_.solve(columns, team);
     if (sources_.cols() > 0) columns -= sources_ * (capacitance_ * (targets_.transpose() * columns));
@@ -34,8 +34,8 @@ bool Tangent::solve_exactly(const System::Scratch& local, const Points& position
   precondition_all(left);
   if (!left.allFinite()) return false;
   const linear::Remainder remainder =
-      linear::conjugate_residuals(multiply_all, asked.residual, asked.rounds, left, steps);
-  return remainder.apart <= asked.apart && remainder.left <= asked.residual && steps.allFinite();
+      linear::conjugate_residuals(multiply_all, requested.residual, requested.rounds, left, steps);
+  return remainder.apart <= requested.apart && remainder.left <= requested.residual && steps.allFinite();
 }
 
 Sensitivity Newton::sensitivity(const State& at, bool reuse_factor, double accuracy, Team& team) const {
@@ -48,7 +48,7 @@ Sensitivity Newton::sensitivity(const State& at, bool reuse_factor, double accur
   (void)unknowns_.system.local_step(at.actuation, at.positions, local, team);
   Eigen::MatrixXd rights(unknowns_.freedoms.size(), actuators), steps;
   const supports::Turning turning(unknowns_.model);
-  std::vector<Points> turned(actuators);  // what is held, of commands that turn it
+  std::vector<Points> turned(actuators);  // supported vertices, of commands that turn them
   for (Index a = 0; a < actuators; ++a) {
     if (unknowns_.model.actuators[a].is<TurnCommand>()) {
       Points& moves = turned[a];
@@ -64,13 +64,13 @@ Sensitivity Newton::sensitivity(const State& at, bool reuse_factor, double accur
   const auto solve = [&](int rounds, double apart) {
     return tangent.solve_exactly(local, at.positions, rights, {rounds, accuracy, apart}, team, steps);
   };
-  result.regular = near && solve(tangent.symmetric() ? symmetric_rounds : most_rounds, unbounded);
+  result.regular = near && solve(tangent.symmetric() ? symmetric_rounds : max_rounds, unbounded);
   if (!result.regular) {
     SolveReport report;
     workspace->home.resize(0, 3);
     if (tangent.factorise(local, at.positions, false, team, report)) {
       const bool exact = tangent.symmetric() && report.projections == 0;
-      result.regular = solve(most_rounds, exact ? singular : unbounded);
+      result.regular = solve(max_rounds, exact ? singular : unbounded);
     }
     if (result.regular) workspace->home = at.positions;
   }

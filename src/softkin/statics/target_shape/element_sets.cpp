@@ -24,15 +24,15 @@ RestShape<K> rest_shape(const Points& positions, const std::array<Index, K>& nod
   return shape;
 }
 
-/// The square of an element's size, by which Eq. (2) makes large elements stiffer: a third of the squared distances of
-/// its corners from their centre [mm^2]. In an element that strains alike in all directions, whatever its shape, and on
-/// the mean over all ways to turn it, the energy over this is volume times squared strain.
+/// Returns the square of an element's size, by which Eq. (2) makes large elements stiffer: a third of the squared
+/// distances of its corners from their centre [mm^2]. In an element that strains alike in all directions, whatever its
+/// shape, and averaged over all orientations of it, the energy over this is volume times squared strain.
 template <int K>
 double squared_size(const RestShape<K>& rest) {
   return (rest.rowwise() - rest.colwise().mean()).squaredNorm() / 3;
 }
 
-/// What an element's squared distance from its target is multiplied by.
+/// Returns the factor of an element's squared distance from its target.
 template <int K>
 double element_weight(const Model& model, double weight, double volume, const RestShape<K>& rest) {
   const double of_volume = weight * volume;
@@ -77,7 +77,7 @@ void add_actuation(const Model& model, ActuationSet<K>& set, const std::array<In
                    const TargetSplit<K>& split, double measure, double weight) {
   set.even = K != 3 && model.weights == ElementWeights::mesh_independent;  // gaps of a cable are none of the mesh
   set.measure_sum += measure;
-  set.share_sum += set.even ? measure : measure * measure;
+  set.fraction_sum += set.even ? measure : measure * measure;
   add_element<K>(set, nodes, [&](ActuationBlock<K>& block, int l) {
     for (int i = 0; i < K; ++i) {
       set_lane(block.constant[i], l, split.constant.row(i));
@@ -97,8 +97,9 @@ double mean_area(const RestShape<6>& p) {
   return 0.5 * (area(0, 1, 2) + area(3, 4, 5));
 }
 
-/// A triangle has no volume: by the printed weights it counts as a body element of mean volume, so that its weight is w
-/// times that of its surroundings. Much heavier ones stop local/global from converging, much lighter ones give way.
+/// A triangle has no volume: with the printed weights it counts as a body element of mean volume, so that its weight is
+/// w times that of its surroundings. Much heavier ones stop local/global from converging, much lighter ones are too
+/// compliant.
 double mean_volume(const Model& model) {
   double sum = 0, count = 0;
   const auto add = [&](const std::vector<ElementRole>& roles, const std::vector<double>& volumes) {

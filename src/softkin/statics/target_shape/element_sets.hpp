@@ -11,16 +11,16 @@ struct ElementSet {
   Index count = 0;       // elements; the last block repeats the last one, without weight, to fill its lanes
   Index first_slot = 0;  // of the pulls that this set writes: element e, node i writes slot first_slot + K e + i
   Index actuator = -1;
-  double measure_sum = 0;  // of the actuation elements at rest: sum u
-  double share_sum = 0;    // sum of share times measure
-  bool even = false;       // a change of all is shared alike, whatever an element's measure
+  double measure_sum = 0;   // of the actuation elements at rest: sum u
+  double fraction_sum = 0;  // sum of fraction times measure
+  bool even = false;        // a change of all is distributed evenly, whatever an element's measure
   std::vector<Block> blocks;
   std::vector<std::array<std::array<Index, energy::lanes>, K>> nodes;
 
   [[nodiscard]] Index block_count() const { return blocks.size(); }
-  /// How least-norm ratios share a change: by measure where sum a^2 is least, which gives more to larger elements;
-  /// alike where sum u a^2 is, which does not depend on how the mesh divides a chamber.
-  [[nodiscard]] energy::Pack share(Index block) const { return even ? energy::pack(1) : blocks[block].measure; }
+  /// How least-norm ratios distribute a change: by measure where sum a^2 is least, which gives more to larger elements;
+  /// evenly where sum u a^2 is least, which does not depend on how the mesh divides a chamber.
+  [[nodiscard]] energy::Pack fraction(Index block) const { return even ? energy::pack(1) : blocks[block].measure; }
 };
 
 template <int K>
@@ -48,11 +48,11 @@ struct ElementSets {
   }
 };
 
-/// The elements of Eq. (9), weighted by w Vol, or as Model::weights says. model must outlive the result.
+/// The elements of Eq. (9), weighted by w Vol, or according to Model::weights. model must outlive the result.
 [[nodiscard]] ElementSets make_element_sets(const Model& model);
 
 /// Local ratios stay above this, where a target shape would vanish or turn over [-].
-inline constexpr double least_ratio = 0.01;
+inline constexpr double min_ratio = 0.01;
 
 /// A block's nodes, lane by lane.
 template <int K, class Nodes>

@@ -9,8 +9,8 @@ namespace softkin::target_shape {
 
 namespace {
 
-/// Accelerated steps may raise the energy a little on their way, and have to where R_omega < 1 or ratios are
-/// redistributed; those that raise it more lead to other equilibria.
+/// Accelerated steps may temporarily raise the energy a little, and must where R_omega < 1 or ratios are redistributed;
+/// those that raise it more lead to other equilibria.
 constexpr double tolerated_growth = 1.2;
 
 /// How far the fixed point may be: the step over the least change of steps per change of shape in the last iterations,
@@ -39,8 +39,8 @@ class ErrorEstimate {
 
 constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-/// Notices iterations that go round in circles: so many of which the least step is hardly shorter than before, or is
-/// still far from the tolerance at that pace.
+/// Detects iterations without progress: over a given number of them the least step is hardly shorter than before, or is
+/// still far from the tolerance at that rate.
 class Stall {
  public:
   Stall(const Patience& patience, double tolerance_mm) : patience_(patience), tolerance_mm_(tolerance_mm) {}
@@ -51,7 +51,7 @@ class Stall {
     energy_ = std::min(energy_, record.energy);
     if (++count_ % patience_.iterations != 0) return false;
     const double left = patience_.iterations * std::log(step_mm_ / tolerance_mm_) / std::log(best_step_mm_ / step_mm_);
-    const bool slow = step_mm_ > hardly * best_step_mm_ || left > patience_.most_left;
+    const bool slow = step_mm_ > hardly * best_step_mm_ || left > patience_.max_left;
     const bool stalled = slow && !(patience_.descends && energy_ <= no_smaller * best_energy_);
     best_step_mm_ = std::min(best_step_mm_, std::exchange(step_mm_, unlimited));
     best_energy_ = std::min(best_energy_, std::exchange(energy_, unlimited));
@@ -103,7 +103,7 @@ LocalGlobal::LocalGlobal(const System& system, const supports::GlobalStep& globa
 
 bool LocalGlobal::iterate(System::Scratch& scratch, Team& team, IterationRecord& record) {
   record.energy = system_.local_step(actuation_, positions_, scratch, team);
-  if (record.energy > tolerated_) {  // the extrapolation went astray: on from the plain step
+  if (record.energy > tolerated_) {  // the extrapolation diverged: continue from the plain step
     positions_ = accepted_;
     poses_ = global_.project(actuation_, positions_);
     mixer_.restart();

@@ -7,8 +7,8 @@
 
 namespace softkin::target_shape {
 
-/// Algorithm 1, iteration by iteration, with Anderson acceleration where asked for. Accelerated steps that lead astray
-/// are taken back.
+/// Algorithm 1, iteration by iteration, with optional Anderson acceleration. Accelerated steps that raise the energy
+/// too much are rejected.
 class LocalGlobal {
  public:
   /// anderson: earlier steps that are combined; 0: as printed. Puts positions where supports hold them.
@@ -21,7 +21,7 @@ class LocalGlobal {
   /// returns  false where a number is not finite: positions are the last good ones then, and the iteration is over
   [[nodiscard]] bool iterate(System::Scratch& scratch, Team& team, IterationRecord& record);
 
-  /// Goes on from an extrapolation of the last iterations.
+  /// Continues from an extrapolation of the last iterations.
   void extrapolate();
 
   /// Shapes before and after the last iteration.
@@ -43,18 +43,18 @@ class LocalGlobal {
 /// Enters an iteration into a report.
 void accept(const IterationRecord& record, bool keep_history, SolveReport& report);
 
-/// What Algorithm 1 goes by; what it refers to must outlive it.
+/// The objects with which Algorithm 1 works; they must outlive it.
 struct Steps {
   const Model& model;
   const System& system;                // the local step
   const supports::GlobalStep& global;  // the global step
 };
 
-/// When iterations that lead nowhere end.
+/// When iterations without progress end.
 struct Patience {
-  int iterations = 0;     // that go round in circles
-  double most_left = 0;   // at their pace; more is too long to wait for
-  bool descends = false;  // is it worth waiting for where the energy still falls
+  int iterations = 0;     // over which progress is measured
+  double max_left = 0;    // maximum iterations left, at that rate
+  bool descends = false;  // continue where the energy still falls
 };
 
 /// Algorithm 1 from result.state.positions until no vertex moves farther than report.tolerance_mm in an iteration, or

@@ -9,16 +9,16 @@ using namespace energy;
 
 namespace {
 
-/// Steps are halved so often at most: where the energy decides to the end, and where something else can be tried.
-constexpr int most_halvings = 12, few_halvings = 2;
+/// Maximum number of halvings of a step: where the energy alone decides, and where there is an alternative.
+constexpr int max_halvings = 12, few_halvings = 2;
 
-/// What GMRES leaves of the residual at most, and at least: below is rounding. Directions less exact lead astray on
-/// slender robots.
+/// Largest and smallest tolerance of GMRES, relative to the residual: below is rounding. Less exact directions lead
+/// astray on slender robots.
 constexpr double loosest = 1e-2, tightest = 1e-10;
 
-/// Steps of the run to what is asked for, of those to equilibria on the way, which are near, and those that move
-/// nothing and yet do not end a run.
-constexpr int most_steps = 80, most_steps_on_the_way = 40, most_idle_steps = 4;
+/// Maximum number of steps of the run to the target, of runs to intermediate equilibria, which are near, and of steps
+/// that move nothing and yet do not end a run.
+constexpr int max_steps = 80, max_intermediate_steps = 40, max_idle_steps = 4;
 
 /// Accelerated local-global iterations at a time, and how many earlier ones each combines.
 constexpr int rescue = 50, rescue_window = 6;
@@ -42,27 +42,27 @@ double rounding_energy(const Model& model, const ElementSets& sets) {
 
 using End = NewtonSearch::End;
 
-/// Local-global iterations that help Newton's method out in a run after which equilibria on the way are tried, and in
-/// one where these led nowhere either.
+/// Local-global iterations that support Newton's method in a run after which intermediate equilibria are tried, and in
+/// one after these failed.
 constexpr int first_patience = rescue, patience = 300;
-/// Of Algorithm 1 where nothing else is left: most such robots have no fixed point within reach, and its limit of
-/// iterations is for those who ask for it.
+/// Patience of Algorithm 1 as the last resort: most such robots have no fixed point within reach, and its full limit of
+/// iterations is for users who select it.
 constexpr Patience at_last = {100, 1000, false};
 
-/// Equilibria on the way from one actuation to another; the step is halved where one is not found and doubled where
-/// one is.
+/// Follows intermediate equilibria from one actuation to another; the step is halved where one is not found and doubled
+/// where one is.
 End follow(const Actuation& from, const Actuation& to, NewtonSearch& search, Points& positions, SolveReport& report) {
   constexpr double first = 0.25, least = 1.0 / 256;
-  double share = 0, step = first;
+  double fraction = 0, step = first;
   Points reached = positions;
   report.continuation_steps = 0;
-  while (share < 1) {
-    const double next = std::min(1.0, share + step);
+  while (fraction < 1) {
+    const double next = std::min(1.0, fraction + step);
     positions = reached;
-    const End end = search.run(from + next * (to - from), most_steps_on_the_way, 0, positions);
+    const End end = search.run(from + next * (to - from), max_intermediate_steps, 0, positions);
     if (end == End::interrupted || end == End::astray) return end;
     if (end == End::converged) {
-      share = next;
+      fraction = next;
       step *= 2;
       reached = positions;
       ++report.continuation_steps;
@@ -96,13 +96,13 @@ NewtonSearch::NewtonSearch(const Unknowns& unknowns, const supports::GlobalStep&
   for (auto& rotations : workspace_.local.rotations) std::fill(rotations.begin(), rotations.end(), PackRotation{});
 }
 
-/// Local step at positions, which supports put right before.
+/// Makes the local step at positions, which are projected to the supports before.
 void NewtonSearch::evaluate(const Actuation& actuation, Points& positions) {
   poses_ = global_.project(actuation, positions);
   energy_ = unknowns_.system.local_step(actuation, positions, workspace_.local, team_);
 }
 
-/// The exact step; false where none comes of it.
+/// Computes the exact step; false where that fails.
 bool NewtonSearch::exact_direction(const Points& positions) {
   if (!direction_.keep_factor) {
     if (!workspace_.tangent.factorise(workspace_.local, positions, false, team_, report_)) return false;
@@ -137,12 +137,13 @@ double NewtonSearch::natural_norm(const Points& positions) {
   return moves_.norm();
 }
 
-/// A whole, exact step that ends the search: what it does to energy or residual may be rounding.
+/// Is it a whole, exact step that ends the search? Its change of energy or residual may be rounding.
 bool NewtonSearch::negligible(int halvings, const Points& positions) const {
   return halvings == 0 && direction_.exact && largest_move(before_, positions) < report_.tolerance_mm;
 }
 
-/// Does Algorithm 1 agree? Where best rotations are about to turn over it moves on by many small steps of Newton's.
+/// Is it a fixed point of Algorithm 1, too? Where best-fit rotations are about to turn over, many small steps of
+/// Newton's method follow.
 bool NewtonSearch::at_fixed_point(const Points& positions) {
   Points next = positions;
   std::vector<supports::Pose> poses = poses_;
@@ -150,7 +151,7 @@ bool NewtonSearch::at_fixed_point(const Points& positions) {
   return largest_move(positions, next) < report_.tolerance_mm;
 }
 
-/// The step that the last factor asks for from here on, taken if it ends the search.
+/// Takes another step with the last factor if it ends the search.
 bool NewtonSearch::close(const Actuation& actuation, Points& positions, double& step_mm) {
   constexpr double safely = 0.1;
   if (workspace_.tangent.shifted()) return false;
@@ -168,7 +169,7 @@ NewtonSearch::Step NewtonSearch::search_energy(const Actuation& actuation, Point
   constexpr double sufficient = 1e-4, rounding = 1e-12;
   const double start = energy_, slope = -2 * residual_.dot(step_);
   double scale = 1;
-  const int halvings = workspace_.tangent.symmetric() ? most_halvings : few_halvings;
+  const int halvings = workspace_.tangent.symmetric() ? max_halvings : few_halvings;
   for (int i = 0; i <= halvings; ++i, scale /= 2) {
     move(scale, positions);
     evaluate(actuation, positions);
@@ -178,8 +179,8 @@ NewtonSearch::Step NewtonSearch::search_energy(const Actuation& actuation, Point
   return Step::none;
 }
 
-/// Backtracking until the residual, seen through one preconditioner, falls (Deuflhard 2004, Section 3.3), or the energy
-/// falls well below all there was: far from the fixed point that tells more.
+/// Backtracks until the preconditioned residual falls, with one preconditioner (Deuflhard 2004, Section 3.3), or the
+/// energy falls well below its minimum so far, which is the better criterion far from the fixed point.
 NewtonSearch::Step NewtonSearch::search_residual(const Actuation& actuation, Points& positions) {
   constexpr double well_below = 0.9, still_near = 0.1;
   double scale = 1;
@@ -187,7 +188,7 @@ NewtonSearch::Step NewtonSearch::search_residual(const Actuation& actuation, Poi
     move(scale, positions);
     evaluate(actuation, positions);
     const double norm = natural_norm(positions);
-    if (negligible(i, positions) || norm <= (1 - scale / 4) * natural_start_ || energy_ < well_below * least_energy_) {
+    if (negligible(i, positions) || norm <= (1 - scale / 4) * natural_start_ || energy_ < well_below * min_energy_) {
       direction_.keep_factor = i == 0 && norm < still_near * natural_start_;
       return i == 0 ? Step::full : Step::shortened;
     }
@@ -195,8 +196,8 @@ NewtonSearch::Step NewtonSearch::search_residual(const Actuation& actuation, Poi
   return Step::none;
 }
 
-/// Moves from before_ by a share of the step, with the turns that it makes the targets make: what bends far bends,
-/// instead of growing along the tangents.
+/// Moves from before_ by a fraction of the step, including the rotations of the targets that it causes: parts that bend
+/// far then bend instead of growing along the tangents.
 void NewtonSearch::move(double scale, Points& positions) {
   scaled_ = scale * step_;
   workspace_.tangent.freedoms().expand(scaled_, before_, moves_);
@@ -226,7 +227,7 @@ NewtonSearch::Step NewtonSearch::newton_step(const Actuation& actuation, Points&
     step = search_energy(actuation, positions);
     if (step == Step::none) take_back(actuation, positions);
   }
-  least_energy_ = std::min(least_energy_, energy_);
+  min_energy_ = std::min(min_energy_, energy_);
   return step;
 }
 
@@ -236,7 +237,7 @@ NewtonSearch::End NewtonSearch::enter(const IterationRecord& record) {
   return goes_on ? End::stuck : End::interrupted;
 }
 
-/// stuck: go on
+/// stuck: the search continues
 NewtonSearch::End NewtonSearch::local_global(const Actuation& actuation, int count, Points& positions) {
   LocalGlobal iteration(unknowns_.system, global_, rescue_window, actuation, positions);
   End end = End::stuck;
@@ -265,13 +266,13 @@ NewtonSearch::End NewtonSearch::run(const Actuation& actuation, int most, int le
   natural_start_ = 0;
   direction_.keep_factor = false;
   direction_.projected_next = !workspace_.tangent.symmetric();
-  least_energy_ = energy_;
+  min_energy_ = energy_;
   if (energy_ <= rounding_energy(unknowns_.model, unknowns_.system.sets())) {  // every element has its target shape
     (void)enter(here());
     return End::converged;
   }
   int idle = 0;
-  for (int i = 0; i < most && idle < most_idle_steps; ++i) {
+  for (int i = 0; i < most && idle < max_idle_steps; ++i) {
     IterationRecord record = here();
     const Step step = newton_step(actuation, positions);
     if (step == Step::none) {
@@ -333,7 +334,7 @@ void Newton::solve(const Actuation& start, const StaticsOptions& options, const 
   std::unique_ptr<Workspace> workspace = take_workspace();
   workspace->home.resize(0, 3);
   NewtonSearch search(unknowns_, global_, *workspace, options, progress, team, report);
-  End end = search.run(result.actuation, most_steps, first_patience, positions);
+  End end = search.run(result.actuation, max_steps, first_patience, positions);
   if (end == End::stuck) {
     positions = begin;
     const Actuation from = start.size() == result.actuation.size() ? start : unknowns_.model.rest_actuation();
@@ -342,7 +343,7 @@ void Newton::solve(const Actuation& start, const StaticsOptions& options, const 
   if (end == End::stuck) {
     positions = begin;
     report.continuation_steps = 1;
-    end = search.run(result.actuation, most_steps, patience, positions);
+    end = search.run(result.actuation, max_steps, patience, positions);
   }
   if (end == End::converged && report.factorisations > 0) workspace->home = positions;
   put_back(std::move(workspace));

@@ -7,7 +7,7 @@
 
 namespace softkin::target_shape {
 
-/// What a search works in; it holds nothing that outlives a search but, for sensitivities, the last factor.
+/// Memory of a search; nothing in it outlives a search except, for sensitivities, the last factor.
 struct Workspace {
   explicit Workspace(const Unknowns& unknowns);
 
@@ -30,9 +30,9 @@ class NewtonSearch {
 
   /// From positions to the equilibrium at an actuation; positions are the last shape.
   ///
-  /// most_steps  of Newton's method
-  /// patience    local-global iterations that may be put in where Newton's method does not get on
-  End run(const Actuation& actuation, int most_steps, int patience, Points& positions);
+  /// max_steps   of Newton's method
+  /// patience    local-global iterations that may be inserted where Newton's method makes no progress
+  End run(const Actuation& actuation, int max_steps, int patience, Points& positions);
 
  private:
   enum class Step { full, shortened, none };
@@ -63,11 +63,11 @@ class NewtonSearch {
   std::vector<supports::Pose> poses_, poses_before_;
   Points before_, moves_;
   Eigen::VectorXd residual_, step_, scaled_, natural_;
-  double energy_ = 0, least_energy_ = 0, natural_start_ = 0, tolerance_ = 0;
+  double energy_ = 0, min_energy_ = 0, natural_start_ = 0, tolerance_ = 0;
   /// How the next step is to be found.
   struct Direction {
     bool exact = false;           // is step_ that of the exact derivative
-    bool projected_next = false;  // far from equilibria the exact derivative tells little
+    bool projected_next = false;  // far from equilibria the exact derivative is of little use
     bool keep_factor = false;     // the last one is still good
   };
   Direction direction_;
@@ -78,9 +78,9 @@ class NewtonSearch {
 ///
 /// Where the residual is a gradient (R_omega = 1, uniform ratios): the exact Hessian, element matrices made positive
 /// semidefinite where it is not positive definite, line search on the energy. Otherwise Newton-Krylov with the exact
-/// derivative and a line search on the residual, seen through the last preconditioner (Deuflhard's natural test). Where
-/// neither gets on, some accelerated local-global iterations; where these do not help, equilibria on the way from the
-/// start's actuation; at last Algorithm 1 to its end.
+/// derivative and a line search on the preconditioned residual, with the last preconditioner (Deuflhard's natural
+/// test). Where neither makes progress, some accelerated local-global iterations; where these do not help, intermediate
+/// equilibria from the start's actuation on; finally Algorithm 1 to its end.
 class Newton {
  public:
   /// All must outlive the object.
@@ -96,11 +96,11 @@ class Newton {
   /// Of an equilibrium; see Statics::sensitivity.
   [[nodiscard]] Sensitivity sensitivity(const State& at, bool reuse_factor, double accuracy, Team& team) const;
 
-  /// Drops what earlier solves left.
+  /// Drops the factors of earlier solves.
   void forget() const;
 
  private:
-  /// One that was left at the shape, if there is and a shape is given.
+  /// Returns the workspace that was left at a shape, if one is given and there is such a workspace; else another one.
   [[nodiscard]] std::unique_ptr<Workspace> take_workspace(const Points* shape = nullptr) const;
   void put_back(std::unique_ptr<Workspace> workspace) const;
 

@@ -44,7 +44,7 @@ class NewtonMatrix {
   linear::BlockPattern pattern_;
 };
 
-/// What the linear systems of all solves of one robot share: pattern, unknowns and symbolic factorisation.
+/// Common data of the linear systems of all solves of one robot: pattern, unknowns and symbolic factorisation.
 struct Unknowns {
   Unknowns(const Model& robot, const System& target_shapes);
 
@@ -65,7 +65,7 @@ class Tangent {
   explicit Tangent(const Unknowns& unknowns);
 
   /// Assembles and factorises at the shape of the last local_step: as it is; where that is not positive definite with
-  /// the elements' matrices projected; where that is not either, shifted by ever larger shares of its diagonal.
+  /// the elements' matrices projected; where that is not either, shifted by ever larger fractions of its diagonal.
   ///
   /// local      the scratch of that local_step
   /// positions  of it
@@ -90,7 +90,7 @@ class Tangent {
   bool solve(const System::Scratch& local, const Points& positions, const Eigen::VectorXd& right, double tolerance,
              Team& team, Eigen::VectorXd& step);
 
-  /// How a solution is asked for.
+  /// Required accuracy of a solution.
   struct Accuracy {
     int rounds = 0;       // at most
     double residual = 0;  // preconditioned, relative
@@ -99,9 +99,9 @@ class Tangent {
   /// Solves K steps = rights, a column each, for the exact K at a shape near that of the factor, symmetric or not, by
   /// conjugate residuals.
   ///
-  /// returns  false where K is farther from the identity, or so many rounds do not do
+  /// returns  false where K is farther from the identity, or these rounds do not suffice
   [[nodiscard]] bool solve_exactly(const System::Scratch& local, const Points& positions, const Eigen::MatrixXd& rights,
-                                   const Accuracy& asked, Team& team, Eigen::MatrixXd& steps);
+                                   const Accuracy& requested, Team& team, Eigen::MatrixXd& steps);
 
   [[nodiscard]] const supports::Freedoms& freedoms() const { return unknowns_.freedoms; }
   [[nodiscard]] bool symmetric() const { return unknowns_.symmetric; }
@@ -125,7 +125,7 @@ class Tangent {
   Points gradient_, moved_, origin_;
   Eigen::VectorXd turned_, unturned_;
   std::vector<Eigen::VectorXd> basis_;
-  double shift_ = 0;  // share of the diagonal in the last factor
+  double shift_ = 0;  // fraction of the diagonal in the last factor
 };
 
 }  // namespace softkin::target_shape

@@ -7,7 +7,7 @@ using namespace energy;
 
 namespace {
 
-/// Runs kernel(block, shape, rotation, out) over a set and stores what it gives.
+/// Runs kernel(block, shape, rotation, out) over a set and stores the results.
 template <int K, class Block, class Kernel>
 void run(const ElementSet<K, Block>& set, const Points& nodes, std::vector<PackRotation>& rotations, double* pulls,
          Pack* energies, Team& team, const Kernel& kernel) {
@@ -58,17 +58,17 @@ System::Scratch System::make_scratch() const {
 }
 
 /// Least norm: the least change from the current ratios that meets Eqs. (6)-(8),
-/// a_i = a_i^cur + s_i (a U - sum_j a_j^cur u_j) / sum_j s_j u_j with shares s_i = u_i, or 1 where the mesh must not
+/// a_i = a_i^cur + s_i (a U - sum_j a_j^cur u_j) / sum_j s_j u_j with weights s_i = u_i, or 1 where the mesh must not
 /// matter; for a cable, a U counts the gaps only. Proportional: a_i = c a_i^cur with c = a U / sum_j a_j^cur u_j; where
 /// the current measures sum to nothing, uniform.
 template <int K>
 void System::local_ratios(const ActuationSet<K>& set, double requested, const Points& nodes, std::vector<Pack>& ratios,
                           Following& following, Team& team) const {
   const Actuator& actuator = model_.actuators[set.actuator];
-  const double asked = requested * actuator.rest_measure - (actuator.rest_measure - set.measure_sum);
-  following = {.asked = asked};
+  const double target = requested * actuator.rest_measure - (actuator.rest_measure - set.measure_sum);
+  following = {.target = target};
   const auto all_alike = [&] {
-    std::fill(ratios.begin(), ratios.end(), pack(std::max(least_ratio, asked / set.measure_sum)));
+    std::fill(ratios.begin(), ratios.end(), pack(std::max(min_ratio, target / set.measure_sum)));
   };
   if (actuator.distribution == Distribution::uniform) return all_alike();
   team.pieces(set.block_count(), [&](Index begin, Index end) {
@@ -83,13 +83,13 @@ void System::local_ratios(const ActuationSet<K>& set, double requested, const Po
     current += ratios[e / lanes][e % lanes] * set.blocks[e / lanes].measure[e % lanes];
   if (actuator.distribution == Distribution::proportional) {
     following.current = current;
-    following.gain = current > 0 ? asked / current : 0;
+    following.gain = current > 0 ? target / current : 0;
     if (!(current > 0)) return all_alike();
-    for (Pack& ratio : ratios) ratio = max(pack(least_ratio), following.gain * ratio);
+    for (Pack& ratio : ratios) ratio = max(pack(min_ratio), following.gain * ratio);
     return;
   }
-  const double change = (asked - current) / set.share_sum;
-  for (Index b = 0; b < set.block_count(); ++b) ratios[b] = max(pack(least_ratio), ratios[b] + change * set.share(b));
+  const double change = (target - current) / set.fraction_sum;
+  for (Index b = 0; b < set.block_count(); ++b) ratios[b] = max(pack(min_ratio), ratios[b] + change * set.fraction(b));
 }
 
 double System::local_step(const Actuation& actuation, const Points& positions, Scratch& scratch, Team& team) const {

@@ -12,15 +12,15 @@ class System {
  public:
   explicit System(const Model& model);
 
-  /// How local ratios follow the current ones: those change by a' and the local ones by gain a'_i less a share of
-  /// sum_j a'_j u_j.
+  /// How local ratios follow the current ones: where these change by a', the local ones change by gain a'_i less a
+  /// fraction of sum_j a'_j u_j.
   struct Following {
     double gain = 1;     // proportional: a U / sum_j a_j^cur u_j; else 1
     double current = 1;  // sum_j a_j^cur u_j; proportional
-    double asked = 1;    // a U, for a cable of its gaps only
+    double target = 1;   // a U, for a cable of its gaps only
   };
 
-  /// What a solve needs beside the positions: warm rotations, pulls, energies. Nothing is allocated per iteration.
+  /// Memory of a solve besides the positions: warm rotations, pulls, energies. Nothing is allocated per iteration.
   struct Scratch {
     std::vector<std::vector<energy::PackRotation>> rotations;  // per set, per block
     std::vector<std::vector<energy::Pack>> ratios;             // local ratios per actuation set, per block
@@ -50,8 +50,8 @@ class System {
   /// out.residual becomes the derivative of local.residual.
   void command_change(const Scratch& local, Index actuator, Scratch& out, Team& team) const;
 
-  /// Where `change`, taken with the turns that it makes the targets make, would move the elements: out.residual is what
-  /// the global step asks for to go there (see turned_move_of_body).
+  /// Computes where `change` would move the elements, including the rotations of the targets that it causes:
+  /// out.residual is that with which the global step moves there (see turned_move_of_body).
   void turned_move(const Scratch& local, const Points& change, Scratch& out, Team& team) const;
 
   /// The part of residual_change that couples all elements of an actuator whose ratios follow the shape, -source
@@ -82,8 +82,8 @@ class System {
   void local_ratios(const ActuationSet<K>& set, double requested, const Points& nodes,
                     std::vector<energy::Pack>& ratios, Following& following, Team& team) const;
   template <int K>
-  [[nodiscard]] energy::Pack share_of_change(const ActuationSet<K>& set, Index block, const energy::Pack& ratio,
-                                             const Following& following, double moved) const;
+  [[nodiscard]] energy::Pack fraction_of_change(const ActuationSet<K>& set, Index block, const energy::Pack& ratio,
+                                                const Following& following, double moved) const;
   template <int K>
   void ratio_changes(const ActuationSet<K>& set, const Scratch& local, std::size_t index, const Points& nodes,
                      std::vector<energy::Pack>& changes, Team& team) const;

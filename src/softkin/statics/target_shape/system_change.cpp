@@ -10,9 +10,9 @@ using namespace energy;
 
 namespace {
 
-/// 1 where an element's ratio follows its shape, 0 where it stands at the least one.
+/// 1 where an element's ratio follows its shape, 0 where it is at the minimum.
 Pack follows(const Pack& ratio) {
-  return select(ratio > least_ratio, pack(1), pack(0));
+  return select(ratio > min_ratio, pack(1), pack(0));
 }
 
 template <int K>
@@ -30,12 +30,12 @@ bool System::is_gradient() const {
                       [](const Actuator& a) { return has_measure(a) && a.distribution != Distribution::uniform; });
 }
 
-/// What a block's ratios, of which none stands at the least one, give way by where sum_j a'_j u_j is `moved`; at fixed
-/// positions they grow by as much where so much more is asked for, over the gain.
+/// Returns by how much a block's ratios, none of which is at the minimum, decrease where sum_j a'_j u_j is `moved`; at
+/// fixed positions they increase by as much, over the gain, where the target increases by `moved`.
 template <int K>
-Pack System::share_of_change(const ActuationSet<K>& set, Index block, const Pack& ratio, const Following& following,
-                             double moved) const {
-  if (!is_proportional(set.actuator)) return moved / set.share_sum * set.share(block);
+Pack System::fraction_of_change(const ActuationSet<K>& set, Index block, const Pack& ratio, const Following& following,
+                                double moved) const {
+  if (!is_proportional(set.actuator)) return moved / set.fraction_sum * set.fraction(block);
   return following.current > 0 ? moved / following.current * ratio : pack(0);
 }
 
@@ -62,7 +62,7 @@ void System::ratio_changes(const ActuationSet<K>& set, const Scratch& local, std
     moved += changes[e / lanes][e % lanes] * set.blocks[e / lanes].measure[e % lanes];
   for (Index b = 0; b < set.block_count(); ++b)
     changes[b] =
-        follows(ratios[b]) * (following.gain * changes[b] - share_of_change<K>(set, b, ratios[b], following, moved));
+        follows(ratios[b]) * (following.gain * changes[b] - fraction_of_change<K>(set, b, ratios[b], following, moved));
 }
 
 /// kernel(set, index of the set, block, centred shape, its change, pull), over all blocks; out.nodes is the change.
@@ -144,8 +144,8 @@ void System::redistributions(const Scratch& local, Scratch& work, std::vector<Re
         part.target.resize(model_.rest.rows(), 3);
         collect(
             [&](const RatioCoupling<K>& coupling, Index b, const Pack& free, Shape<K>& value) {
-              const Pack share = share_of_change<K>(set, b, local.ratios[index][b], local.following[index], 1);
-              for (int i = 0; i < K; ++i) value[i] = (free * share) * coupling.pull_slope[i];
+              const Pack fraction = fraction_of_change<K>(set, b, local.ratios[index][b], local.following[index], 1);
+              for (int i = 0; i < K; ++i) value[i] = (free * fraction) * coupling.pull_slope[i];
             },
             part.source);
         collect(
@@ -176,11 +176,11 @@ void System::command_change(const Scratch& local, Index actuator, Scratch& out, 
           const Pack& ratio = local.ratios[index][b];
           // uniform; proportional: c grows, and the ratios by as much over it
           const Pack each = !redistributes(set.actuator)     ? pack(1 / measure)
-                            : !is_proportional(set.actuator) ? share_of_change<K>(set, b, ratio, following, 1)
-                            : following.current > 0          ? ratio / following.asked
+                            : !is_proportional(set.actuator) ? fraction_of_change<K>(set, b, ratio, following, 1)
+                            : following.current > 0          ? ratio / following.target
                                                              : pack(1 / measure);
           const Pack change = rest_measure * each;
-          pull_change_of_actuation<K>(set.blocks[b], ratio, select(ratio > least_ratio, change, pack(0)), shape,
+          pull_change_of_actuation<K>(set.blocks[b], ratio, select(ratio > min_ratio, change, pack(0)), shape,
                                       local.rotations[index][b], still, pull);
           store<K>(pull, set.first_slot + K * lanes * b, std::min<Index>(lanes, set.count - lanes * b),
                    out.pulls.data());

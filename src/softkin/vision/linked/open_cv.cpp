@@ -51,7 +51,7 @@ class LinkedVideo : public Video {
 
 void prepare(int threads) {
   cv::utils::logging::setLogLevel(cv::utils::logging::LOG_LEVEL_SILENT);
-  ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);  // quiet; what is wrong with a video is said by Film
+  ::setenv("OPENCV_FFMPEG_LOGLEVEL", "-8", 0);  // quiet; Film reports the errors of a video
   if (threads > 0) cv::setNumThreads(threads);
 }
 

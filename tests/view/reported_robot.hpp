@@ -18,7 +18,7 @@ inline Model pushed_model() {
       "markers: [{name: tip, region: tip}, {name: corner, point: [12, 12, 12]}]\n");
 }
 
-/// Coordinates to 0.001 mm, of a push at the tip. place: where it acts is to be told, too
+/// Returns a setup with coordinates to 0.001 mm and a push at the tip. place: estimates where the push acts, too
 inline EstimateSetup pushed_setup(const Model& model, bool place = false, double fade_s = 0) {
   std::array<double, readings> deviations{};
   deviations[static_cast<std::size_t>(Reading::coordinate)] = 0.001;

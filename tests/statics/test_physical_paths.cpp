@@ -3,7 +3,7 @@
 #include "statics/contact_scenes.hpp"
 #include "statics/physical_samples.hpp"
 
-/// Ways to equilibria that were far too long: how many iterations they take, and that they end where others do.
+/// Load paths that once took far too many iterations: how many they take now, and that their ends are those of others.
 
 namespace softkin {
 
@@ -38,7 +38,7 @@ Equilibrium pressed(const RobotSpec& by_volume, double pressure) {
 }  // namespace
 
 /// However nearly incompressible the rubber is, and to the shape that the volume leads to.
-TEST(PhysicalWays, StiffLayerAndNearlyIncompressibleRubber) {
+TEST(PhysicalPaths, StiffLayerAndNearlyIncompressibleRubber) {
   int least = 1000, most = 0;
   for (const double poisson_ratio : {0.45, 0.49, 0.499, 0.4999}) {
     const RobotSpec spec = paper_finger(poisson_ratio);
@@ -49,7 +49,7 @@ TEST(PhysicalWays, StiffLayerAndNearlyIncompressibleRubber) {
     const Model model = compile(spec);
     const Statics statics(model);
     const double ratio = achieved_ratio(model, model.actuators[0], found.state.positions);
-    const Equilibrium same = settled(statics, values({ratio}));
+    const Equilibrium same = solve_converged(statics, values({ratio}));
     EXPECT_NEAR(same.state.multipliers[0], 3, 1e-3) << poisson_ratio;
     EXPECT_LT(distance(same.state.positions, found.state.positions), 1e-3) << poisson_ratio;
   }
@@ -58,7 +58,7 @@ TEST(PhysicalWays, StiffLayerAndNearlyIncompressibleRubber) {
 }
 
 /// A pressure near its maximum: a step along the volume leads far past it, and from there back to it, by volume.
-TEST(PhysicalWays, PressureBelowItsMaximum) {
+TEST(PhysicalPaths, PressureBelowItsMaximum) {
   RobotSpec spec = paper_finger(0.49);
   const Model by_volume = compile(spec);
   const Statics volumes(by_volume);
@@ -68,22 +68,22 @@ TEST(PhysicalWays, PressureBelowItsMaximum) {
   const double most = statics.solve(values({1000}), statics.rest()).state.actuation[0];
   StaticsOptions options = tight();
   options.trace = true;
-  for (const double share : {0.7, 0.8, 0.9, 0.98}) {
+  for (const double fraction : {0.7, 0.8, 0.9, 0.98}) {
     statics.forget();
-    const Equilibrium found = statics.solve(values({share * most}), statics.rest(), options);
-    ASSERT_EQ(found.report.status, Status::converged) << share << ": " << found.report.remark;
-    EXPECT_LE(found.report.iterations, 80) << share;
+    const Equilibrium found = statics.solve(values({fraction * most}), statics.rest(), options);
+    ASSERT_EQ(found.report.status, Status::converged) << fraction << ": " << found.report.remark;
+    EXPECT_LE(found.report.iterations, 80) << fraction;
     const double ratio = achieved_ratio(model, model.actuators[0], found.state.positions);
     ASSERT_TRUE(found.report.trace.back().taken && !found.report.trace.back().along.empty());
-    EXPECT_NEAR(found.report.trace.back().to, ratio, 0.05 * ratio) << share;
-    const Equilibrium same = settled(volumes, values({ratio}));
-    EXPECT_NEAR(same.state.multipliers[0], share * most, 1e-6 * most) << share;
-    EXPECT_LT(distance(same.state.positions, found.state.positions), 1e-3) << share;
+    EXPECT_NEAR(found.report.trace.back().to, ratio, 0.05 * ratio) << fraction;
+    const Equilibrium same = solve_converged(volumes, values({ratio}));
+    EXPECT_NEAR(same.state.multipliers[0], fraction * most, 1e-6 * most) << fraction;
+    EXPECT_LT(distance(same.state.positions, found.state.positions), 1e-3) << fraction;
   }
 }
 
-/// What was asked beyond a maximum, along a path: told once more, from where it was told first.
-TEST(PhysicalWays, PathBeyondAMaximum) {
+/// Loads beyond a maximum along a path: the maximum is reported again, from the state where it was first found.
+TEST(PhysicalPaths, PathBeyondAMaximum) {
   RobotSpec spec = paper_finger(0.49);
   spec.materials[0].density = 1000;
   spec.loads.gravity = {0, 0, -9.81};
@@ -99,21 +99,21 @@ TEST(PhysicalWays, PathBeyondAMaximum) {
   spec.actuators[0] = by_load(spec.actuators[0]);
   const Model model = compile(spec);
   const Statics statics(model);
-  const std::string told = "the pressure of chamber 'chamber' has its maximum there, ";
+  const std::string reported = "the pressure of chamber 'chamber' has its maximum there, ";
   const auto check = [&](const Equilibrium& found) {
     EXPECT_EQ(found.report.status, Status::limit);
-    ASSERT_EQ(found.report.remark.find(told), 0u) << found.report.remark;
-    const double summit = std::stod(found.report.remark.substr(told.size()));
-    EXPECT_GT(summit, 0.9999 * most);
-    EXPECT_LT(summit, 1.01 * most);
-    EXPECT_NEAR(found.state.actuation[0], summit, 1e-3 * summit);
+    ASSERT_EQ(found.report.remark.find(reported), 0u) << found.report.remark;
+    const double limit_point = std::stod(found.report.remark.substr(reported.size()));
+    EXPECT_GT(limit_point, 0.9999 * most);
+    EXPECT_LT(limit_point, 1.01 * most);
+    EXPECT_NEAR(found.state.actuation[0], limit_point, 1e-3 * limit_point);
   };
   // from rest, where weight and pressure come at once
   const Equilibrium at_once = statics.solve(values({3 * most}), statics.rest());
   check(at_once);
   EXPECT_LE(at_once.report.iterations, 50);
   EXPECT_NEAR(at_once.report.reached, at_once.state.actuation[0] / (3 * most), 1e-9);
-  const Equilibrium below = settled(statics, values({0.5 * most}));
+  const Equilibrium below = solve_converged(statics, values({0.5 * most}));
   const Equilibrium first = statics.solve(values({1.2 * most}), below.state);
   check(first);
   const Equilibrium second = statics.solve(values({2 * most}), first.state);
@@ -124,7 +124,7 @@ TEST(PhysicalWays, PathBeyondAMaximum) {
 
 /// Of both orders, with the paper and without, from rest and under its weight, in few iterations. With paper and of
 /// order 2 it is that of the path.
-TEST(PhysicalWays, MaximumOfAPressure) {
+TEST(PhysicalPaths, MaximumOfAPressure) {
   for (const bool quadratic : {false, true})
     for (const bool paper : {false, true}) {
       if (quadratic && paper) continue;
@@ -148,9 +148,9 @@ TEST(PhysicalWays, MaximumOfAPressure) {
       const Statics statics(model);
       const Equilibrium found = statics.solve(values({6 * most}), statics.rest());
       ASSERT_EQ(found.report.status, Status::limit);
-      const std::string told = "the pressure of chamber 'chamber' has its maximum there, ";
-      ASSERT_EQ(found.report.remark.find(told), 0u) << found.report.remark;
-      EXPECT_NEAR(std::stod(found.report.remark.substr(told.size())), most, 0.01 * most);
+      const std::string reported = "the pressure of chamber 'chamber' has its maximum there, ";
+      ASSERT_EQ(found.report.remark.find(reported), 0u) << found.report.remark;
+      EXPECT_NEAR(std::stod(found.report.remark.substr(reported.size())), most, 0.01 * most);
       EXPECT_LE(found.report.iterations, 70) << quadratic << paper;
     }
 }
@@ -158,7 +158,7 @@ TEST(PhysicalWays, MaximumOfAPressure) {
 /// A heavy strip on a smooth floor, one end lifted: it leaves the floor over the length a of a beam without moment at
 /// either end, 24 E I h = q a^4, and q a / 2 holds its end. It is held at its lower edge, which turns outwards from its
 /// middle by d = sin(2 h / a) of half its height: 1.5 d / a of that force less, to first order.
-TEST(PhysicalWays, HeavyStripLiftedFromAFloor) {
+TEST(PhysicalPaths, HeavyStripLiftedFromAFloor) {
   constexpr double gap = 0.01, distance = 0.005, lift = 2, width = 10, height = 2, modulus = 1;
   RobotSpec spec = physical_robot(block_mesh({60, 1, 1}, {120, width, height}));
   spec.mesh_options.quadratic = true;
@@ -177,7 +177,7 @@ TEST(PhysicalWays, HeavyStripLiftedFromAFloor) {
   spec.contact->obstacles.push_back({"floor", Halfspace{{0, 0, -gap}, {0, 0, 1}}, std::nullopt, {}});
   const Model model = compile(spec);
   const Statics statics(model);
-  const Equilibrium found = settled(statics, {});
+  const Equilibrium found = solve_converged(statics, {});
   EXPECT_LE(found.report.iterations, 80);
   const double q = 1000e-9 * 9.81 * width * height, bending = modulus * width * std::pow(height, 3) / 12;
   const double rests = distance;  // so little presses on it that it lies where forces begin
@@ -188,8 +188,8 @@ TEST(PhysicalWays, HeavyStripLiftedFromAFloor) {
   EXPECT_NEAR(reaction_of(model, statics, found, 1).z(), force, 0.002 * force);
 }
 
-/// Where what is held or hangs leads nowhere alone, loads and it come together again, each by the same share.
-TEST(PhysicalWays, WhatLeadsNowhereAloneComesTogetherWithLoads) {
+/// If displacements and dead loads alone do not converge, they are applied together with the loads, at one load factor.
+TEST(PhysicalPaths, WhatLeadsNowhereAloneComesTogetherWithLoads) {
   RobotSpec spec = bending_finger();
   spec.materials[0].elastic = elastic(Law::yeoh, 1, 0.45);
   spec.actuators[0] = by_load(spec.actuators[0]);
@@ -200,7 +200,7 @@ TEST(PhysicalWays, WhatLeadsNowhereAloneComesTogetherWithLoads) {
   EXPECT_EQ(found.report.status, Status::limit);
   EXPECT_GT(found.report.reached, 0.1) << found.report.remark;
   EXPECT_LT(found.report.reached, 1);
-  EXPECT_NEAR(found.state.share, found.report.reached, 1e-12);
+  EXPECT_NEAR(found.state.load_factor, found.report.reached, 1e-12);
   EXPECT_NEAR(found.state.actuation[0], 20 * found.report.reached, 1e-12);
 }
 

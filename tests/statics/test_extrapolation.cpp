@@ -13,7 +13,7 @@ using namespace testing;
 struct Case {
   const char* name;
   RobotSpec spec;
-  Actuation at, way;
+  Actuation at, path;
 };
 
 std::vector<Case> cases() {
@@ -29,48 +29,48 @@ std::vector<Case> cases() {
   return all;
 }
 
-Points foreseen(const Statics& statics, const Equilibrium& from, const Actuation& to) {
+Points extrapolated(const Statics& statics, const Equilibrium& from, const Actuation& to) {
   (void)statics.sensitivity(from.state, tight());
   Points positions;
-  EXPECT_TRUE(statics.foresee(to, from.state, tight(), positions));
+  EXPECT_TRUE(statics.extrapolate(to, from.state, tight(), positions));
   return positions;
 }
 
 }  // namespace
 
-/// Half the way, an eighth of the error; and far less of it than a tangent has.
-TEST(Foresee, IsOfSecondOrder) {
+/// Half the step has an eighth of the error, which is far smaller than that of a tangent predictor.
+TEST(Extrapolation, IsOfSecondOrder) {
   for (const Case& c : cases()) {
     const Model model = compile(c.spec);
     const Statics statics(model);
-    const Equilibrium from = settled(statics, c.at);
+    const Equilibrium from = solve_converged(statics, c.at);
     double before = 0;
-    for (const double share : {1.0, 0.5, 0.25}) {
-      const Actuation to = c.at + share * c.way;
+    for (const double fraction : {1.0, 0.5, 0.25}) {
+      const Actuation to = c.at + fraction * c.path;
       const Points expected = Statics(model).solve(to, from.state, tight()).state.positions;
       const Sensitivity slopes = statics.sensitivity(from.state, tight());
       Points tangent = from.state.positions;
-      for (Index a = 0; a < c.way.size(); ++a) tangent += share * c.way[a] * slopes.positions[a];
-      const double error = distance(foreseen(statics, from, to), expected);
-      EXPECT_LT(error, 0.3 * distance(tangent, expected)) << c.name << " " << share;
+      for (Index a = 0; a < c.path.size(); ++a) tangent += fraction * c.path[a] * slopes.positions[a];
+      const double error = distance(extrapolated(statics, from, to), expected);
+      EXPECT_LT(error, 0.3 * distance(tangent, expected)) << c.name << " " << fraction;
       if (before > 0) {
-        EXPECT_NEAR(before / error, 8, 2) << c.name << " " << share;
+        EXPECT_NEAR(before / error, 8, 2) << c.name << " " << fraction;
       }
       before = error;
     }
   }
 }
 
-/// A solve that begins with what was foreseen comes to the same shape; also to an actuation near by.
-TEST(Foresee, SolvesBeginWithIt) {
+/// A solve that starts from an extrapolation converges to the same shape, also for an actuation nearby.
+TEST(Extrapolation, SolvesBeginWithIt) {
   for (const Case& c : cases()) {
     const Model model = compile(c.spec);
     const Statics statics(model);
-    const Equilibrium from = settled(statics, c.at);
-    for (const double share : {0.5, 0.49}) {
-      const Actuation to = c.at + share * c.way;
+    const Equilibrium from = solve_converged(statics, c.at);
+    for (const double fraction : {0.5, 0.49}) {
+      const Actuation to = c.at + fraction * c.path;
       const Equilibrium expected = Statics(model).solve(to, from.state, tight());
-      (void)foreseen(statics, from, c.at + 0.5 * c.way);
+      (void)extrapolated(statics, from, c.at + 0.5 * c.path);
       const Equilibrium found = statics.solve(to, from.state, tight());
       ASSERT_EQ(found.report.status, Status::converged) << c.name;
       EXPECT_LT(distance(found.state.positions, expected.state.positions), 1e-8) << c.name;
@@ -83,25 +83,25 @@ TEST(Foresee, SolvesBeginWithIt) {
   }
 }
 
-TEST(Foresee, SaysWhereItDoesNot) {
+TEST(Extrapolation, SaysWhereItDoesNot) {
   const Model model = compile(bending_finger());
   const Statics statics(model);
-  const Equilibrium from = settled(statics, Actuation::Constant(1, 1.2));
+  const Equilibrium from = solve_converged(statics, Actuation::Constant(1, 1.2));
   Points positions;
   const Actuation to = Actuation::Constant(1, 1.3);
-  EXPECT_FALSE(statics.foresee(to, from.state, tight(), positions));  // no derivative
+  EXPECT_FALSE(statics.extrapolate(to, from.state, tight(), positions));  // no derivative
   (void)statics.sensitivity(from.state, tight());
-  EXPECT_TRUE(statics.foresee(to, from.state, tight(), positions));
+  EXPECT_TRUE(statics.extrapolate(to, from.state, tight(), positions));
   StaticsOptions fresh = tight();
   fresh.reuse_factor = false;
-  EXPECT_FALSE(statics.foresee(to, from.state, fresh, positions));
-  EXPECT_THROW((void)statics.foresee(Actuation::Constant(1, 99), from.state, tight(), positions), InvalidInput);
+  EXPECT_FALSE(statics.extrapolate(to, from.state, fresh, positions));
+  EXPECT_THROW((void)statics.extrapolate(Actuation::Constant(1, 99), from.state, tight(), positions), InvalidInput);
 
   const Model shapes = compile(finger_robot(false));
   const Statics of_shapes(shapes);
   const Equilibrium shape = of_shapes.solve(shapes.rest_actuation(), of_shapes.rest());
   (void)of_shapes.sensitivity(shape.state);
-  EXPECT_FALSE(of_shapes.foresee(shapes.rest_actuation(), shape.state, {}, positions));
+  EXPECT_FALSE(of_shapes.extrapolate(shapes.rest_actuation(), shape.state, {}, positions));
 }
 
 }  // namespace softkin

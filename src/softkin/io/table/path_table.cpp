@@ -1,13 +1,13 @@
 #include <softkin/io/table/csv.hpp>
-#include <softkin/io/table/way.hpp>
+#include <softkin/io/table/path_table.hpp>
 
 namespace softkin {
 
-Points read_way(const std::filesystem::path& path) {
+Points read_path(const std::filesystem::path& path) {
   const CsvTable table = read_csv(path);
   for (const std::string& column : table.columns)
     if (column != "x_mm" && column != "y_mm" && column != "z_mm")
-      table.fail_header("unknown column '" + column + "'; a way has x_mm, y_mm, z_mm");
+      table.fail_header("unknown column '" + column + "'; a path has x_mm, y_mm, z_mm");
   Points corners(table.rows.size(), 3);
   for (Index axis = 0; axis < 3; ++axis) {
     const std::string name = std::string(1, "xyz"[axis]) + "_mm";

@@ -3,7 +3,7 @@
 #include "statics/contact_scenes.hpp"
 #include "statics/physical_samples.hpp"
 
-/// Ways to shapes that lie on something: how many iterations they take, and what holds them.
+/// Motions to shapes that lie on something: numbers of iterations, and which contacts or supports hold the shapes.
 
 namespace softkin {
 
@@ -47,7 +47,7 @@ FixedSpec held(double up_to, const std::array<bool, 3>& axes, const Vec3& displa
 void expect_held(const PlateOnFloor& plate, std::size_t lifted) {
   const Model model = compile(plate.robot());
   const Statics statics(model);
-  const Equilibrium found = settled(statics, {});
+  const Equilibrium found = solve_converged(statics, {});
   EXPECT_LE(found.report.iterations, 60);
   const ElementDeformation measured = statics.measured(found.state);
   ASSERT_TRUE(measured.contacts);
@@ -59,7 +59,7 @@ void expect_held(const PlateOnFloor& plate, std::size_t lifted) {
 
 }  // namespace
 
-TEST(ContactWays, PlateLiftedAtAnEdge) {
+TEST(ContactMotions, PlateLiftedAtAnEdge) {
   const double side = PlateOnFloor::side;
   const FixedSpec back =
       held(PlateOnFloor::height, {true, true, false}, Vec3::Zero(), [](double x, double) { return x == 0; });
@@ -67,14 +67,14 @@ TEST(ContactWays, PlateLiftedAtAnEdge) {
   for (const bool quadratic : {false, true}) expect_held({{back, edge}, quadratic}, 1);
 }
 
-/// All of it comes to touch at once, and sticks: nothing but its weight, which the floor bears but for what is held.
-TEST(ContactWays, PlateLaidDownOnARoughFloor) {
+/// All of the plate makes contact at once and sticks; the floor carries its weight, except for the part of the support.
+TEST(ContactMotions, PlateLaidDownOnARoughFloor) {
   const FixedSpec back =
       held(PlateOnFloor::height, {true, true, true}, Vec3::Zero(), [](double x, double) { return x == 0; });
   expect_held({{back}, false, 0.4}, 0);
 }
 
-TEST(ContactWays, PlateLiftedAtACorner) {
+TEST(ContactMotions, PlateLiftedAtACorner) {
   const double side = PlateOnFloor::side;
   const FixedSpec back = held(PlateOnFloor::height, {true, true, false}, Vec3::Zero(),
                               [](double x, double y) { return x == 0 && y == 0; });

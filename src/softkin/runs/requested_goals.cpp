@@ -3,7 +3,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/io/plain_text.hpp>
 #include <softkin/io/scanner.hpp>
-#include <softkin/runs/asked_goals.hpp>
+#include <softkin/runs/requested_goals.hpp>
 
 namespace softkin::runs {
 
@@ -146,12 +146,13 @@ void set_weight(const Model& model, const std::string& before, const std::string
     goal.goal.weight = weight;
     any = true;
   }
-  if (!any) argument.refuse("nothing is asked of " + excerpt(argument.name()) + suggest_name(argument.name(), names));
+  if (!any)
+    argument.refuse("nothing is requested of " + excerpt(argument.name()) + suggest_name(argument.name(), names));
 }
 
 }  // namespace
 
-std::vector<NamedGoal> asked_goals(const Model& model, const GoalTexts& texts) {
+std::vector<NamedGoal> requested_goals(const Model& model, const GoalTexts& texts) {
   std::vector<NamedGoal> goals;
   for (const std::string& text : texts.targets) goals.push_back(target_of(model, texts.before_name, text));
   for (const std::string& text : texts.planes) goals.push_back(plane_of(model, texts.before_name, text));

@@ -32,8 +32,8 @@ StaticsOptions beyond(double ratio) {
 
 }  // namespace
 
-/// To a volume, with the pressures on the way; lesser ones that are asked from there are found on the same equilibria.
-TEST(BeyondSummit, AlongTheVolumeAndBack) {
+/// A path leads to a volume and reports its pressures; lower pressures requested from there give the same equilibria.
+TEST(PostLimitPath, AlongTheVolumeAndBack) {
   for (const bool quadratic : {false, true}) {
     const RobotSpec spec = balloon(Law::neo_hookean, quadratic);
     const Model by_volume = compile(spec), model = compile(by_pressure(spec));
@@ -45,7 +45,7 @@ TEST(BeyondSummit, AlongTheVolumeAndBack) {
     ASSERT_EQ(far.report.status, Status::limit) << far.report.remark;
     EXPECT_NEAR(achieved_ratio(model, model.actuators[0], far.state.positions), 8, 1e-6);
     EXPECT_EQ(far.report.physical.unstable_modes, 1);
-    const Equilibrium same = settled(volumes, values({8.0}), tight(1e-8));
+    const Equilibrium same = solve_converged(volumes, values({8.0}), tight(1e-8));
     EXPECT_LT(distance(same.state.positions, far.state.positions), 1e-4);
     EXPECT_NEAR(far.state.actuation[0], same.state.multipliers[0], 1e-6 * same.state.multipliers[0]);
     const auto& points = far.report.physical.branch.points;
@@ -59,45 +59,46 @@ TEST(BeyondSummit, AlongTheVolumeAndBack) {
     for (const auto& point : points) most = std::max(most, point.load);
     EXPECT_GT(most, 1.05 * same.state.multipliers[0]);
     State last = far.state;
-    for (const double share : {0.3, 0.7, 0.5}) {
-      const double asked = same.state.multipliers[0] + share * (most - same.state.multipliers[0]);
-      const Equilibrium found = statics.solve(values({asked}), last, beyond(8));
+    for (const double fraction : {0.3, 0.7, 0.5}) {
+      const double requested = same.state.multipliers[0] + fraction * (most - same.state.multipliers[0]);
+      const Equilibrium found = statics.solve(values({requested}), last, beyond(8));
       ASSERT_EQ(found.report.status, Status::converged) << found.report.remark;
       EXPECT_EQ(found.report.physical.unstable_modes, 1);
       const double ratio = achieved_ratio(model, model.actuators[0], found.state.positions);
       EXPECT_GT(ratio, 3);
-      EXPECT_NEAR(pressure_at(ratio, same.state), asked, 1e-5 * asked);
+      EXPECT_NEAR(pressure_at(ratio, same.state), requested, 1e-5 * requested);
       last = found.state;
     }
   }
 }
 
-/// A material of limited stretch carries the pressure again: what comes to its maximum snaps there.
-TEST(BeyondSummit, TheNextStableShapeCarriesTheLoad) {
+/// A material of limited stretch stiffens and carries the pressure again: a solve beyond the maximum snaps to that
+/// shape.
+TEST(PostLimitPath, TheNextStableShapeCarriesTheLoad) {
   const RobotSpec spec = balloon(Law::gent, false);
   const Model by_volume = compile(spec), model = compile(by_pressure(spec));
   const Statics volumes(by_volume), statics(model);
-  const Equilibrium summit = statics.solve(values({100}), statics.rest());
-  ASSERT_EQ(summit.report.status, Status::limit);
-  const double asked = 1.03 * summit.state.actuation[0];
-  EXPECT_EQ(statics.solve(values({asked}), statics.rest()).report.status, Status::limit);
+  const Equilibrium limit_point = statics.solve(values({100}), statics.rest());
+  ASSERT_EQ(limit_point.report.status, Status::limit);
+  const double requested = 1.03 * limit_point.state.actuation[0];
+  EXPECT_EQ(statics.solve(values({requested}), statics.rest()).report.status, Status::limit);
   StaticsOptions stable = tight(1e-8);
   stable.stable = true;
   for (const StaticsOptions& options : {stable, beyond(30)}) {
-    const Equilibrium found = statics.solve(values({asked}), statics.rest(), options);
+    const Equilibrium found = statics.solve(values({requested}), statics.rest(), options);
     ASSERT_EQ(found.report.status, Status::converged) << found.report.remark;
     EXPECT_EQ(found.report.physical.unstable_modes, 0);
     EXPECT_GT(found.report.physical.snapped_mm, 1);
     EXPECT_NEAR(found.report.physical.snapped_from, 1 / 1.03, 0.01);
     const double ratio = achieved_ratio(model, model.actuators[0], found.state.positions);
-    EXPECT_GT(ratio, 1.5 * achieved_ratio(model, model.actuators[0], summit.state.positions));
-    const Equilibrium same = settled(volumes, values({ratio}));
-    EXPECT_NEAR(same.state.multipliers[0], asked, 1e-5 * asked);
+    EXPECT_GT(ratio, 1.5 * achieved_ratio(model, model.actuators[0], limit_point.state.positions));
+    const Equilibrium same = solve_converged(volumes, values({ratio}));
+    EXPECT_NEAR(same.state.multipliers[0], requested, 1e-5 * requested);
     EXPECT_LT(distance(same.state.positions, found.state.positions), 1e-3);
   }
 }
 
-TEST(BeyondSummit, WhatIsNotBeyondTheMaximumIsToldSo) {
+TEST(PostLimitPath, WhatIsNotBeyondTheMaximumIsToldSo) {
   const Model model = compile(by_pressure(balloon(Law::neo_hookean, false)));
   const Statics statics(model);
   const Equilibrium before = statics.solve(values({100}), statics.rest(), beyond(1.2));

@@ -16,7 +16,7 @@ struct GoalTexts {
   std::optional<double> tolerance_force_N;  // none: a thousandth of each force
   std::string before_name;  // "--" where these are options: stands before their names in what is refused
 
-  /// Is anything asked for?
+  /// Is any goal requested?
   [[nodiscard]] bool any() const {
     return !targets.empty() || !planes.empty() || !directions.empty() || !presses.empty();
   }
@@ -26,6 +26,6 @@ struct GoalTexts {
 ///
 /// throws  InvalidInput naming which of them: unknown markers or obstacles, numbers that are none or not finite,
 ///         a weight for nothing
-[[nodiscard]] std::vector<NamedGoal> asked_goals(const Model& model, const GoalTexts& texts);
+[[nodiscard]] std::vector<NamedGoal> requested_goals(const Model& model, const GoalTexts& texts);
 
 }  // namespace softkin::runs

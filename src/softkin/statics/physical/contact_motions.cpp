@@ -4,29 +4,29 @@
 #include <softkin/statics/physical/contacts.hpp>
 #include <utility>
 
-// What comes near on a way, and how far that leads.
+// Contact candidates along a motion, and the longest motion without collision.
 
 namespace softkin::physical {
 
 namespace {
 
-/// A motion may shrink gaps to this share.
+/// A motion may shrink gaps to this fraction.
 constexpr double kept_gap = 0.1;
 
-/// The longest way of a vertex [mm].
+/// Returns the largest displacement of a vertex [mm].
 double moved(const Points& from, const Points& to) {
   return from.rows() == to.rows() ? std::sqrt((to - from).rowwise().squaredNorm().maxCoeff()) : HUGE_VAL;
 }
 
 }  // namespace
 
-/// How far a shape is from the one on the way that is nearest to it.
+/// Returns the largest distance of a vertex between a shape and the nearest one on the searched motion [mm].
 double Contacts::Scratch::Around::beside(const Points& points) const {
   if (begin.rows() != points.rows()) return HUGE_VAL;
-  const Points way = end - begin;
-  const double square = way.squaredNorm();
-  const double share = square > 0 ? std::clamp((points - begin).cwiseProduct(way).sum() / square, 0.0, 1.0) : 0;
-  return moved(begin + share * way, points);
+  const Points motion = end - begin;
+  const double square = motion.squaredNorm();
+  const double fraction = square > 0 ? std::clamp((points - begin).cwiseProduct(motion).sum() / square, 0.0, 1.0) : 0;
+  return moved(begin + fraction * motion, points);
 }
 
 void Contacts::search(const Points& from, const Points& to, Scratch& scratch, Team& team) const {
@@ -52,8 +52,8 @@ void Contacts::find(const Points& positions, Scratch& scratch, Team& team) const
       search(points, points, scratch, team);
   }
   scratch.close = scratch.around.pairs;
-  keep_close(points, scratch.firmness, scratch.close);
-  potential_->find(points, scratch.close, scratch.terms, scratch.firmness);
+  keep_close(points, scratch.stiffness_scale, scratch.close);
+  potential_->find(points, scratch.close, scratch.terms, scratch.stiffness_scale);
   if (scratch.straight) potential_->straighten(scratch.terms, scratch.pushes);
 }
 
@@ -80,17 +80,17 @@ double Contacts::longest_step_of_points(const Points& from, const Points& to, Sc
     return contact::safe_motion(surfaces_.surface, around.pairs, from, end, kept_gap, team);
   };
   if (!(2 * std::max(around.beside(from), around.beside(to)) <= margin_mm_)) {
-    // what is known to be in the way spares a search beyond it
+    // the known candidates may shorten the motion, so that less of it is searched
     const double most = safe(to);
     const Points end = most < 1 ? Points(from + most * (to - from)) : to;
     search(from, end, scratch, team);
     return most * safe(end);
   }
-  const double way = std::max(moved(around.end, from), moved(around.end, to));
-  if (2 * way <= margin_mm_) {
+  const double motion = std::max(moved(around.end, from), moved(around.end, to));
+  if (2 * motion <= margin_mm_) {
     if (around.least < 0)
-      around.least = std::sqrt(contact::least_squared_distance(surfaces_.surface, around.pairs, around.end, team));
-    if (2 * way < (1 - kept_gap) * around.least) return 1;
+      around.least = std::sqrt(contact::min_squared_distance(surfaces_.surface, around.pairs, around.end, team));
+    if (2 * motion < (1 - kept_gap) * around.least) return 1;
   }
   return safe(to);
 }
