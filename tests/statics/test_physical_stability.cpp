@@ -115,9 +115,9 @@ TEST(Stability, TheLowestModeIsThatOfTheDenseMatrix) {
     State state{model.rest * Eigen::Vector3d(compression, 1, 1).asDiagonal(), values({1, 1}), values({1, 1})};
     Equations equations(model, state);
     const Eigen::VectorXd all = equations.eigenvalues();
-    SolveReport report;
+    physical::SolveRecord record;
     const physical::LowestMode mode = physical::lowest_mode(equations.system, equations.at, equations.load_state,
-                                                            equations.active, equations.work, equations.team, report);
+                                                            equations.active, equations.work, equations.team, record);
     EXPECT_EQ(mode.unstable, (all.array() < 0).count());
     ASSERT_GT(mode.unstable, 0);
     EXPECT_NEAR(mode.curvature, all[0], 1e-3 * std::abs(all[0])) << compression;

@@ -75,8 +75,7 @@ bool ArcLength::begin(const Iterate& at, Point& point) {
   const LoadState here = load_state(point.load_factor);
   Balance balance;
   system_.evaluate(point.at, here, corrector_.active, work_, balance, team_);
-  ++report_.factorisations;
-  ++report_.factorisations_in_double;
+  record_.note_factorisation(true);
   point.negative = system_.factorise(point.at, here, corrector_.active, balance, {}, work_, team_);
   return point.negative == 0 && balance.force.allFinite() && set_rates(balance, nullptr, point);
 }
@@ -98,8 +97,7 @@ bool ArcLength::correct(const Point& from, double whole, double tolerance, Point
       why_ = "an element is inverted";
       return false;
     }
-    ++report_.factorisations;
-    ++report_.factorisations_in_double;
+    record_.note_factorisation(true);
     point.negative = system_.factorise(point.at, here, corrector_.active, balance, {System::Stiffness::exact, 0, true},
                                        work_, team_);
     Eigen::VectorXd step, change;
@@ -119,12 +117,9 @@ bool ArcLength::correct(const Point& from, double whole, double tolerance, Point
     system_.advance(step, 1, work_, point.at.positions, team_, &there);
     point.at.multipliers += change;
     corrector_.give_loads(there, point.at);
-    ++report_.iterations;
-    report_.step_mm = move;
-    report_.gradient_norm = balance.force.norm();
-    report_.energy = balance.energy;
-    if (options_.keep_history)
-      report_.history.push_back({.energy = balance.energy, .step_mm = move, .gradient_norm = report_.gradient_norm});
+    const IterationRecord entry{.energy = balance.energy, .step_mm = move, .gradient_norm = balance.force.norm()};
+    record_.note_iteration(entry);
+    if (options_.keep_history) report_.history.push_back(entry);
     if (move < tolerance) return true;
   }
   return false;
@@ -208,7 +203,7 @@ bool ArcLength::is_curve_between(const Point& low, const Point& high, double len
 
 /// Returns the point at the end of a step, which is shortened when it fails; none if the shortened steps fail, too.
 std::optional<ArcLength::Point> ArcLength::next(const Point& from, Pace& pace) {
-  while (report_.iterations < pace.max_iterations && pace.length > pace.shortest) {
+  while (record_.iterations < pace.max_iterations && pace.length > pace.shortest) {
     std::optional<Point> found = go(from, pace.length);
     pace.missed = found ? 0 : pace.missed + 1;
     if (interrupted_ || pace.missed > pace.max_missed) break;
@@ -224,7 +219,7 @@ ArcLength::End ArcLength::follow(Iterate& at) {
   if (!begin(at, low)) return End::lost;
   const double first = low.load_factor;
   const double length = first_fraction * (route_.failed - low.load_factor) / low.slope;
-  Pace steps{length, shortest_step * length, report_.iterations + max_iterations, max_failed_steps};
+  Pace steps{length, shortest_step * length, record_.iterations + max_iterations, max_failed_steps};
   End end = End::lost;
   std::optional<Beyond> high;
   std::optional<Point> far;  // beyond the limit point
@@ -262,7 +257,7 @@ ArcLength::End ArcLength::follow(Iterate& at) {
 
 /// Continues beyond the limit point to a stable equilibrium with a larger load factor, at most the requested one.
 ArcLength::End ArcLength::go_beyond(Point last, Iterate& at) {
-  Pace steps{last.went, shortest_step_beyond * last.went, report_.iterations + max_iterations_beyond,
+  Pace steps{last.went, shortest_step_beyond * last.went, record_.iterations + max_iterations_beyond,
              max_failed_beyond};
   while (std::optional<Point> found = next(last, steps)) {
     if (!holds(*found) || found->load_factor < farthest_back) break;

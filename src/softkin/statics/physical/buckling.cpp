@@ -32,20 +32,19 @@ class Downhill {
         system_(corrector.system()),
         work_(corrector.work()),
         team_(corrector.team()),
-        report_(corrector.report()) {}
+        record_(corrector.record()) {}
 
   /// Moves to a stable equilibrium if one is found; false: interrupted.
   bool go(Iterate& at) {
     for (int i = 0; i < max_buckles; ++i) {
-      const LowestMode mode = lowest_mode(system_, at, demand_, corrector_.active, work_, team_, report_);
+      const LowestMode mode = lowest_mode(system_, at, demand_, corrector_.active, work_, team_, record_);
       corrector_.last.modes = mode.unstable;
       if (mode.unstable == 0 || mode.direction.size() == 0 || !mode.direction.allFinite()) return true;
       auto [best, interrupted] = lower(at, mode);
       if (interrupted) return false;
       if (!best) return true;
-      ++report_.physical.buckled;
-      report_.physical.buckled_mm =
-          std::max(report_.physical.buckled_mm, system_.largest_move(at.positions, best->at.positions));
+      ++record_.buckled;
+      record_.buckled_mm = std::max(record_.buckled_mm, system_.largest_move(at.positions, best->at.positions));
       corrector_.take(at, std::move(best->at));
       corrector_.active = best->active;
       corrector_.last = best->last;
@@ -86,8 +85,8 @@ class Downhill {
     bool was_corrected = false;
     for (int i = 0; i < max_downhill && !was_corrected; ++i) {
       const Descent down = step_down(system_, demand_, corrector_.active, shift, found.at, work_, team_);
-      report_.factorisations += down.factorisations;
-      report_.factorisations_in_double += down.factorisations_in_double;
+      record_.factorisations += down.factorisations;
+      record_.factorisations_in_double += down.factorisations_in_double;
       if (!down.lower) return {};
       if (corrector_.prepare(demand_, found.at) != 0) continue;
       Iterate there = found.at;
@@ -108,7 +107,7 @@ class Downhill {
   const System& system_;
   Workspace& work_;
   Team& team_;
-  SolveReport& report_;
+  SolveRecord& record_;
 };
 
 }  // namespace

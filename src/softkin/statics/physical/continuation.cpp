@@ -51,14 +51,15 @@ constexpr double much_imbalance = 0.01;
 }  // namespace
 
 Continuation::Continuation(const System& system, Workspace& work, Team& team, const Equilibria::Options& options,
-                           const ProgressCallback& progress, SolveReport& report)
+                           const ProgressCallback& progress, SolveRecord& record, SolveReport& report)
     : system_(system),
       work_(work),
       team_(team),
       options_(options),
+      record_(record),
       report_(report),
-      corrector_(system, work, team, options, progress, report),
-      tracer_(options.trace, report) {}
+      corrector_(system, work, team, options, progress, record, report),
+      tracer_(options.trace, record, report.trace) {}
 
 /// Predicts the end of a whole path without a tangent: by the caller's initial guess, by a stored second-order
 /// extrapolation or by a polynomial through the last equilibria. Returns false if none of these is available.
@@ -174,8 +175,9 @@ bool Continuation::turned_back(const Iterate& at, const Iterate& trial) {
 }
 
 Status Continuation::follow(const LoadState& from, const LoadState& to, Iterate& at) {
+  report_.remark.clear();
   const Status end = follow_whole(from, to, at);
-  sort_branch(system_, report_);
+  sort_branch(system_, record_.branch);
   return end;
 }
 
@@ -218,8 +220,8 @@ Newton::Outcome Continuation::correct_here(const LoadState& load_state, Iterate&
   if (outcome == Newton::Outcome::converged) {
     corrector_.take(at, std::move(trial));
     corrector_.last = corrector_.judged();
-    ++report_.continuation_steps;
-    report_.reached = 1;
+    ++record_.continuation_steps;
+    record_.reached = 1;
   } else {
     corrector_.active = before;
   }
@@ -233,7 +235,7 @@ void Continuation::set_out(const LoadState& from, const LoadState& to) {
   for (Index a = 0; a < system_.actuators(); ++a)
     path_.releases = path_.releases || (system_.surroundings().holds(a) && from.actuation[a] != to.actuation[a]);
   path_.load = only_load(from, to);
-  path_.marked_iterations = report_.iterations;
+  path_.marked_iterations = record_.iterations;
 }
 
 /// Runs a measure-controlled continuation of a load, and continues from the load state that it reaches.
@@ -245,6 +247,8 @@ MeasureContinuation::End Continuation::follow_measure(MeasureContinuation::End (
   const MeasureContinuation::End end = (follow_measure.*along)(at);
   path_.here = follow_measure.route().here;
   path_.done = follow_measure.route().done;
+  measure_remark_ = follow_measure.remark();
+  if (end == MeasureContinuation::End::interrupted) report_.remark = measure_remark_;
   at_limit_point_ = at_limit_point_ || follow_measure.at_limit_point();
   return end;
 }
@@ -355,7 +359,7 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   const LoadState there = between(path_.from, path_.to, next);
   Iterate trial = at;
   if (const std::optional<Status> end = start_step(there, at)) return end;
-  const int before = report_.iterations;
+  const int before = record_.iterations;
   const std::vector<bool> active = corrector_.active;
   work_.left_field = false;
   tracer_.begin(whole(path_.done), whole(next), length);
@@ -392,10 +396,10 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
     path_.advance = std::max(longest, 0.4 * length);
   } else {
     trace(true, came.snap ? "it jumps" : came.unstable ? "unstable" : came.why);
-    if (came.snap) report_snap(step_.jump_mm, whole(path_.done), report_);
+    if (came.snap) record_.note_snap(step_.jump_mm, whole(path_.done));
     corrector_.take(at, std::move(trial));
     if (!come_to(there, next, came.unstable, at)) return Status::interrupted;
-    lengthen(report_.iterations - before, came.unstable, at);
+    lengthen(record_.iterations - before, came.unstable, at);
   }
   return end ? end : out_of_patience(at);
 }
@@ -425,10 +429,10 @@ std::optional<Status> Continuation::shorten(double length, Iterate& at) {
     const MeasureContinuation::End end = follow_measure(&MeasureContinuation::up, std::exchange(path_.load, -1), at);
     if (end == MeasureContinuation::End::interrupted) return Status::interrupted;
     if (end == MeasureContinuation::End::arrived) return arrive(path_.to, at);
-    if (end == MeasureContinuation::End::limit_point) return limit(path_.done, report_.remark, at);
+    if (end == MeasureContinuation::End::limit_point) return limit(path_.done, measure_remark_, at);
     corrector_.active = active;
     path_.factorised = false;
-    report_.reached = whole(path_.done);
+    record_.reached = whole(path_.done);
   }
   if (loads_at_last(at)) return std::nullopt;
   const ArcLength::End curve = follow_curve(at);
@@ -441,7 +445,7 @@ std::optional<Status> Continuation::shorten(double length, Iterate& at) {
   if (curve != ArcLength::End::lost) return std::nullopt;
   path_.advance = 0.4 * length;
   if (path_.beyond && path_.advance < finest) {
-    report_snap(path_.beyond->jump_mm, whole(path_.done), report_);
+    record_.note_snap(path_.beyond->jump_mm, whole(path_.done));
     take_beyond(at);
     path_.advance = follow_below;
     return std::nullopt;
@@ -471,8 +475,8 @@ bool Continuation::come_to(const LoadState& there, double next, bool unstable, I
   if (unstable && options_.stable && next < 1) {
     if (!buckle(corrector_, there, at)) return false;
     path_.factorised = false;
-  } else if (unstable && next < 1 && report_.physical.unstable_from == 0 && corrector_.prepare(there, at) > 0) {
-    report_.physical.unstable_from = whole(next);  // at this shape: the last factorisation was of a nearby one
+  } else if (unstable && next < 1 && record_.unstable_from == 0 && corrector_.prepare(there, at) > 0) {
+    record_.unstable_from = whole(next);  // at this shape: the last factorisation was of a nearby one
   }
   if (path_.beyond && next >= path_.beyond->done) path_.beyond.reset();
   pass(there, next);
@@ -483,8 +487,8 @@ void Continuation::pass(const LoadState& load_state, double done) {
   path_.here = load_state;
   path_.done = done;
   path_.turned = false;
-  report_.reached = whole(done);
-  ++report_.continuation_steps;
+  record_.reached = whole(done);
+  ++record_.continuation_steps;
 }
 
 bool Continuation::snapped(double predicted_mm, double correction_mm) const {

@@ -15,7 +15,7 @@ class Continuation {
  public:
   /// All must outlive the object.
   Continuation(const System& system, Workspace& work, Team& team, const Equilibria::Options& options,
-               const ProgressCallback& progress, SolveReport& report);
+               const ProgressCallback& progress, SolveRecord& record, SolveReport& report);
 
   /// Follows the equilibrium from `from` to `to`; `at` becomes the last accepted one.
   Status follow(const LoadState& from, const LoadState& to, Iterate& at);
@@ -149,12 +149,14 @@ class Continuation {
   Workspace& work_;
   Team& team_;
   const Equilibria::Options& options_;
+  SolveRecord& record_;
   SolveReport& report_;
   Corrector corrector_;
   StepTracer tracer_;
   PathState path_;
   Step step_;
   std::optional<Together> together_;
+  std::string measure_remark_{};  // of the last measure-controlled continuation
   bool at_limit_point_ = false;
 };
 

@@ -12,15 +12,16 @@ constexpr double nearby = 1e-3;
 }  // namespace
 
 Corrector::Corrector(const System& system, Workspace& work, Team& team, const Equilibria::Options& options,
-                     const ProgressCallback& progress, SolveReport& report)
+                     const ProgressCallback& progress, SolveRecord& record, SolveReport& report)
     : system_(system),
       work_(work),
       team_(team),
+      record_(record),
       report_(report),
       newton_(system, work, team,
               {options.tolerance_mm, options.force_fraction, system.contact() || system.has_wrinkling() ? 100 : 30,
                options.keep_history},
-              progress, report) {}
+              progress, record, report.history) {}
 
 /// Sets the given loads to those of the load state, whatever the prediction has: a prediction along a curved path of
 /// several commands misses them, and no equation would correct that.
@@ -56,9 +57,9 @@ Newton::Outcome Corrector::correct_softly(const LoadState& load_state, bool fall
   const Iterate begun = at;
   const auto loosely = newton_.loosely(Newton::by_far);
   auto outcome = Newton::Outcome::stuck;
-  const int iterations = report_.iterations;
+  const int iterations = record_.iterations;
   for (double first = nearest; outcome == Newton::Outcome::stuck && first <= most; first *= finer) {
-    if (report_.iterations - iterations > max_iterations) break;
+    if (record_.iterations - iterations > max_iterations) break;
     at = begun;
     active = before;
     outcome = Newton::Outcome::converged;
@@ -124,8 +125,8 @@ Newton::Outcome Corrector::correct(const LoadState& load_state, Newton::Policy p
     outcome = correct_constraints(load_state, policy, at, near);
     rounds_ = round;
     if (outcome != Newton::Outcome::converged && outcome != Newton::Outcome::unstable) return outcome;
-    report_.physical.friction_change = renew_anchors(at);
-    if (report_.physical.friction_change <= frictions_agree) break;
+    record_.friction_change = renew_anchors(at);
+    if (record_.friction_change <= frictions_agree) break;
     if (round > 8 || (round & (round - 1)) != 0) continue;  // 1, 2, 4, 8
     const auto followed = correct_following(load_state, policy, at, false);
     if (followed != Newton::Outcome::stuck) return followed;
@@ -150,8 +151,8 @@ Newton::Outcome Corrector::correct_following(const LoadState& load_state, Newton
       active = before;
       return outcome;
     }
-    report_.physical.friction_change = renew_anchors(trial);
-    if (report_.physical.friction_change <= frictions_agree) {
+    record_.friction_change = renew_anchors(trial);
+    if (record_.friction_change <= frictions_agree) {
       at = std::move(trial);
       return outcome;
     }
@@ -235,9 +236,8 @@ int Corrector::prepare(const LoadState& here, const Iterate& at) {
   Balance balance;
   hold_friction(system_, at, work_, team_);
   system_.evaluate(at, here, active, work_, balance, team_);
-  ++report_.factorisations;
   const int modes = system_.factorise(at, here, active, balance, {}, work_, team_);
-  report_.factorisations_in_double += work_.saddle.factor().in_double();
+  record_.note_factorisation(work_.saddle.factor().in_double());
   return balance.force.allFinite() ? modes : -1;
 }
 

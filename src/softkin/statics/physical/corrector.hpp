@@ -30,7 +30,7 @@ class Corrector {
 
   /// All must outlive the object.
   Corrector(const System& system, Workspace& work, Team& team, const Equilibria::Options& options,
-            const ProgressCallback& progress, SolveReport& report);
+            const ProgressCallback& progress, SolveRecord& record, SolveReport& report);
 
   /// Corrects `at` to a nearby equilibrium of a load state. If none is found, `active` is unchanged and `at` has no
   /// meaning.
@@ -83,6 +83,7 @@ class Corrector {
   [[nodiscard]] const System& system() const { return system_; }
   [[nodiscard]] Workspace& work() const { return work_; }
   [[nodiscard]] Team& team() const { return team_; }
+  [[nodiscard]] SolveRecord& record() const { return record_; }
   [[nodiscard]] SolveReport& report() const { return report_; }
   [[nodiscard]] Newton& newton() { return newton_; }
 
@@ -102,6 +103,7 @@ class Corrector {
   const System& system_;
   Workspace& work_;
   Team& team_;
+  SolveRecord& record_;
   SolveReport& report_;
   Newton newton_;
   int rounds_ = 1;

@@ -151,13 +151,13 @@ bool Equilibria::comes_to(const Points& from, const Points& to, Workspace& work,
 /// Starts again from rest: from a start that is not an equilibrium there may be no path, but from rest there may be
 /// one.
 void Equilibria::begin_again(const LoadState& to, const Options& options, const ProgressCallback& progress, Team& team,
-                             Workspace& work, Iterate& at, SolveReport& report) const {
+                             Workspace& work, Iterate& at, SolveRecord& record, SolveReport& report) const {
   std::string remark = std::exchange(report.remark, "");
   Iterate fresh{system_.model().rest, Eigen::VectorXd::Zero(system_.actuators()), {}, {}};
   LoadState from = at_rest(system_.model(), to.actuation);
   system_.placement().hold(from, fresh.positions);
   fresh.eyelets = system_.tendons().lengths(fresh.positions);
-  Continuation continuation(system_, work, team, options, progress, report);
+  Continuation continuation(system_, work, team, options, progress, record, report);
   if (system_.viscous()) {
     hold_friction(system_, fresh, work, team);
     from = system_.unbalanced(fresh, from, work, team);
@@ -170,7 +170,7 @@ void Equilibria::begin_again(const LoadState& to, const Options& options, const 
   }
   if (status == Status::interrupted) report.status = status;
   report.remark = std::move(remark);
-  report.reached = 0;
+  record.reached = 0;
 }
 
 Equilibrium Equilibria::solve(const Actuation& actuation, const State& start, const Options& options,
@@ -231,7 +231,7 @@ Equilibrium Equilibria::solve_inside(const Actuation& actuation, const State& st
   SolveReport& report = result.report;
   report.solver = "newton";
   report.tolerance_mm = options.tolerance_mm;
-  report.reached = 0;
+  SolveRecord record;
   if (start.actuation.size() == 0 && start.positions != model.rest) check_contact_of_start(model, start.positions);
   Lease lease(*this, start.positions, options.reuse_factor);
 
@@ -242,7 +242,7 @@ Equilibrium Equilibria::solve_inside(const Actuation& actuation, const State& st
   // if the supports of the start are elsewhere, there may be no free motion to their positions
   const bool clear = !system_.contact() || largest_move(start.positions, at.positions) == 0 ||
                      comes_to(start.positions, at.positions, lease.work(), team);
-  Continuation continuation(system_, lease.work(), team, options, progress, report);
+  Continuation continuation(system_, lease.work(), team, options, progress, record, report);
   if (clear)
     report.status = continuation.follow(from, to, at);
   else {
@@ -251,14 +251,15 @@ Equilibrium Equilibria::solve_inside(const Actuation& actuation, const State& st
   }
   // friction depends on the path to the equilibrium, and a solve from rest would find another one
   const bool remembers = (system_.friction() || system_.tendons().any()) && start.knows(system_.actuators());
-  if (report.status == Status::limit && report.continuation_steps == 0 && start.positions != model.rest && !remembers &&
+  if (report.status == Status::limit && record.continuation_steps == 0 && start.positions != model.rest && !remembers &&
       !continuation.at_limit_point())
-    begin_again(to, options, progress, team, lease.work(), at, report);
+    begin_again(to, options, progress, team, lease.work(), at, record, report);
   if (report.status == Status::converged) lease.work().home = at.positions;
-  report.estimated_error_mm = report.step_mm;
-  const bool unknown = (start.actuation.size() == 0 && start.positions != model.rest && report.reached == 0) ||
-                       (from.fading > 0 && report.reached < 1);
-  const bool arrived = report.status == Status::converged || report.reached >= 1;
+  record.write_to(report);
+  report.estimated_error_mm = record.step_mm;
+  const bool unknown = (start.actuation.size() == 0 && start.positions != model.rest && record.reached == 0) ||
+                       (from.fading > 0 && record.reached < 1);
+  const bool arrived = report.status == Status::converged || record.reached >= 1;
   result.state = state_at(std::move(at), arrived ? to : clear ? continuation.here() : from, options);
   if (report.status != Status::converged && unknown) {  // of an unknown load state
     result.state.actuation.resize(0);

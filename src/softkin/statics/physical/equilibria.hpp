@@ -94,7 +94,7 @@ class Equilibria {
   void find_pressures(State& at, Team& team) const;
   void drop_vertices(Points& points) const;
   void begin_again(const LoadState& to, const Options& options, const ProgressCallback& progress, Team& team,
-                   Workspace& work, Iterate& at, SolveReport& report) const;
+                   Workspace& work, Iterate& at, SolveRecord& record, SolveReport& report) const;
 
   System system_;
   mutable std::mutex mutex_;

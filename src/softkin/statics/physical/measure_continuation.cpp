@@ -182,7 +182,7 @@ MeasureContinuation::End MeasureContinuation::up(Iterate& at) {
   const double up = ascent.up, path = ascent.path, begin = ascent.begin;
   const Measured& low = ascent.low;
   if (!std::isfinite(low.gain)) return End::lost;
-  report_.physical.branch = {};
+  record_.branch = {};
   note_branch(low);
   const bool may_stand_there = at_maximum(low);
   if (low.gain < 0 && !may_stand_there) return End::lost;
@@ -217,7 +217,7 @@ MeasureContinuation::End MeasureContinuation::up(Iterate& at) {
     }
     prepared = next->gain >= 0;
     ascent.take(std::move(*next));
-    if (prepared) report_.reached = route_.whole(fraction_of(low.load));
+    if (prepared) record_.reached = route_.whole(fraction_of(low.load));
   }
   if (low.measure == begin) return End::lost;
   const Search<Measured> last = exactly(low);
@@ -258,9 +258,9 @@ MeasureContinuation::End MeasureContinuation::arrive_at(const Measured& near, It
   if (!found || (corrector_.newton().inverted() && !corrector_.last.inverted)) return End::lost;
   corrector_.take(at, std::move(trial));
   corrector_.last = corrector_.judged();
-  ++report_.continuation_steps;
+  ++record_.continuation_steps;
   route_.here = route_.to;
-  report_.reached = 1;
+  record_.reached = 1;
   return End::arrived;
 }
 
@@ -294,11 +294,11 @@ MeasureContinuation::End MeasureContinuation::stop_at(double path, double begin,
 void MeasureContinuation::keep(const Measured& kept, Iterate& at) {
   at = kept.at;
   corrector_.last = kept.last;
-  ++report_.continuation_steps;
+  ++record_.continuation_steps;
   route_.here.actuation[load_] = kept.load;
   route_.here.load_factor = kept.load_factor;
   route_.done = fraction_of(kept.load);
-  report_.reached = route_.whole(route_.done);
+  record_.reached = route_.whole(route_.done);
 }
 
 /// Solves for an intermediate equilibrium with the final tolerance; returns it unchanged where that fails.
@@ -322,12 +322,12 @@ double MeasureContinuation::fraction_of(double load) const {
 void MeasureContinuation::report_limit_point(const Measured& limit_point) {
   const Actuator& actuator = system_.model().actuators[load_];
   const bool cable = actuator.is<CableDrive>();
-  report_.remark = std::string(cable ? "the tension of cable '" : "the pressure of chamber '") + actuator.name +
-                   "' has its " + (requested_load() > first_load() ? "maximum" : "minimum") + " there, " +
-                   load_text(limit_point.load) + " at " + measure_text(limit_point.measure);
+  remark_ = std::string(cable ? "the tension of cable '" : "the pressure of chamber '") + actuator.name + "' has its " +
+            (requested_load() > first_load() ? "maximum" : "minimum") + " there, " + load_text(limit_point.load) +
+            " at " + measure_text(limit_point.measure);
   if (options_.beyond > 0) return;
-  report_.remark += std::string("; command its ") + (cable ? "length (control: length)" : "volume (control: volume)") +
-                    " to go on beyond it";
+  remark_ += std::string("; command its ") + (cable ? "length (control: length)" : "volume (control: volume)") +
+             " to go on beyond it";
 }
 
 }  // namespace softkin::physical

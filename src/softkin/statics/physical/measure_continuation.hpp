@@ -39,6 +39,8 @@ class MeasureContinuation : Follower {
 
   /// The route, whose member `here` is the load state of the equilibrium that was reached.
   [[nodiscard]] const Route& route() const { return route_; }
+  /// Returns what is to be reported about the maximum at which the path ended; "" where it did not.
+  [[nodiscard]] const std::string& remark() const { return remark_; }
   /// Has the path reached a maximum of the load?
   [[nodiscard]] bool at_limit_point() const { return at_limit_point_; }
 
@@ -95,14 +97,11 @@ class MeasureContinuation : Follower {
 
   Route route_;
   Index load_;
+  std::string remark_{};
   bool at_limit_point_ = false;
 };
 
-/// Records a snap-through if it is the longest one of the solve.
-///
-/// from  completed fraction of the whole requested path
-void report_snap(double move_mm, double from, SolveReport& report);
 /// Sorts the points of a path along a measure by that measure. Does nothing if no path was traced by a measure.
-void sort_branch(const System& system, SolveReport& report);
+void sort_branch(const System& system, LoadBranch& branch);
 
 }  // namespace softkin::physical

@@ -31,23 +31,24 @@ constexpr double near_tolerance = 100;
 }  // namespace
 
 Newton::Newton(const System& system, Workspace& work, Team& team, const Settings& settings,
-               const ProgressCallback& progress, SolveReport& report)
-    : system_(system), work_(work), team_(team), settings_(settings), progress_(progress), report_(report) {}
+               const ProgressCallback& progress, SolveRecord& record, std::vector<IterationRecord>& history)
+    : system_(system),
+      work_(work),
+      team_(team),
+      settings_(settings),
+      progress_(progress),
+      record_(record),
+      history_(history) {}
 
-void Newton::record(double step_mm) {
-  IterationRecord entry;
-  entry.energy = balance_.energy;
-  entry.gradient_norm = balance_.force.norm();
-  entry.step_mm = step_mm;
-  ++report_.iterations;
-  report_.energy = entry.energy;
-  report_.step_mm = step_mm;
-  report_.gradient_norm = entry.gradient_norm;
-  if (settings_.keep_history) report_.history.push_back(entry);
+void Newton::note_iteration(double step_mm) {
+  const IterationRecord entry{.energy = balance_.energy, .step_mm = step_mm, .gradient_norm = balance_.force.norm()};
+  ending_.step_mm = step_mm;
+  record_.note_iteration(entry);
+  if (settings_.keep_history) history_.push_back(entry);
 }
 
 bool Newton::goes_on() const {
-  return !progress_ || progress_({report_.iterations, report_.step_mm, settings_.tolerance_mm, report_.reached});
+  return !progress_ || progress_({record_.iterations, record_.step_mm, settings_.tolerance_mm, record_.reached});
 }
 
 /// Factorises the exact stiffness if it is stable under the constraints or requested. Otherwise the stiffness is
@@ -63,14 +64,13 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
   int negative = 0;
   const auto attempted = [&](Stiffness kind, double shift, Precision precision) {
     if (!goes_on()) return Advance::interrupted;  // each factorisation of a large robot takes long
-    ++report_.factorisations;
     factor_.shape = at.positions;
     secants_.clear();
     factor_.looked_at = false;
     const Temporarily scope(work_.saddle.precision(), precision);
     negative =
         system_.factorise(at, *requested_.load_state, *requested_.active, balance_, {kind, shift, true}, work_, team_);
-    report_.factorisations_in_double += work_.saddle.factor().in_double();
+    record_.note_factorisation(work_.saddle.factor().in_double());
     return negative == 0 ? Advance::made : Advance::none;
   };
   Advance end = attempted(Stiffness::exact, 0, guess ? Precision::sign : usual);
@@ -82,17 +82,17 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
   if (end == Advance::made || policy != Policy::descend) return Advance::made;
   for (double shift = std::max(slight_shift, factor_.shift); pace_.slow && end == Advance::none && shift < clear_shift;
        shift *= stiffer) {
-    ++report_.shifts;
+    ++record_.shifts;
     // compressed sheets have many buckling modes, none of which leads to the wrinkled shape
     end = attempted(system_.has_wrinkling() ? Stiffness::projected : Stiffness::exact, shift, closer);
     factor_.shift = shift / softer;
   }
   if (end != Advance::none) return end;
-  ++report_.projections;
+  ++record_.projections;
   end = attempted(Stiffness::projected, 0, closer);
   for (double shift = system_.has_wrinkling() ? min_wrinkled_shift : min_shift;
        end == Advance::none && shift < max_shift; shift *= 10) {
-    ++report_.shifts;
+    ++record_.shifts;
     end = attempted(Stiffness::projected, shift, closer);
   }
   return end;
@@ -149,7 +149,7 @@ double Newton::weigh_constraints(const Iterate& at) {
 
 /// Accepts the trial iterate. One that has converged counts as converged even if the caller interrupts the solve then.
 Newton::Advance Newton::accept(double moved_mm, bool arrives, Iterate& at) {
-  record(moved_mm);
+  note_iteration(moved_mm);
   std::swap(at, trial_);
   std::swap(balance_, trial_balance_);
   const bool on = goes_on();
@@ -220,8 +220,7 @@ bool Newton::doubts_stability(const Iterate& at) {
 void Newton::make_sure(const Iterate& at) {
   const Temporarily twice(work_.saddle.precision(), linear::MixedLdlt::Precision::twice);
   factor_.negative = system_.factorise(at, *requested_.load_state, *requested_.active, balance_, {}, work_, team_);
-  ++report_.factorisations;
-  ++report_.factorisations_in_double;
+  record_.note_factorisation(true);
   factor_.doubtful = false;
 }
 
@@ -229,14 +228,14 @@ Newton::Outcome Newton::solve(const LoadState& load_state, const std::vector<boo
                               bool factorised, Iterate& at) {
   requested_.load_state = &load_state;
   requested_.active = &active;
-  const int before = report_.factorisations - report_.factorisations_in_double;
+  const int before = record_.factorisations - record_.factorisations_in_double;
   start_ = at;
   const Outcome outcome = descend(policy, factorised, at);
   if (outcome != Outcome::stuck) return outcome;
-  const bool in_single = report_.factorisations - report_.factorisations_in_double != before && !system_.contact();
+  const bool in_single = record_.factorisations - record_.factorisations_in_double != before && !system_.contact();
   // with sheets that wrinkle rounding may also be why an intermediate solve with a relaxed tolerance failed
   const double near = near_tolerance * (system_.has_wrinkling() ? tolerance_mm() : settings_.tolerance_mm);
-  const bool rounded = ending_.rounded || report_.step_mm < near;
+  const bool rounded = ending_.rounded || ending_.step_mm < near;
   if (!in_single || ending_.brief || !rounded) return outcome;
   at = start_;
   const Temporarily twice(work_.saddle.precision(), linear::MixedLdlt::Precision::twice);
@@ -262,6 +261,7 @@ void Newton::begin_steps() {
 }
 
 Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
+  ending_.step_mm = std::numeric_limits<double>::infinity();
   system_.evaluate(at, *requested_.load_state, *requested_.active, work_, balance_, team_);
   ending_.why = "the law has no energy at its begin";
   if (balance_.forbidden || !balance_.force.allFinite()) return Outcome::stuck;
@@ -294,14 +294,14 @@ Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
   }
   if (advance == Advance::interrupted) return Outcome::interrupted;
   if (advance != Advance::arrived) {
-    if (!std::isfinite(imbalance_.residual) || report_.step_mm >= tolerance_mm()) return Outcome::stuck;
+    if (!std::isfinite(imbalance_.residual) || ending_.step_mm >= tolerance_mm()) return Outcome::stuck;
     (void)reject(at);  // the last step was small enough, and none follows it
     imbalance_ = system_.imbalance(balance_, work_, team_);
     // steps with a stiffness that is too large are small anywhere
     if (advance == Advance::none && !balanced() && step_.size.largest > tolerance_mm()) return Outcome::stuck;
   }
-  report_.gradient_norm = balance_.force.norm();
-  report_.energy = balance_.energy;
+  record_.gradient_norm = balance_.force.norm();
+  record_.energy = balance_.energy;
   if (!meets_constraints()) {
     ending_.why = "what actuators command contradicts each other";
     return Outcome::unmet;

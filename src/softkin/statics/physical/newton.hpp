@@ -4,7 +4,9 @@
 #include <softkin/core/progress.hpp>
 #include <softkin/core/temporarily.hpp>
 #include <softkin/model/equilibrium.hpp>
+#include <softkin/statics/physical/solve_record.hpp>
 #include <softkin/statics/physical/system.hpp>
+#include <vector>
 
 namespace softkin::physical {
 
@@ -25,7 +27,7 @@ class Newton {
   enum class Outcome { converged, unstable, stuck, unmet, interrupted, blocked, too_far };
 
   Newton(const System& system, Workspace& work, Team& team, const Settings& settings, const ProgressCallback& progress,
-         SolveReport& report);
+         SolveRecord& record, std::vector<IterationRecord>& history);
 
   /// descend: with a stiffness made positive where it is not, towards stable equilibria. follow: with the exact
   /// stiffness, towards the nearest equilibrium, stable or not. near: like descend, but the first step uses the exact
@@ -120,6 +122,7 @@ class Newton {
     double loose = 1;      // factor of the tolerances
     bool rounded = false;  // may rounding be why the last one failed
     const char* why = "";  // why the last one failed
+    double step_mm = 0;    // the last step of the current one; infinite: none yet
   };
 
   void begin_steps();
@@ -154,14 +157,15 @@ class Newton {
   bool improve_constraints();
   void correct_gases(Iterate& at) const;
   Advance reject(const Iterate& at);
-  void record(double step_mm);
+  void note_iteration(double step_mm);
 
   const System& system_;
   Workspace& work_;
   Team& team_;
   Settings settings_;
   const ProgressCallback& progress_;
-  SolveReport& report_;
+  SolveRecord& record_;
+  std::vector<IterationRecord>& history_;
   Requested requested_;
   Balance balance_, trial_balance_;  // at the iterate, at the one being tried
   Step step_, next_;

@@ -33,7 +33,7 @@ Newton::Outcome Newton::correct_pushes(const LoadState& load_state, const std::v
       return Outcome::stuck;
     trial_.multipliers += damping * step_.change;
     system_.contacts()->follow_pushes((trial_.positions - from) / damping, damping, *work_.contacts);
-    record(damping * step_.size.largest);
+    note_iteration(damping * step_.size.largest);
   }
   return Outcome::stuck;
 }

@@ -84,7 +84,7 @@ ArcLength::End Continuation::follow_curve(Iterate& at) {
   if (gone > 0) pass(between(path_.from, path_.to, curve.done()), curve.done());
   path_.turned = end == ArcLength::End::turned;
   path_.bears_all = path_.turned && curve.largest() >= 1;
-  if (const auto& jump = curve.jump()) report_snap(jump->move_mm, whole(jump->load_factor), report_);
+  if (const auto& jump = curve.jump()) record_.note_snap(jump->move_mm, whole(jump->load_factor));
   if (end == ArcLength::End::passed) path_.advance = std::max(path_.advance, gone);
   return end;
 }
@@ -130,7 +130,7 @@ void Continuation::report_balance() {
 /// at: the last equilibrium
 Status Continuation::limit(double done, const std::string& why, const Iterate& at) {
   report_balance();
-  report_.reached = whole(done);
+  record_.reached = whole(done);
   report_.remark = why + pull_in_text(system_.model(), path_.from, between(path_.from, path_.to, done), at.positions);
   if (system_.has_wrinkling()) report_.remark += "; sheets that nothing keeps taut have no shape of their own";
   const double slipping = slipping_fraction(system_, at, work_, team_);
@@ -176,8 +176,8 @@ std::optional<Status> Continuation::out_of_patience(const Iterate& at) {
   const double least = is_non_smooth() ? min_progress_at_contact : min_progress;
   if (path_.done - path_.marked >= least || (!is_non_smooth() && path_.done > much_gained * path_.marked)) {
     path_.marked = path_.done;
-    path_.marked_iterations = report_.iterations;
-  } else if (path_.done < 1 && !options_.stable && report_.iterations - path_.marked_iterations >= most) {
+    path_.marked_iterations = record_.iterations;
+  } else if (path_.done < 1 && !options_.stable && record_.iterations - path_.marked_iterations >= most) {
     return limit(path_.done,
                  "the path advances in ever smaller steps: " + std::to_string(most) + " iterations brought less than " +
                      number(100 * least, 2) + " % of it",
@@ -191,13 +191,13 @@ Status Continuation::arrive(const LoadState& load_state, Iterate& at) {
   if (options_.stable && !buckle(corrector_, load_state, at)) return Status::interrupted;
   if (corrector_.last.modes > 0) report_stability(load_state, at);
   report_balance();
-  if (report_.physical.friction_change > Corrector::frictions_agree) {
+  if (record_.friction_change > Corrector::frictions_agree) {
     report_.remark = "friction and the normal forces that limit it do not agree: it changed by " +
-                     number(100 * report_.physical.friction_change, 2) + " % when they were found anew";
+                     number(100 * record_.friction_change, 2) + " % when they were found anew";
     return Status::not_converged;
   }
   if (corrector_.last.balanced) {
-    if (report_.physical.snapped_mm > 0) work_.trail.clear();
+    if (record_.snapped_mm > 0) work_.trail.clear();
     work_.trail.add(load_state, corrector_.active, at);
     return Status::converged;
   }
@@ -209,10 +209,10 @@ Status Continuation::arrive(const LoadState& load_state, Iterate& at) {
 
 /// Reports the number of unstable modes of the last shape.
 void Continuation::report_stability(const LoadState& load_state, const Iterate& at) {
-  report_.physical.unstable_modes = std::max(0, corrector_.prepare(load_state, at));
-  if (report_.physical.unstable_modes > 0)
-    report_.remark = "this equilibrium is unstable in " + std::to_string(report_.physical.unstable_modes) +
-                     (report_.physical.unstable_modes == 1 ? " mode" : " modes") +
+  const int modes = std::max(0, corrector_.prepare(load_state, at));
+  report_.physical.unstable_modes = modes;
+  if (modes > 0)
+    report_.remark = "this equilibrium is unstable in " + std::to_string(modes) + (modes == 1 ? " mode" : " modes") +
                      ": the robot would buckle or snap away from it";
 }
 
@@ -243,7 +243,7 @@ void Continuation::go_together(Iterate& at) {
   corrector_.good_shape = at.positions;
   path_.advance *= 0.4;
   path_.factorised = false;
-  path_.marked_iterations = report_.iterations;
+  path_.marked_iterations = record_.iterations;
   report_.remark.clear();
 }
 

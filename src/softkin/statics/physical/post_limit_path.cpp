@@ -81,7 +81,7 @@ MeasureContinuation::End MeasureContinuation::go_beyond(double path, const Measu
                      : path > 0          ? far_beyond * limit_point.measure
                                          : limit_point.measure / far_beyond;
   if (!(path * (end - limit_point.measure) > 0)) {
-    report_.remark += "; " + measure_text(end) + " is not beyond it";
+    remark_ += "; " + measure_text(end) + " is not beyond it";
     return End::lost;
   }
   const double longest = options_.beyond > 0 ? std::abs(end - limit_point.measure) / points_beyond
@@ -97,14 +97,14 @@ MeasureContinuation::End MeasureContinuation::go_beyond(double path, const Measu
     const End arrived = arrive_between(std::move(last), std::move(*next), at);
     if (arrived == End::interrupted) keep(limit_point, at);
     if (arrived == End::arrived) {
-      report_snap(system_.largest_move(limit_point.at.positions, at.positions),
-                  route_.whole(fraction_of(limit_point.load)), report_);
-      report_.remark.clear();
+      record_.note_snap(system_.largest_move(limit_point.at.positions, at.positions),
+                        route_.whole(fraction_of(limit_point.load)));
+      remark_.clear();
     }
     return arrived;
   }
   if (!(options_.beyond > 0)) {
-    report_.remark += "; no shape up to " + measure_text(last.measure) + " carries as much again";
+    remark_ += "; no shape up to " + measure_text(last.measure) + " carries as much again";
     return End::lost;
   }
   if (last.measure == limit_point.measure) return End::lost;
@@ -123,7 +123,7 @@ MeasureContinuation::End MeasureContinuation::back(Iterate& at) {
   if (!std::isfinite(slope) || slope * grows >= 0) return End::lost;
   const double path = requested_load() > first_load() ? -grows : grows;
   const double end = path == grows ? options_.beyond : 1;
-  report_.physical.branch = {};
+  record_.branch = {};
   note_branch(last);
   std::optional<Measured> next;
   const Passed passed = go_along(path, end, max_beyond * begin, last, next);
@@ -133,13 +133,13 @@ MeasureContinuation::End MeasureContinuation::back(Iterate& at) {
     return End::interrupted;
   }
   if (passed == Passed::requested) arrived = arrive_between(std::move(last), std::move(*next), at);
-  if (arrived == End::arrived) report_.remark.clear();
+  if (arrived == End::arrived) remark_.clear();
   return arrived;
 }
 
 void MeasureContinuation::note_branch(const Measured& point) {
-  report_.physical.branch.actuator = load_;
-  report_.physical.branch.points.push_back({point.measure, point.load});
+  record_.branch.actuator = load_;
+  record_.branch.points.push_back({point.measure, point.load});
 }
 
 /// "3.01 times its volume", "0.7 of its length"
@@ -153,22 +153,15 @@ std::string MeasureContinuation::load_text(double load) const {
 }
 
 void MeasureContinuation::report_beyond(const Measured& last, bool requested) {
-  report_.remark += "; beyond it, at " + measure_text(last.measure) + ", it is " + load_text(last.load);
-  if (!requested) report_.remark += ", and no equilibrium follows there";
+  remark_ += "; beyond it, at " + measure_text(last.measure) + ", it is " + load_text(last.load);
+  if (!requested) remark_ += ", and no equilibrium follows there";
 }
 
-void sort_branch(const System& system, SolveReport& report) {
-  auto& points = report.physical.branch.points;
-  const double path =
-      report.physical.branch.actuator >= 0 ? -system.measures().sign(report.physical.branch.actuator) : 1;
+void sort_branch(const System& system, LoadBranch& branch) {
+  auto& points = branch.points;
+  const double path = branch.actuator >= 0 ? -system.measures().sign(branch.actuator) : 1;
   std::sort(points.begin(), points.end(),
             [path](const auto& a, const auto& b) { return path * a.measure < path * b.measure; });
-}
-
-void report_snap(double move_mm, double from, SolveReport& report) {
-  if (move_mm <= report.physical.snapped_mm) return;
-  report.physical.snapped_mm = move_mm;
-  report.physical.snapped_from = from;
 }
 
 }  // namespace softkin::physical

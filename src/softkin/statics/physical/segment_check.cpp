@@ -101,12 +101,12 @@ SegmentCheck::Verdict SegmentCheck::check(SegmentEnd low, SegmentEnd high, const
 }
 
 SegmentCheck::Verdict SegmentCheck::check_by_middles(const SegmentEnd& low, const SegmentEnd& high) {
-  const double energy = report_.energy, gradient_norm = report_.gradient_norm, step_mm = report_.step_mm;
-  iterations_ = report_.iterations;
+  const double energy = record_.energy, gradient_norm = record_.gradient_norm, step_mm = record_.step_mm;
+  iterations_ = record_.iterations;
   const Verdict verdict = check_halves(low, high, max_segment_halvings);
-  report_.energy = energy;
-  report_.gradient_norm = gradient_norm;
-  report_.step_mm = step_mm;
+  record_.energy = energy;
+  record_.gradient_norm = gradient_norm;
+  record_.step_mm = step_mm;
   lost_factor_ = verdict != Verdict::confirmed || !factorise(high);
   return verdict;
 }
@@ -139,7 +139,7 @@ SegmentCheck::Verdict SegmentCheck::check_halves(const SegmentEnd& low, const Se
   const bool short_segment = is_short(system_, system_.largest_move(low.at->positions, high.at->positions)) &&
                              is_short(system_, (high.factor - low.factor) * size(low.rate));
   if (short_segment || (depth < max_segment_halvings && agree(low, high))) return Verdict::confirmed;
-  if (depth == 0 || report_.iterations - iterations_ > max_middle_corrections) return Verdict::unclear;
+  if (depth == 0 || record_.iterations - iterations_ > max_middle_corrections) return Verdict::unclear;
   Point found;
   const Verdict verdict = find_middle(low, high, found);
   if (verdict != Verdict::confirmed) return verdict;

@@ -57,13 +57,12 @@ bool as_stiff_as_factorised(const System& system, const Iterate& at, const LoadS
 }
 
 LowestMode lowest_mode(const System& system, const Iterate& at, const LoadState& load_state,
-                       const std::vector<bool>& active, Workspace& work, Team& team, SolveReport& report) {
+                       const std::vector<bool>& active, Workspace& work, Team& team, SolveRecord& record) {
   Balance balance;
   system.evaluate(at, load_state, active, work, balance, team);
   double mean = 0;
   const auto negative = [&](double shift) {
-    ++report.factorisations;
-    ++report.factorisations_in_double;
+    record.note_factorisation(true);
     const int count = system.factorise(at, load_state, active, balance, {System::Stiffness::exact, shift}, work, team);
     if (shift == 0) mean = work.saddle.spectrum().mean;
     return count;

@@ -26,7 +26,7 @@ struct LowestMode {
 ///
 /// source  a shift that makes the stiffness positive, by bisection on Sylvester's inertia, then inverse iteration
 [[nodiscard]] LowestMode lowest_mode(const System& system, const Iterate& at, const LoadState& load_state,
-                                     const std::vector<bool>& active, Workspace& work, Team& team, SolveReport& report);
+                                     const std::vector<bool>& active, Workspace& work, Team& team, SolveRecord& record);
 
 /// The result of step_down(): was a shape of less energy found, and how many factorisations did it take.
 struct Descent {

@@ -9,8 +9,9 @@ namespace softkin::physical {
 /// Records the cost of each step of a continuation, and why it is taken or not, in SolveReport::trace.
 class StepTracer {
  public:
-  /// report must outlive the object
-  StepTracer(bool on, SolveReport& report) : on_(on), report_(report) {}
+  /// Both must outlive the object.
+  StepTracer(bool on, const SolveRecord& record, std::vector<TracedStep>& trace)
+      : on_(on), record_(record), trace_(trace) {}
 
   void begin(double from, double to, double length, const std::string& along = "") {
     if (!on_) return;
@@ -29,7 +30,7 @@ class StepTracer {
     step_.corrected_mm = corrected_mm;
     step_.taken = taken;
     step_.why = why;
-    report_.trace.push_back(std::move(step_));
+    trace_.push_back(std::move(step_));
   }
 
  private:
@@ -37,12 +38,13 @@ class StepTracer {
     int iterations = 0, factorisations = 0, in_double = 0, projections = 0, shifts = 0;
   };
   [[nodiscard]] Counts counts() const {
-    return {report_.iterations, report_.factorisations, report_.factorisations_in_double, report_.projections,
-            report_.shifts};
+    return {record_.iterations, record_.factorisations, record_.factorisations_in_double, record_.projections,
+            record_.shifts};
   }
 
   bool on_;
-  SolveReport& report_;
+  const SolveRecord& record_;
+  std::vector<TracedStep>& trace_;
   TracedStep step_;
   Counts before_;
 };
@@ -58,6 +60,7 @@ class Follower {
         system_(corrector.system()),
         work_(corrector.work()),
         team_(corrector.team()),
+        record_(corrector.record()),
         report_(corrector.report()) {}
 
   Corrector& corrector_;
@@ -66,6 +69,7 @@ class Follower {
   const System& system_;
   Workspace& work_;
   Team& team_;
+  SolveRecord& record_;
   SolveReport& report_;
 };
 
