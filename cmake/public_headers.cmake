@@ -58,6 +58,8 @@ set(softkin_public_headers
     statics/electric_layer.hpp
     statics/self_overlap.hpp
     statics/sensitivity.hpp
+    statics/solver_option_fields.hpp
+    statics/solver_options.hpp
     statics/statics.hpp
     statics/worst_place.hpp
     kinematics/estimate/readings.hpp

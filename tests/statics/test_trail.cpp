@@ -41,7 +41,7 @@ struct Curve {
 
 Trail walked(const Curve& curve, const std::vector<double>& paths) {
   Trail trail;
-  for (const double path : paths) trail.add(load_state_at(path), {true, true}, curve.at(path));
+  for (const double path : paths) trail.add(load_state_at(path), {true, true}, curve.at(path), {});
   return trail;
 }
 
@@ -56,7 +56,7 @@ TEST(Trail, PolynomialsAreFollowed) {
         const Curve curve(degree);
         const Trail trail = walked(curve, paths);
         Iterate at = curve.at(paths.back());
-        ASSERT_TRUE(trail.lead(load_state_at(paths.back()), load_state_at(next), {true, true}, tolerance, at))
+        ASSERT_TRUE(trail.lead(load_state_at(paths.back()), load_state_at(next), {true, true}, tolerance, {}, at))
             << degree << " " << next;
         EXPECT_LT((at.positions - curve.at(next).positions).norm(), 1e-10) << degree << " " << next;
         EXPECT_LT((at.multipliers - curve.at(next).multipliers).norm(), 1e-10);
@@ -68,21 +68,22 @@ TEST(Trail, NothingIsToldOfWhatCannotBeForetold) {
   const std::vector<double> paths{0, 0.4, 0.8, 1.2, 1.6, 2};
   const Trail trail = walked(curve, paths);
   Iterate at = curve.at(2);
-  EXPECT_FALSE(trail.lead(load_state_at(2), load_state_at(2.4), {true, true}, tolerance, at));
+  EXPECT_FALSE(trail.lead(load_state_at(2), load_state_at(2.4), {true, true}, tolerance, {}, at));
   EXPECT_EQ(at.positions, curve.at(2).positions);
   // a straight path is predicted, but not with other constraints, from another state, or to the current load state
   const Curve straight(1);
   const Trail other = walked(straight, paths);
   at = straight.at(2);
-  EXPECT_FALSE(other.lead(load_state_at(2), load_state_at(2.4), {true, false}, tolerance, at));
-  EXPECT_FALSE(other.lead(load_state_at(2), load_state_at(2), {true, true}, tolerance, at));
-  EXPECT_FALSE(other.lead(load_state_at(1.9), load_state_at(2.4), {true, true}, tolerance, at));
-  EXPECT_TRUE(other.lead(load_state_at(2), load_state_at(2.4), {true, true}, tolerance, at));
+  EXPECT_FALSE(other.lead(load_state_at(2), load_state_at(2.4), {true, false}, tolerance, {}, at));
+  EXPECT_FALSE(other.lead(load_state_at(2), load_state_at(2), {true, true}, tolerance, {}, at));
+  EXPECT_FALSE(other.lead(load_state_at(1.9), load_state_at(2.4), {true, true}, tolerance, {}, at));
+  EXPECT_TRUE(other.lead(load_state_at(2), load_state_at(2.4), {true, true}, tolerance, {}, at));
   at = straight.at(2);
   at.positions(3, 1) += 1e-9;
-  EXPECT_FALSE(other.lead(load_state_at(2), load_state_at(2.4), {true, true}, tolerance, at));
+  EXPECT_FALSE(other.lead(load_state_at(2), load_state_at(2.4), {true, true}, tolerance, {}, at));
   at = straight.at(0.4);
-  EXPECT_FALSE(walked(straight, {0, 0.4}).lead(load_state_at(0.4), load_state_at(0.8), {true, true}, tolerance, at));
+  EXPECT_FALSE(
+      walked(straight, {0, 0.4}).lead(load_state_at(0.4), load_state_at(0.8), {true, true}, tolerance, {}, at));
 }
 
 /// Along a curved path of several loads each equilibrium has the requested loads, whatever the predictions.
@@ -117,14 +118,14 @@ TEST(Trail, FirstOrderIsKeptWhereItIsBetter) {
   const std::vector<double> paths{0, 0.01, 0.02, 0.03};
   Trail trail = walked(curve, paths);
   Iterate at = curve.at(0.03);
-  ASSERT_TRUE(trail.lead(load_state_at(0.03), load_state_at(0.04), {true, true}, tolerance, at));
+  ASSERT_TRUE(trail.lead(load_state_at(0.03), load_state_at(0.04), {true, true}, tolerance, {}, at));
   const double missed = largest_move(at.positions, curve.at(0.04).positions);
   EXPECT_GT(missed, 0);
   at = curve.at(0.03);
   trail.note_tangent(load_state_at(0.02), load_state_at(0.03), missed);
-  EXPECT_FALSE(trail.lead(load_state_at(0.03), load_state_at(0.04), {true, true}, tolerance, at));
+  EXPECT_FALSE(trail.lead(load_state_at(0.03), load_state_at(0.04), {true, true}, tolerance, {}, at));
   trail.note_tangent(load_state_at(0.02), load_state_at(0.03), 1e3 * missed);
-  EXPECT_TRUE(trail.lead(load_state_at(0.03), load_state_at(0.04), {true, true}, tolerance, at));
+  EXPECT_TRUE(trail.lead(load_state_at(0.03), load_state_at(0.04), {true, true}, tolerance, {}, at));
 }
 
 /// Steps of one length come to the same equilibria as each would alone, in two thirds of the iterations.

@@ -27,7 +27,7 @@ Neighbourhood::Neighbourhood(const Statics& statics, const State& at, int thread
   if (!physical || at.multipliers.size() == 0) return;
   parts_->equilibria = physical;
   const physical::Equilibria::Inside inside(*physical, at, *parts_->team);
-  parts_->lease.emplace(*physical, inside->positions, false);
+  parts_->lease.emplace(*physical, inside->positions, false, SolverOptions{});
   parts_->physical.emplace(physical->system(), parts_->lease->work(), *inside, *parts_->team);
 }
 

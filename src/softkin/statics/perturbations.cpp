@@ -40,7 +40,8 @@ ParameterSensitivity Perturbations::at(const State& at, const StaticsOptions& op
   Statics::Parts& statics = *parts_->statics.parts_;
   statics.check_known(at, options, "the sensitivity of a shape");
   const TeamPool::Lent team = statics.lender.lend(options);
-  return statics.equilibria()->sensitivity(at, parts_->perturbations, options.reuse_factor, accuracy, reactions, *team);
+  return statics.equilibria()->sensitivity(at, parts_->perturbations, statics.options_of(options), accuracy, reactions,
+                                           *team);
 }
 
 Eigen::MatrixXd Perturbations::gradients(const State& at, const std::vector<ShapeGradient>& reported,
@@ -57,7 +58,8 @@ Eigen::MatrixXd Perturbations::gradients(const State& at, const std::vector<Shap
   }
   if (statics.equilibria()->system().reciprocal()) {
     const TeamPool::Lent team = statics.lender.lend(options);
-    return statics.equilibria()->gradients(at, parts_->perturbations, reported, options.reuse_factor, accuracy, *team);
+    return statics.equilibria()->gradients(at, parts_->perturbations, reported, statics.options_of(options), accuracy,
+                                           *team);
   }
   const ParameterSensitivity found = this->at(at, options, accuracy);
   if (!found.regular) return {};

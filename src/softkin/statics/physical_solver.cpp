@@ -23,7 +23,8 @@ physical::Equilibria::Options PhysicalSolver::options_of(const StaticsOptions& o
           .beyond = options.beyond,
           .force_fraction = blur,
           .history = options.history,
-          .elapsed_s = options.elapsed_s};
+          .elapsed_s = options.elapsed_s,
+          .tuning = options.tuning};
 }
 
 /// Finds, once, the relaxed equilibrium of a viscous robot after a long rest, before times begin; else not converged.
@@ -66,7 +67,7 @@ Equilibrium PhysicalSolver::solve(const Actuation& actuation, const State& start
 }
 
 Sensitivity PhysicalSolver::sensitivity(const State& at, const StaticsOptions& options, double accuracy) const {
-  return equilibria_.sensitivity(at, options.reuse_factor, accuracy, *lender_.lend(options));
+  return equilibria_.sensitivity(at, options_of(options), accuracy, *lender_.lend(options));
 }
 
 ViscousFlow PhysicalSolver::flow(const State& at) {

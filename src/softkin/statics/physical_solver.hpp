@@ -25,10 +25,11 @@ class PhysicalSolver : public FormulationSolver {
   [[nodiscard]] ViscousFlow flow(const State& at);
 
   [[nodiscard]] const physical::Equilibria& equilibria() const { return equilibria_; }
+  /// Returns the options as the equilibria take them.
+  [[nodiscard]] physical::Equilibria::Options options_of(const StaticsOptions& options) const;
 
  private:
   void check_history(const ViscousHistory* history, double elapsed_s) const;
-  [[nodiscard]] physical::Equilibria::Options options_of(const StaticsOptions& options) const;
   [[nodiscard]] Equilibrium long_rest(StaticsOptions options, const ProgressCallback& progress, Team& team);
 
   const Model& model_;

@@ -153,7 +153,7 @@ ParameterSensitivity Statics::sensitivity_along(const State& at, const std::vect
     if (change.size() != at.actuation.size() || !change.allFinite())
       throw InvalidInput("a change of the actuation must be of a finite value for each of the robot's actuators");
   const TeamPool::Lent team = parts_->lender.lend(options);
-  return equilibria.sensitivity(at, changes, options.reuse_factor, accuracy, reactions, *team);
+  return equilibria.sensitivity(at, changes, parts_->options_of(options), accuracy, reactions, *team);
 }
 
 std::vector<Points> Statics::reciprocal_moves(const State& at, const std::vector<Points>& forces,
@@ -164,7 +164,7 @@ std::vector<Points> Statics::reciprocal_moves(const State& at, const std::vector
       throw InvalidInput("forces must be of three finite values for each of the robot's vertices");
   const physical::Equilibria* equilibria = parts_->equilibria();
   if (!equilibria || !equilibria->system().reciprocal()) return {};
-  return equilibria->moves_under(at, forces, options.reuse_factor, accuracy, *parts_->lender.lend(options));
+  return equilibria->moves_under(at, forces, parts_->options_of(options), accuracy, *parts_->lender.lend(options));
 }
 
 bool Statics::extrapolate(const Actuation& actuation, const State& at, const StaticsOptions& options,
@@ -172,7 +172,7 @@ bool Statics::extrapolate(const Actuation& actuation, const State& at, const Sta
   check_actuation(parts_->model, actuation);
   parts_->check_known(at, options, "the extrapolation from a shape");
   if (!extrapolates() || !options.reuse_factor) return false;
-  return parts_->equilibria()->extrapolate(actuation, at, positions, *parts_->lender.lend(options));
+  return parts_->equilibria()->extrapolate(actuation, at, options.tuning, positions, *parts_->lender.lend(options));
 }
 
 bool Statics::set_initial_guess(const State& at, State there, const StaticsOptions& options) const {

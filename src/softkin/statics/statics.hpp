@@ -6,6 +6,7 @@
 #include <softkin/model/model.hpp>
 #include <softkin/statics/deformation.hpp>
 #include <softkin/statics/sensitivity.hpp>
+#include <softkin/statics/solver_options.hpp>
 
 namespace softkin {
 
@@ -49,6 +50,7 @@ struct StaticsOptions {
   /// the requested shape [s], >= 0: 0 is the instant answer, infinity the relaxed one, which depends on no history.
   std::shared_ptr<const ViscousHistory> history{};
   double elapsed_s = std::numeric_limits<double>::infinity();
+  SolverOptions tuning{};  // the tuned constants of the solvers
 
   /// Returns the number of iterations without an advance along its path after which a solve ends, not converged, with
   /// its last good shape: max_iterations, or 500 of Newton's method, which 999 of 1,000 random robots that have an

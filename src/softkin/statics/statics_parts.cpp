@@ -45,6 +45,7 @@ void check_start(const Model& model, const State& start, const StaticsOptions& o
       options.anderson > 20 || options.threads < 0)
     throw InvalidInput(
         "solver options out of range: tolerance >= 0 mm, iterations >= 0, anderson 0 to 20, threads >= 0");
+  check_options(options.tuning);
   if (options.as_published && options.solver != Solver::local_global)
     throw InvalidInput("to stop as published is for solver local-global");
   if (options.as_published && model.markers.empty())

@@ -17,6 +17,10 @@ struct Statics::Parts {
 
   /// Of the physical formulation, else null.
   [[nodiscard]] const physical::Equilibria* equilibria() const;
+  /// Returns options in the form that the equilibria take; the formulation must be the physical one.
+  [[nodiscard]] physical::Equilibria::Options options_of(const StaticsOptions& options) const {
+    return solver->physical()->options_of(options);
+  }
   /// throws  InvalidInput of the target-shape formulation; what: for the message
   [[nodiscard]] const physical::Equilibria& need_equilibria(const std::string& what) const;
 

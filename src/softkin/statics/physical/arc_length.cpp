@@ -6,34 +6,6 @@
 
 namespace softkin::physical {
 
-namespace {
-
-/// First step, over the length along the tangent to the load factor at which a load step failed.
-constexpr double first_fraction = 0.5;
-/// Target and maximum of a step's first correction, over its length; bounds of the ratio of consecutive steps.
-constexpr double wanted_miss = 0.1, max_miss = 1, max_grown = 2, max_shrinking = 0.1, min_shrinking = 0.4;
-/// Maximum Newton step in the middle of a step, over its length; accuracy of a point there; maximum deviation of the
-/// slopes of the load factor at both ends from those of a parabola, over their sum. A larger deviation means another
-/// branch.
-constexpr double max_off_balance = 0.05, middle_accuracy = 1e-3, max_off_parabola = 0.3;
-/// From the third one on, each correction is shorter than this fraction of the previous one.
-constexpr double min_gain = 0.5;
-/// Maximum numbers of corrections of a step, of consecutive failed steps and of all iterations.
-constexpr int max_corrections = 8, max_failed_steps = 3, max_iterations = 60;
-/// Shortest step, over the first one: at a corner of the curve the steps become ever shorter.
-constexpr double shortest_step = 0.02;
-/// Change of the load factor over which the derivative of the residual is taken.
-constexpr double factor_difference = 1e-3;
-/// The accepted shape lies this far before the limit point, over the distance to the point beyond it, because the
-/// stiffness is singular at the limit point.
-constexpr double before_turn = 0.02;
-/// Limits of steps past the limit point, where the curve may bend sharply, and the smallest load factor allowed there.
-constexpr int max_iterations_beyond = 300, max_failed_beyond = 8;
-constexpr double shortest_step_beyond = 1e-4;
-constexpr double farthest_back = -1;
-
-}  // namespace
-
 /// Returns the arc length from a point to the maximum of the load factor before another one, by a cubic. Stores the
 /// maximum.
 double ArcLength::largest_between(const Point& low, const Beyond& high) {
@@ -54,18 +26,19 @@ ArcLength::ArcLength(Corrector& corrector, StepTracer& tracer, const Equilibria:
 /// balance  of the point
 /// before   the tangent of the previous point; null: the load factor increases
 bool ArcLength::set_rates(const Balance& balance, const Eigen::VectorXd* before, Point& point) {
-  const LoadState here = load_state(point.load_factor), there = load_state(point.load_factor + factor_difference);
+  const LoadState here = load_state(point.load_factor),
+                  there = load_state(point.load_factor + tuning_.arc_length.factor_difference);
   if (system_.placement().changes(here, there))
     system_.assemble(point.at, here, balance, System::Stiffness::exact, work_, team_);
   Balance residual_change;
   system_.residual_change(point.at, here, there, corrector_.active, work_, residual_change, team_);
   work_.saddle.step(residual_change, point.ahead, point.multipliers, team_);
-  const double length = point.ahead.norm() / factor_difference;
+  const double length = point.ahead.norm() / tuning_.arc_length.factor_difference;
   if (!(length > 0) || !std::isfinite(length) || !point.multipliers.allFinite()) return false;
   const double path = before != nullptr && point.ahead.dot(*before) < 0 ? -1 : 1;
   point.slope = path / length;
-  point.ahead *= point.slope / factor_difference;
-  point.multipliers *= point.slope / factor_difference;
+  point.ahead *= point.slope / tuning_.arc_length.factor_difference;
+  point.multipliers *= point.slope / tuning_.arc_length.factor_difference;
   return true;
 }
 
@@ -85,7 +58,7 @@ bool ArcLength::correct(const Point& from, double whole, double tolerance, Point
   double before = 0;
   missed_ = std::numeric_limits<double>::infinity();
   why_ = "its iterations were not enough";
-  for (int i = 0; i < max_corrections; ++i) {
+  for (int i = 0; i < tuning_.arc_length.max_corrections; ++i) {
     if (!corrector_.newton().goes_on()) {
       interrupted_ = true;
       return false;
@@ -110,7 +83,9 @@ bool ArcLength::correct(const Point& from, double whole, double tolerance, Point
     const double move = system_.freedoms().size_of(step, point.at.positions).largest;
     if (i == 0) missed_ = move / whole;
     // the first correction mostly relaxes stiff deformations and moves little, so the second one may be longer
-    if (!(move < (i < 2 ? max_miss * whole : min_gain * before)) || !change.allFinite()) return false;
+    if (!(move < (i < 2 ? tuning_.arc_length.max_error * whole : tuning_.arc_length.min_contraction * before)) ||
+        !change.allFinite())
+      return false;
     before = move;
     point.load_factor += along * point.slope;
     const LoadState there = load_state(point.load_factor);
@@ -135,10 +110,9 @@ bool ArcLength::holds(const Point& point) const {
 }
 
 std::optional<ArcLength::Point> ArcLength::go(const Point& from, double length) {
-  constexpr double max_bend = 0.5;  // over the step
   Point next{.at = from.at, .load_factor = from.load_factor + length * from.slope};
   Eigen::VectorXd step = length * from.ahead;
-  if (from.bend.size() > 0 && 0.5 * length * from.bend.norm() < max_bend) {
+  if (from.bend.size() > 0 && 0.5 * length * from.bend.norm() < tuning_.arc_length.max_bend) {
     step += 0.5 * length * length * from.bend;
     next.load_factor += 0.5 * length * length * from.slope_change;
   }
@@ -181,7 +155,8 @@ std::optional<Eigen::VectorXd> ArcLength::step_from(Iterate& shape, const LoadSt
 /// end. Where that step is long, as for a thin part under stretch, the point of the curve is computed.
 bool ArcLength::is_curve_between(const Point& low, const Point& high, double length) {
   const double rise = (high.load_factor - low.load_factor) / length;
-  if (std::abs(low.slope + high.slope - 2 * rise) > max_off_parabola * (std::abs(low.slope) + std::abs(high.slope)))
+  if (std::abs(low.slope + high.slope - 2 * rise) >
+      tuning_.arc_length.max_slope_error * (std::abs(low.slope) + std::abs(high.slope)))
     return false;
   Point middle{.at = low.at,
                .load_factor = 0.5 * (low.load_factor + high.load_factor) + length * (low.slope - high.slope) / 8};
@@ -194,10 +169,11 @@ bool ArcLength::is_curve_between(const Point& low, const Point& high, double len
   if (!step) return false;
   Point across{.at = low.at, .load_factor = low.load_factor, .ahead = (low.ahead + high.ahead).normalized()};
   *step -= across.ahead.dot(*step) / across.ahead.dot(high.ahead) * high.ahead;
-  const double whole = system_.largest_move(low.at.positions, high.at.positions), most = max_off_balance * whole;
+  const double whole = system_.largest_move(low.at.positions, high.at.positions),
+               most = tuning_.arc_length.max_middle_step * whole;
   if (system_.freedoms().size_of(*step, middle.at.positions).largest <= most) return true;
   const Points begun = middle.at.positions;
-  return correct(across, 0.5 * whole, middle_accuracy * whole, middle) &&
+  return correct(across, 0.5 * whole, tuning_.arc_length.middle_accuracy * whole, middle) &&
          system_.largest_move(begun, middle.at.positions) <= most;
 }
 
@@ -207,7 +183,8 @@ std::optional<ArcLength::Point> ArcLength::next(const Point& from, Pace& pace) {
     std::optional<Point> found = go(from, pace.length);
     pace.missed = found ? 0 : pace.missed + 1;
     if (interrupted_ || pace.missed > pace.max_missed) break;
-    pace.length *= std::clamp(std::sqrt(wanted_miss / missed_), max_shrinking, found ? max_grown : min_shrinking);
+    pace.length *= std::clamp(std::sqrt(tuning_.arc_length.wanted_error / missed_), tuning_.arc_length.min_shortening,
+                              found ? tuning_.arc_length.max_growth : tuning_.arc_length.max_shortening);
     if (found) return found;
   }
   return std::nullopt;
@@ -218,8 +195,9 @@ ArcLength::End ArcLength::follow(Iterate& at) {
   Point low;
   if (!begin(at, low)) return End::lost;
   const double first = low.load_factor;
-  const double length = first_fraction * (route_.failed - low.load_factor) / low.slope;
-  Pace steps{length, shortest_step * length, record_.iterations + max_iterations, max_failed_steps};
+  const double length = tuning_.arc_length.first_step * (route_.failed - low.load_factor) / low.slope;
+  Pace steps{length, tuning_.arc_length.min_step * length, record_.iterations + tuning_.arc_length.max_iterations,
+             tuning_.arc_length.max_failures};
   End end = End::lost;
   std::optional<Beyond> high;
   std::optional<Point> far;  // beyond the limit point
@@ -244,7 +222,7 @@ ArcLength::End ArcLength::follow(Iterate& at) {
     }
     if (high) {
       const double top = largest_between(low, *high);
-      steps.length = std::max(top - before_turn * high->away, 0.5 * top);
+      steps.length = std::max(top - tuning_.arc_length.before_turn * high->away, 0.5 * top);
       last = true;
       if (steps.length <= steps.shortest && low.load_factor > first)
         end = End::turned;  // closer than the shortest step
@@ -257,10 +235,10 @@ ArcLength::End ArcLength::follow(Iterate& at) {
 
 /// Continues beyond the limit point to a stable equilibrium with a larger load factor, at most the requested one.
 ArcLength::End ArcLength::go_beyond(Point last, Iterate& at) {
-  Pace steps{last.went, shortest_step_beyond * last.went, record_.iterations + max_iterations_beyond,
-             max_failed_beyond};
+  Pace steps{last.went, tuning_.beyond_turn.min_step * last.went,
+             record_.iterations + tuning_.beyond_turn.max_iterations, tuning_.beyond_turn.max_failures};
   while (std::optional<Point> found = next(last, steps)) {
-    if (!holds(*found) || found->load_factor < farthest_back) break;
+    if (!holds(*found) || found->load_factor < tuning_.beyond_turn.min_load_factor) break;
     if (found->slope > 0 && found->negative == 0 && found->load_factor > route_.done) {
       found->load_factor = std::min(found->load_factor, 1.0);
       const Jump jump{route_.done, jump_to(last, *found, at)};

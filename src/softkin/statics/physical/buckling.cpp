@@ -9,12 +9,6 @@ namespace softkin::physical {
 
 namespace {
 
-/// Maximum numbers of unstable equilibria that are left one after the other, and of descent steps; relative energy
-/// difference of equal equilibria; perturbations over the robot's diagonal.
-constexpr int max_buckles = 20, max_downhill = 60;
-constexpr double tie = 1e-9;
-constexpr std::array<double, 3> pushes{0.003, 0.02, 0.1};
-
 /// An equilibrium to which a perturbation leads.
 struct Pushed {
   Iterate at;
@@ -32,11 +26,12 @@ class Downhill {
         system_(corrector.system()),
         work_(corrector.work()),
         team_(corrector.team()),
+        tuning_(corrector.work().options.path.buckling),
         record_(corrector.record()) {}
 
   /// Moves to a stable equilibrium if one is found; false: interrupted.
   bool go(Iterate& at) {
-    for (int i = 0; i < max_buckles; ++i) {
+    for (int i = 0; i < tuning_.max_buckles; ++i) {
       const LowestMode mode = lowest_mode(system_, at, demand_, corrector_.active, work_, team_, record_);
       corrector_.last.modes = mode.unstable;
       if (mode.unstable == 0 || mode.direction.size() == 0 || !mode.direction.allFinite()) return true;
@@ -58,16 +53,17 @@ class Downhill {
   /// two equal ones the first.
   Search<Pushed> lower(const Iterate& from, const LowestMode& mode) {
     double energy = potential(system_, from, demand_, corrector_.active, work_, team_);
-    energy -= tie * std::abs(energy);
+    energy -= tuning_.energy_tie * std::abs(energy);
     const std::vector<bool> active = corrector_.active;
     std::optional<Pushed> best;
+    const std::array<double, 3> pushes{tuning_.small_push, tuning_.medium_push, tuning_.large_push};
     for (std::size_t push = 0; push < pushes.size() && !best; ++push)
       for (const double path : {1.0, -1.0}) {
         corrector_.active = active;
         auto [found, interrupted] = pushed(from, mode, path * pushes[push]);
         if (interrupted) return {.interrupted = true};
         if (!found || found->energy >= energy) continue;
-        energy = found->energy - tie * std::abs(found->energy);
+        energy = found->energy - tuning_.energy_tie * std::abs(found->energy);
         best = std::move(found);
       }
     corrector_.active = active;
@@ -83,7 +79,7 @@ class Downhill {
     if (!advance_clear(system_, mode.direction, scale, work_, found.at.positions, team_)) return {};
     double shift = mode.steep_shift();
     bool was_corrected = false;
-    for (int i = 0; i < max_downhill && !was_corrected; ++i) {
+    for (int i = 0; i < tuning_.max_descent_steps && !was_corrected; ++i) {
       const Descent down = step_down(system_, demand_, corrector_.active, shift, found.at, work_, team_);
       record_.factorisations += down.factorisations;
       record_.factorisations_in_double += down.factorisations_in_double;
@@ -95,7 +91,9 @@ class Downhill {
       was_corrected = outcome == Newton::Outcome::converged;
       if (was_corrected) found.at = std::move(there);
     }
-    if (!was_corrected || system_.largest_move(found.at.positions, from.positions) < 0.1 * std::abs(reach)) return {};
+    if (!was_corrected ||
+        system_.largest_move(found.at.positions, from.positions) < tuning_.min_departure * std::abs(reach))
+      return {};
     found.energy = potential(system_, found.at, demand_, corrector_.active, work_, team_);
     found.active = corrector_.active;
     found.last = corrector_.judged();
@@ -107,6 +105,7 @@ class Downhill {
   const System& system_;
   Workspace& work_;
   Team& team_;
+  const BucklingOptions& tuning_;
   SolveRecord& record_;
 };
 

@@ -14,40 +14,6 @@ bool same_shape(const Points& a, const Points& b) {
   return a.rows() == b.rows() && a == b;
 }
 
-/// If dead loads are predicted to move a vertex farther than this fraction of the diagonal, and a possible collision
-/// shortens that motion, contact forces are predicted before Newton's method starts.
-constexpr double far = 0.2;
-/// Shortest step, as a fraction of the path. With contact or a released body it is min_advance; otherwise it is the
-/// smaller one of min_path_fraction and min_completed_fraction times the completed part, but at least min_advance: the
-/// requested load may be a thousand times the largest one that the robot carries.
-constexpr double min_advance = 1e-4, min_path_fraction = 5e-4, min_completed_fraction = 0.005;
-/// A step that moves no vertex farther than this fraction of the diagonal and still fails ends the path.
-constexpr double min_move = 8e-5;
-/// The same limit with contact, over the contact distance: sticking contacts move by a hundredth of that distance.
-constexpr double min_contact_move = 1e-4;
-/// Largest rotation of a support in one step [degrees].
-constexpr double max_turn = 30;
-/// The last step of a path includes a remainder that is shorter than this fraction of the step.
-constexpr double min_left = 0.1;
-/// After a failed step the next steps cover at most half the remaining distance to the failed load factor, until that
-/// distance has shrunk to this fraction of its initial value.
-constexpr double much_nearer = 0.35;
-/// Steps shorter than this fraction of the path also follow unstable equilibria, and their number of factorisations is
-/// limited.
-constexpr double follow_below = 0.05;
-/// Under changing loads a step may have passed a snap-through if the correction is more than max_correction times the
-/// predicted move and more than min_snap times the robot's diagonal.
-constexpr double max_correction = 0.5, min_snap = 0.01;
-/// A step snaps through if more than min_jump of its correction is not the curvature of the path, see jumped(). If only
-/// ratios and supports change, a step that snaps through is accepted and reported once it is at most the fraction
-/// `finest` of the path.
-constexpr double min_jump = 0.9, finest = 0.02;
-/// A step longer than this fraction of the path that inverts an element is rejected: laws that have an energy for
-/// inverted elements also have mirrored equilibria.
-constexpr double max_inverting = 0.01;
-/// Largest residual of an accepted step, over the internal forces of the elements. A larger one is no equilibrium.
-constexpr double much_imbalance = 0.01;
-
 }  // namespace
 
 Continuation::Continuation(const System& system, Workspace& work, Team& team, const Equilibria::Options& options,
@@ -56,6 +22,7 @@ Continuation::Continuation(const System& system, Workspace& work, Team& team, co
       work_(work),
       team_(team),
       options_(options),
+      tuning_(work.options.path),
       record_(record),
       report_(report),
       corrector_(system, work, team, options, progress, record, report),
@@ -64,9 +31,10 @@ Continuation::Continuation(const System& system, Workspace& work, Team& team, co
 /// Predicts the end of a whole path without a tangent: by the caller's initial guess, by a stored second-order
 /// extrapolation or by a polynomial through the last equilibria. Returns false if none of these is available.
 bool Continuation::lead(const LoadState& here, const LoadState& there, Iterate& trial) {
-  return !system_.contact() && (follow_initial_guess(here, there, work_, trial) ||
-                                follow_extrapolated(system_, here, there, corrector_.active, work_, team_, trial) ||
-                                work_.trail.lead(here, there, corrector_.active, options_.tolerance_mm, trial));
+  return !system_.contact() &&
+         (follow_initial_guess(here, there, work_, trial) ||
+          follow_extrapolated(system_, here, there, corrector_.active, work_, team_, trial) ||
+          work_.trail.lead(here, there, corrector_.active, options_.tolerance_mm, tuning_.prediction, trial));
 }
 
 /// Makes one step from flat sheets, which have no stiffness against their loads and so no tangent.
@@ -101,13 +69,15 @@ Newton::Outcome Continuation::step(const LoadState& here, const LoadState& there
     if (system_.friction()) corrector_.free_motion = {clear.straight, clear.predicted};
     step_.move_mm = clear.move_mm.value_or(system_.largest_move(at.positions, step_.predicted));
     cut = clear.cut && corrector_.weighs(here, there) &&
-          system_.largest_move(at.positions, step_.predicted) > far * system_.model().diagonal_mm;
+          system_.largest_move(at.positions, step_.predicted) >
+              tuning_.acceptance.long_fall * system_.model().diagonal_mm;
     step_.begun = trial.positions;
     return clear.move_mm.has_value();
   };
   if (!prediction()) return whole ? fall_onto(here, there, at, trial) : Newton::Outcome::blocked;
   if (whole && !led && leads_too_far(here, there, at)) return Newton::Outcome::too_far;
-  const bool follows = corrector_.last.modes > 0 && !options_.stable && length <= 1.001 * follow_below;
+  const bool follows =
+      corrector_.last.modes > 0 && !options_.stable && length <= 1.001 * tuning_.acceptance.follow_below;
   const auto policy = follows ? Newton::Policy::follow : led ? Newton::Policy::near : Newton::Policy::descend;
   const bool again = system_.contact() && !follows, first = again && whole && cut;
   const Iterate begun = again ? trial : Iterate{};
@@ -125,7 +95,8 @@ Newton::Outcome Continuation::step(const LoadState& here, const LoadState& there
   if (outcome == Newton::Outcome::stuck && again && !first) outcome = correct_with_predicted_contact();
   if (outcome == Newton::Outcome::converged && !led && whole)
     work_.trail.note_tangent(here, there, system_.largest_move(step_.begun, trial.positions));
-  if (outcome == Newton::Outcome::stuck && !follows && length < follow_below && corrector_.prepare(here, at) >= 0) {
+  if (outcome == Newton::Outcome::stuck && !follows && length < tuning_.acceptance.follow_below &&
+      corrector_.prepare(here, at) >= 0) {
     trial = at;
     if (prediction()) outcome = corrector_.correct(there, Newton::Policy::follow, trial);
   }
@@ -161,9 +132,10 @@ bool Continuation::jumped(const LoadState& here, const LoadState& there, const I
     const Points ahead = step_.predicted - trial.positions, behind = back.positions - at.positions;
     step_.jump_mm = 0.5 * system_.largest_move(ahead, behind);
     // at a corner of the path, where contact begins, both tangents miss on the same side, by any distances
-    return !(step_.jump_mm <= min_jump * correction) && !(system_.contact() && ahead.cwiseProduct(behind).sum() > 0);
+    return !(step_.jump_mm <= tuning_.acceptance.min_snap_fraction * correction) &&
+           !(system_.contact() && ahead.cwiseProduct(behind).sum() > 0);
   };
-  if (correction <= min_snap * system_.model().diagonal_mm) return false;
+  if (correction <= tuning_.acceptance.min_snap * system_.model().diagonal_mm) return false;
   // the current factorisation is of a nearby shape, which is usually accurate enough
   return jumps() && (corrector_.prepare(there, trial) < 0 || jumps());
 }
@@ -231,6 +203,7 @@ Newton::Outcome Continuation::correct_here(const LoadState& load_state, Iterate&
 /// Starts a new path at the end of the last one.
 void Continuation::set_out(const LoadState& from, const LoadState& to) {
   path_ = {.from = from, .to = to, .here = from, .before = path_.before};
+  path_.next_look = tuning_.termination.curve_failures;
   path_.loads_change = change_loads(from, to);
   for (Index a = 0; a < system_.actuators(); ++a)
     path_.releases = path_.releases || (system_.surroundings().holds(a) && from.actuation[a] != to.actuation[a]);
@@ -256,11 +229,11 @@ MeasureContinuation::End Continuation::follow_measure(MeasureContinuation::End (
 /// Returns the fraction of the path at which the next step ends. A step that would leave a small remainder includes it.
 double Continuation::next_fraction() {
   const double gap = path_.failed.load_factor - path_.done;
-  if (gap > much_nearer * path_.failed.ahead) path_.advance = std::min(path_.advance, 0.5 * gap);
+  if (gap > tuning_.step.failed_gap * path_.failed.ahead) path_.advance = std::min(path_.advance, 0.5 * gap);
   const double turn = system_.placement().largest_turn(path_.from, path_.to);
-  if (path_.advance * turn > max_turn) path_.advance = max_turn / turn;
+  if (path_.advance * turn > tuning_.step.max_turn) path_.advance = tuning_.step.max_turn / turn;
   const double ahead = path_.done + path_.advance;
-  return ahead + min_left * path_.advance < 1 ? ahead : 1;
+  return ahead + tuning_.step.min_remainder * path_.advance < 1 ? ahead : 1;
 }
 
 /// Prepares a step; returns a status if the path ends without one.
@@ -300,13 +273,13 @@ Continuation::StepEnd Continuation::judge(Newton::Outcome outcome, const LoadSta
     reject("the equilibrium lies beyond a jump");
   end.snap = end.found && !path_.loads_change && (turned_back(at, trial) || jumped(path_.here, there, at, trial));
   end.unstable = end.found && outcome == Newton::Outcome::unstable;
-  if (corrector_.newton().inverted() && !corrector_.last.inverted && length > max_inverting)
+  if (corrector_.newton().inverted() && !corrector_.last.inverted && length > tuning_.acceptance.max_inverting)
     reject("an element is inverted");
   // a body without supports or contact has no stiffness, and so no Newton step
   if (end.found && system_.surroundings().any_body() && !corrector_.newton().balanced())
     reject("a body is out of balance");
   const Imbalance& forces = corrector_.newton().imbalance();
-  if (end.found && forces.residual > much_imbalance * forces.pull + forces.rounding)
+  if (end.found && forces.residual > tuning_.acceptance.max_residual * forces.pull + forces.rounding)
     reject("forces are out of balance");
   return end;
 }
@@ -330,7 +303,7 @@ SegmentCheck::Verdict Continuation::check_segment(double length, bool changed, c
   if (step_.unforetold || !has_tangent || !is_smooth()) return Verdict::confirmed;
   const double farthest = std::max(system_.largest_move(at.positions, trial.positions),
                                    system_.largest_move(at.positions, step_.predicted));
-  if (SegmentCheck::is_short(system_, farthest)) return Verdict::confirmed;
+  if (SegmentCheck::is_short(system_, tuning_.segment_check, farthest)) return Verdict::confirmed;
   const int modes = corrector_.newton().unstable_modes();
   SegmentEnd low{&at, path_.done, {}, corrector_.last.modes};
   if (!step_.extrapolated) low.rate = (step_.straight - at.positions) / length;
@@ -366,7 +339,7 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   step_.unforetold = step_.extrapolated = false;
   step_.straight.resize(0, 3);
   const auto outcome = [&] {
-    const auto briefly = corrector_.newton().briefly(ends_early(length < follow_below));
+    const auto briefly = corrector_.newton().briefly(ends_early(length < tuning_.acceptance.follow_below));
     return step(path_.here, there, length, at, trial);
   }();
   corrector_.free_motion = {};
@@ -393,7 +366,7 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
       path_.beyond = Beyond{std::move(trial), there, next, corrector_.active, corrector_.judged(), step_.jump_mm};
     path_.factorised = false;
     corrector_.active = active;
-    path_.advance = std::max(longest, 0.4 * length);
+    path_.advance = std::max(longest, tuning_.step.shortening * length);
   } else {
     trace(true, came.snap ? "it jumps" : came.unstable ? "unstable" : came.why);
     if (came.snap) record_.note_snap(step_.jump_mm, whole(path_.done));
@@ -407,19 +380,25 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
 /// Chooses the length of the next step after an accepted one that took this many iterations.
 void Continuation::lengthen(int iterations, bool unstable, Iterate& at) {
   path_.advance *= lengthened(iterations / corrector_.rounds());  // each update of normal forces takes as many
-  if (unstable) path_.advance = std::min(path_.advance, follow_below);
+  if (unstable) path_.advance = std::min(path_.advance, tuning_.acceptance.follow_below);
   if (leads_beyond(at)) {
     take_beyond(at);
   } else if (path_.beyond && system_.contact()) {  // a step of that length would end there again
-    path_.advance = std::min(path_.advance, std::max(finest, 0.5 * (path_.beyond->done - path_.done)));
+    path_.advance =
+        std::min(path_.advance, std::max(tuning_.acceptance.snap_length, 0.5 * (path_.beyond->done - path_.done)));
   }
 }
 
 /// Returns the length of the next step over that of one which took this many iterations. With contact their number
 /// hardly depends on the length, as contacts begin in most steps.
 double Continuation::lengthened(int iterations) const {
-  if (system_.contact()) return iterations <= 15 ? 3 : iterations <= 30 ? 2 : 1;
-  return iterations <= 7 ? 2 : iterations <= 12 ? 1.5 : 1;
+  const StepSizeOptions& by = tuning_.step;
+  const bool contact = system_.contact();
+  if (iterations <= (contact ? by.few_contact_iterations : by.few_iterations))
+    return contact ? by.few_contact_growth : by.few_growth;
+  if (iterations <= (contact ? by.some_contact_iterations : by.some_iterations))
+    return contact ? by.some_contact_growth : by.some_growth;
+  return 1;
 }
 
 /// Chooses how to continue after a step without an equilibrium; returns a status if the path ends.
@@ -439,19 +418,21 @@ std::optional<Status> Continuation::shorten(double length, Iterate& at) {
   if (curve == ArcLength::End::interrupted) return Status::interrupted;
   if (curve == ArcLength::End::turned) {
     if (path_.loads_change && !path_.bears_all) return limit(path_.done, beyond_here(), at);
-    path_.advance = path_.bears_all ? 1 - path_.done : finest;  // may snap through to a stable shape
+    path_.advance =
+        path_.bears_all ? 1 - path_.done : tuning_.acceptance.snap_length;  // may snap through to a stable shape
     path_.thorough = true;
   }
   if (curve != ArcLength::End::lost) return std::nullopt;
-  path_.advance = 0.4 * length;
-  if (path_.beyond && path_.advance < finest) {
+  path_.advance = tuning_.step.shortening * length;
+  if (path_.beyond && path_.advance < tuning_.acceptance.snap_length) {
     record_.note_snap(path_.beyond->jump_mm, whole(path_.done));
     take_beyond(at);
-    path_.advance = follow_below;
+    path_.advance = tuning_.acceptance.follow_below;
     return std::nullopt;
   }
-  double least = min_move * system_.model().diagonal_mm;
-  if (system_.contact()) least = std::min(least, min_contact_move * system_.model().contact.distance_mm);
+  double least = tuning_.termination.min_move * system_.model().diagonal_mm;
+  if (system_.contact())
+    least = std::min(least, tuning_.termination.min_contact_move * system_.model().contact.distance_mm);
   const bool leads_nowhere = !path_.releases && step_.move_mm < least;
   path_.thorough = false;
   if (path_.advance < shortest_advance() || leads_nowhere || path_.turned) return limit(path_.done, beyond_here(), at);
@@ -459,8 +440,9 @@ std::optional<Status> Continuation::shorten(double length, Iterate& at) {
 }
 
 double Continuation::shortest_advance() const {
-  if (is_non_smooth()) return min_advance;
-  return std::max(min_advance, std::min(min_path_fraction, min_completed_fraction * path_.done));
+  if (is_non_smooth()) return tuning_.step.min_length;
+  return std::max(tuning_.step.min_length,
+                  std::min(tuning_.step.min_smooth_length, tuning_.step.min_of_completed * path_.done));
 }
 
 void Continuation::Failed::note(double at, double done) {
@@ -492,13 +474,14 @@ void Continuation::pass(const LoadState& load_state, double done) {
 }
 
 bool Continuation::snapped(double predicted_mm, double correction_mm) const {
-  return correction_mm > max_correction * predicted_mm && correction_mm > min_snap * system_.model().diagonal_mm;
+  return correction_mm > tuning_.acceptance.max_correction * predicted_mm &&
+         correction_mm > tuning_.acceptance.min_snap * system_.model().diagonal_mm;
 }
 
 /// Returns the longest step that is accepted with this result: a shorter one may stay on the path, or end closer to
 /// where the path becomes unstable.
 double Continuation::longest_step(bool snap, bool unstable) const {
-  return snap ? finest : unstable && options_.stable ? follow_below : 1;
+  return snap ? tuning_.acceptance.snap_length : unstable && options_.stable ? tuning_.acceptance.follow_below : 1;
 }
 
 }  // namespace softkin::physical

@@ -75,7 +75,7 @@ class Continuation {
     double before = 0;     // fraction of the whole request that earlier paths completed
     double marked = 0;     // the fraction at the last sufficient progress
     int marked_iterations = 0;
-    int misses = 0, next_look = 2;  // failed steps; how many start arc-length continuation
+    int misses = 0, next_look = 0;  // failed steps; how many start arc-length continuation
     bool turned = false;            // does the curve of equilibria turn back here
     bool bears_all = false;         // does a shape after the turn carry about the whole load
 
@@ -149,6 +149,7 @@ class Continuation {
   Workspace& work_;
   Team& team_;
   const Equilibria::Options& options_;
+  const PathOptions& tuning_;
   SolveRecord& record_;
   SolveReport& report_;
   Corrector corrector_;

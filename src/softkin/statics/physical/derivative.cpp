@@ -344,9 +344,9 @@ Eigen::MatrixXd Derivative::of(const Iterate& at, const LoadState& load_state,
   return result;
 }
 
-Sensitivity Equilibria::sensitivity(const State& state, bool reuse_factor, double accuracy, Team& team) const {
+Sensitivity Equilibria::sensitivity(const State& state, const Options& options, double accuracy, Team& team) const {
   const Inside at(*this, state, team);
-  Lease lease(*this, at->positions, reuse_factor);
+  Lease lease(*this, at->positions, options.reuse_factor, options.tuning);
   system_.set_time(at->history, at->elapsed_s, lease.work(), team);
   Sensitivity found =
       Derivative(system_, lease.work(), accuracy, team).of(system_.iterate(*at), {at->actuation, at->load_factor});
@@ -355,9 +355,10 @@ Sensitivity Equilibria::sensitivity(const State& state, bool reuse_factor, doubl
 }
 
 ParameterSensitivity Equilibria::sensitivity(const State& state, const std::vector<Actuation>& changes,
-                                             bool reuse_factor, double accuracy, bool reactions, Team& team) const {
+                                             const Options& options, double accuracy, bool reactions,
+                                             Team& team) const {
   const Inside at(*this, state, team);
-  Lease lease(*this, at->positions, reuse_factor);
+  Lease lease(*this, at->positions, options.reuse_factor, options.tuning);
   system_.set_time(at->history, at->elapsed_s, lease.work(), team);
   ParameterSensitivity found = Derivative(system_, lease.work(), accuracy, team)
                                    .of(system_.iterate(*at), {at->actuation, at->load_factor}, changes, reactions);
@@ -366,10 +367,10 @@ ParameterSensitivity Equilibria::sensitivity(const State& state, const std::vect
   return found;
 }
 
-std::vector<Points> Equilibria::moves_under(const State& state, const std::vector<Points>& forces, bool reuse_factor,
-                                            double accuracy, Team& team) const {
+std::vector<Points> Equilibria::moves_under(const State& state, const std::vector<Points>& forces,
+                                            const Options& options, double accuracy, Team& team) const {
   const Inside at(*this, state, team);
-  Lease lease(*this, at->positions, reuse_factor);
+  Lease lease(*this, at->positions, options.reuse_factor, options.tuning);
   system_.set_time(at->history, at->elapsed_s, lease.work(), team);
   const Points none = Points::Zero(at->positions.rows() - state.positions.rows(), 3);  // of the pressures
   std::vector<Points> all;
@@ -381,9 +382,10 @@ std::vector<Points> Equilibria::moves_under(const State& state, const std::vecto
 }
 
 ParameterSensitivity Equilibria::sensitivity(const State& state, const std::vector<Perturbation>& perturbations,
-                                             bool reuse_factor, double accuracy, bool reactions, Team& team) const {
+                                             const Options& options, double accuracy, bool reactions,
+                                             Team& team) const {
   const Inside at(*this, state, team);
-  Lease lease(*this, at->positions, reuse_factor);
+  Lease lease(*this, at->positions, options.reuse_factor, options.tuning);
   system_.set_time(at->history, at->elapsed_s, lease.work(), team);
   ParameterSensitivity found = Derivative(system_, lease.work(), accuracy, team)
                                    .of(system_.iterate(*at), {at->actuation, at->load_factor}, perturbations,
@@ -394,10 +396,10 @@ ParameterSensitivity Equilibria::sensitivity(const State& state, const std::vect
 }
 
 Eigen::MatrixXd Equilibria::gradients(const State& state, const std::vector<Perturbation>& perturbations,
-                                      const std::vector<ShapeGradient>& reported, bool reuse_factor, double accuracy,
-                                      Team& team) const {
+                                      const std::vector<ShapeGradient>& reported, const Options& options,
+                                      double accuracy, Team& team) const {
   const Inside at(*this, state, team);
-  Lease lease(*this, at->positions, reuse_factor);
+  Lease lease(*this, at->positions, options.reuse_factor, options.tuning);
   system_.set_time(at->history, at->elapsed_s, lease.work(), team);
   const Points none = Points::Zero(at->positions.rows() - state.positions.rows(), 3);  // of the pressures
   std::vector<ShapeGradient> all = reported;

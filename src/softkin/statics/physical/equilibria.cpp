@@ -74,7 +74,7 @@ LoadState load_state_of(const System& system, const Model& model, const State& s
 
 void Equilibria::measure(const State& state, ElementDeformation& out, Team& team) const {
   const Inside at(*this, state, team);
-  Lease lease(*this, at->positions, true);
+  Lease lease(*this, at->positions, true, {});
   system_.set_time(at->history, at->elapsed_s, lease.work(), team);
   const Iterate shape = system_.iterate(*at);
   hold_friction(system_, shape, lease.work(), team);
@@ -83,10 +83,11 @@ void Equilibria::measure(const State& state, ElementDeformation& out, Team& team
   drop_vertices(out.reactions);
 }
 
-bool Equilibria::extrapolate(const Actuation& actuation, const State& state, Points& positions, Team& team) const {
+bool Equilibria::extrapolate(const Actuation& actuation, const State& state, const SolverOptions& options,
+                             Points& positions, Team& team) const {
   if (system_.contact()) return false;
   const Inside at(*this, state, team);
-  Lease lease(*this, at->positions, true);
+  Lease lease(*this, at->positions, true, options);
   system_.set_time(at->history, at->elapsed_s, lease.work(), team);
   const bool extrapolated =
       physical::extrapolate(system_, {at->actuation, at->load_factor}, {actuation, at->load_factor}, lease.work(), team,
@@ -97,7 +98,7 @@ bool Equilibria::extrapolate(const Actuation& actuation, const State& state, Poi
 
 bool Equilibria::set_initial_guess(const State& at, State there) const {
   if (system_.contact() || system_.pressures()) return false;
-  Lease lease(*this, at.positions, true);
+  Lease lease(*this, at.positions, true, {});
   if (lease.work().home.rows() == 0) return false;
   for (Index a = 0; a < system_.actuators(); ++a) there.multipliers[a] *= system_.measures().unit(a);
   lease.work().initial_guess = std::move(there);
@@ -110,7 +111,7 @@ std::vector<std::vector<Vec3>> Equilibria::pressing_changes(const State& state, 
   std::vector<std::vector<Vec3>> changes(moves.size(), std::vector<Vec3>(contact.parts.size(), Vec3::Zero()));
   if (!system_.contact()) return changes;
   const Inside at(*this, state, team);
-  Lease lease(*this, at->positions, true);
+  Lease lease(*this, at->positions, true, {});
   const Iterate shape = system_.iterate(*at);
   system_.contacts()->find(shape.positions, *lease.work().contacts, team);
   hold_friction(system_, shape, lease.work(), team);
@@ -131,7 +132,7 @@ ViscousFlow Equilibria::flow(const State& state, Team& team) const {
   ViscousFlow flow;
   if (!system_.viscous()) return flow;
   const Inside at(*this, state, team);
-  Lease lease(*this, at->positions, true);
+  Lease lease(*this, at->positions, true, {});
   system_.set_time(at->history, at->elapsed_s, lease.work(), team);
   flow.history = system_.flow(*at, lease.work(), flow.lost_mJ, team);
   return flow;
@@ -233,7 +234,7 @@ Equilibrium Equilibria::solve_inside(const Actuation& actuation, const State& st
   report.tolerance_mm = options.tolerance_mm;
   SolveRecord record;
   if (start.actuation.size() == 0 && start.positions != model.rest) check_contact_of_start(model, start.positions);
-  Lease lease(*this, start.positions, options.reuse_factor);
+  Lease lease(*this, start.positions, options.reuse_factor, options.tuning);
 
   LoadState from = load_state_of(system_, model, start, actuation);
   const LoadState to{actuation, 1};

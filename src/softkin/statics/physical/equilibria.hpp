@@ -5,6 +5,7 @@
 #include <softkin/statics/physical/newton.hpp>
 #include <softkin/statics/physical/prediction.hpp>
 #include <softkin/statics/sensitivity.hpp>
+#include <softkin/statics/solver_options.hpp>
 
 namespace softkin::physical {
 
@@ -30,6 +31,7 @@ class Equilibria {
     double force_fraction = 1e-6;  // tolerance of the residual, over the largest internal force
     std::shared_ptr<const ViscousHistory> history{};
     double elapsed_s = std::numeric_limits<double>::infinity();
+    SolverOptions tuning{};
   };
 
   /// Arguments are checked already. report.seconds is left to the caller.
@@ -45,24 +47,27 @@ class Equilibria {
   void outside(State& at) const;
 
   /// Returns the sensitivity of an equilibrium; see Statics::sensitivity.
-  [[nodiscard]] Sensitivity sensitivity(const State& at, bool reuse_factor, double accuracy, Team& team) const;
+  [[nodiscard]] Sensitivity sensitivity(const State& at, const Options& options, double accuracy, Team& team) const;
 
   [[nodiscard]] ParameterSensitivity sensitivity(const State& at, const std::vector<Perturbation>& perturbations,
-                                                 bool reuse_factor, double accuracy, bool reactions, Team& team) const;
+                                                 const Options& options, double accuracy, bool reactions,
+                                                 Team& team) const;
   [[nodiscard]] ParameterSensitivity sensitivity(const State& at, const std::vector<Actuation>& changes,
-                                                 bool reuse_factor, double accuracy, bool reactions, Team& team) const;
+                                                 const Options& options, double accuracy, bool reactions,
+                                                 Team& team) const;
 
   /// See Perturbations::gradients. The system must be reciprocal.
   [[nodiscard]] Eigen::MatrixXd gradients(const State& at, const std::vector<Perturbation>& perturbations,
-                                          const std::vector<ShapeGradient>& reported, bool reuse_factor,
+                                          const std::vector<ShapeGradient>& reported, const Options& options,
                                           double accuracy, Team& team) const;
 
   /// See Statics::reciprocal_moves.
-  [[nodiscard]] std::vector<Points> moves_under(const State& at, const std::vector<Points>& forces, bool reuse_factor,
-                                                double accuracy, Team& team) const;
+  [[nodiscard]] std::vector<Points> moves_under(const State& at, const std::vector<Points>& forces,
+                                                const Options& options, double accuracy, Team& team) const;
 
   /// See Statics::extrapolate.
-  bool extrapolate(const Actuation& actuation, const State& at, Points& positions, Team& team) const;
+  bool extrapolate(const Actuation& actuation, const State& at, const SolverOptions& options, Points& positions,
+                   Team& team) const;
 
   /// See Statics::set_initial_guess.
   bool set_initial_guess(const State& at, State there) const;

@@ -11,7 +11,9 @@ class Equilibria::Lease {
  public:
   /// Takes a workspace that was left at the start, if there is one and it may be reused: its factor is as good as new.
   /// Else the workspace has no home, and nothing in it is used.
-  Lease(const Equilibria& owner, const Points& start, bool reuse) : owner_(owner) {
+  ///
+  /// options  tuned constants for the time of the lease
+  Lease(const Equilibria& owner, const Points& start, bool reuse, const SolverOptions& options) : owner_(owner) {
     {
       const std::lock_guard lock(owner_.mutex_);
       auto& idle = owner_.idle_;
@@ -23,6 +25,7 @@ class Equilibria::Lease {
       }
     }
     if (!work_) work_ = std::make_unique<Workspace>(owner_.system_);
+    work_->options = options;
     if (reuse && is_at(*work_, start)) return;
     work_->home.resize(0, 3);
     work_->tangents.at.resize(0, 3);

@@ -8,28 +8,6 @@
 
 namespace softkin::physical {
 
-namespace {
-
-/// First step relative to the current measure, growth of the steps, their bounds, and their maximum number.
-constexpr double first_step = 0.02, growth = 1.6, first_growth = 0.5, max_growth = 0.6, shortest_measure_step = 1e-5;
-constexpr int max_steps = 200, max_missed = 6;
-/// The load counts as maximal where its relative change is less than this fraction of that of its measure.
-constexpr double flat = 0.01;
-/// Least distance of a maximum from the two points around it, relative to their distance.
-constexpr double margin = 0.05;
-/// Slopes decrease ever more slowly: the next step covers this multiple of the distance to the maximum by the last two
-/// slopes.
-constexpr double ahead = 1.5;
-/// Distance of the final shape before the maximum, relative to the path from where the search began: at the maximum the
-/// stiffness is singular.
-constexpr double before_summit = 0.01;
-/// Factor of the tolerance for intermediate equilibria, compared with the final one.
-constexpr double intermediate = 6000;
-/// A step along the measure that reaches the load only after this fraction of its length ends near enough to it.
-constexpr double whole_step = 0.9;
-
-}  // namespace
-
 MeasureContinuation::MeasureContinuation(Corrector& corrector, StepTracer& tracer, const Equilibria::Options& options,
                                          const Route& route)
     : Follower(corrector, tracer, options), route_(route), load_(route.load) {}
@@ -84,7 +62,7 @@ Search<MeasureContinuation::Measured> MeasureContinuation::at_measure(double mea
 /// Does the same with the relaxed tolerance of intermediate equilibria.
 Search<MeasureContinuation::Measured> MeasureContinuation::nearly_at(double measure, const Measured& from,
                                                                      bool prepared, const Measured* beside) {
-  const auto loosely = corrector_.newton().loosely(intermediate);
+  const auto loosely = corrector_.newton().loosely(tuning_.measure.coarse_tolerance);
   return at_measure(measure, from, prepared, beside);
 }
 
@@ -92,7 +70,7 @@ Search<MeasureContinuation::Measured> MeasureContinuation::nearly_at(double meas
 /// the distance.
 void MeasureContinuation::bend(const LoadState& here, const LoadState& there, const Measured& from,
                                const Measured& beside, Iterate& trial) {
-  constexpr double farthest = 3, most = 0.5;  // of the distance back, and of the first-order move
+  const double farthest = tuning_.measure.max_extrapolation, most = tuning_.measure.max_second_order;
   const double ratio = (there.actuation[load_] - from.measure) / (from.measure - beside.measure);
   if (system_.contact() || here.load_factor != there.load_factor || !(std::abs(ratio) < farthest)) return;
   LoadState behind = here;
@@ -130,7 +108,7 @@ double MeasureContinuation::left_to_summit(double path, const Measured* beside, 
 double MeasureContinuation::slope_at(const LoadState& load, const Measured& point) {
   LoadState here = load, there = load;
   here.actuation[load_] = point.measure;
-  there.actuation[load_] = (1 + first_step) * point.measure;
+  there.actuation[load_] = (1 + tuning_.measure.first_step) * point.measure;
   here.load_factor = there.load_factor = point.load_factor;
   corrector_.active[load_] = true;
   const Temporarily twice(work_.saddle.precision(), linear::MixedLdlt::Precision::twice);
@@ -139,14 +117,14 @@ double MeasureContinuation::slope_at(const LoadState& load, const Measured& poin
     Iterate beside = point.at;
     (void)predict(system_, here, there, corrector_.active, work_, team_, beside);
     slope = (beside.multipliers[load_] - point.at.multipliers[load_]) / system_.measures().rate(load_, point.load) /
-            (first_step * point.measure);
+            (tuning_.measure.first_step * point.measure);
   }
   corrector_.active[load_] = false;
   return slope;
 }
 
-bool MeasureContinuation::at_maximum(const Measured& point) {
-  return std::abs(point.gain) * point.measure < flat * std::abs(point.load);
+bool MeasureContinuation::at_maximum(const Measured& point) const {
+  return std::abs(point.gain) * point.measure < tuning_.measure.maximum_slope * std::abs(point.load);
 }
 
 /// Returns an ascent at its start.
@@ -155,7 +133,7 @@ MeasureContinuation::Ascent MeasureContinuation::ascent_from(const Iterate& at) 
   ascent.up = requested_load() > route_.here.actuation[load_] ? 1 : -1;  // a chamber grows with its pressure, a cable
   ascent.path = -ascent.up * system_.measures().sign(load_);             // shortens with its tension
   ascent.begin = system_.measures().value(load_, at.positions) / system_.measures().rest(load_);
-  ascent.length = first_step * ascent.begin;
+  ascent.length = tuning_.measure.first_step * ascent.begin;
   ascent.low = {ascent.begin, route_.here.actuation[load_], at, corrector_.last, 0, route_.here.load_factor};
   ascent.low.at.multipliers[load_] = system_.measures().given(load_, ascent.low.load);
   ascent.low.gain = ascent.up * ascent.path * slope_at(route_.here, ascent.low);
@@ -163,18 +141,18 @@ MeasureContinuation::Ascent MeasureContinuation::ascent_from(const Iterate& at) 
 }
 
 /// Takes a point before the maximum as the next start, or one past it as a bound, and chooses the next step.
-void MeasureContinuation::Ascent::take(Measured&& next) {
+void MeasureContinuation::Ascent::take(Measured&& next, const MeasureControlOptions& by) {
   const double went = path * (next.measure - low.measure), left = next.short_of;
   if (next.gain < 0) {
     high = std::move(next);
-    length = std::clamp(went + left, margin * went, (1 - margin) * went);
+    length = std::clamp(went + left, by.bracket_margin * went, (1 - by.bracket_margin) * went);
     return;
   }
   const bool by_three = beside() != nullptr;
   passed = std::move(low);
   low = std::move(next);
-  length = std::min({growth * went, max_growth * low.measure, by_three ? left : ahead * left});
-  if (high) length = std::min(length, (1 - margin) * path * (high->measure - low.measure));
+  length = std::min({by.growth * went, by.max_step * low.measure, by_three ? left : by.slope_allowance * left});
+  if (high) length = std::min(length, (1 - by.bracket_margin) * path * (high->measure - low.measure));
 }
 
 MeasureContinuation::End MeasureContinuation::up(Iterate& at) {
@@ -187,20 +165,21 @@ MeasureContinuation::End MeasureContinuation::up(Iterate& at) {
   const bool may_stand_there = at_maximum(low);
   if (low.gain < 0 && !may_stand_there) return End::lost;
   if (!may_stand_there)
-    ascent.length = std::clamp(up * (requested_load() - low.load) / low.gain, ascent.length, first_growth * begin);
+    ascent.length = std::clamp(up * (requested_load() - low.load) / low.gain, ascent.length,
+                               tuning_.measure.max_first_step * begin);
   const auto passes = [&](const Measured& point) { return up * (point.load - requested_load()) >= 0; };
   const auto keep_where_stopped = [&](End end) {
     if (end == End::interrupted) keep(low, at);
     return end;
   };
   bool prepared = true;
-  for (int i = 0, missed = 0; i < max_steps && ascent.length > shortest_measure_step * begin; ++i) {
+  for (int i = 0, missed = 0; i < tuning_.measure.max_steps && ascent.length > tuning_.measure.min_step * begin; ++i) {
     auto [next, interrupted] = nearly_at(low.measure + path * ascent.length, low, prepared, ascent.beside());
     if (interrupted) return keep_where_stopped(End::interrupted);
     prepared = false;
     if (!next) {
-      ascent.length *= 0.4;
-      if (++missed > max_missed) break;
+      ascent.length *= tuning_.step.shortening;
+      if (++missed > tuning_.measure.max_failures) break;
       continue;
     }
     note_branch(*next);
@@ -216,7 +195,7 @@ MeasureContinuation::End MeasureContinuation::up(Iterate& at) {
                                 : stop_at(path, begin, *top.found, at);
     }
     prepared = next->gain >= 0;
-    ascent.take(std::move(*next));
+    ascent.take(std::move(*next), tuning_.measure);
     if (prepared) record_.reached = route_.whole(fraction_of(low.load));
   }
   if (low.measure == begin) return End::lost;
@@ -233,7 +212,7 @@ MeasureContinuation::End MeasureContinuation::arrive_before(Measured next, const
   const double went = ascent.path * (next.measure - low.measure), rose = ascent.up * (next.load - low.load);
   const double requested = ascent.up * (requested_load() - low.load), bends = (rose - low.gain * went) / (went * went);
   const double fraction = 2 * requested / (low.gain + std::sqrt(low.gain * low.gain + 4 * bends * requested)) / went;
-  if (fraction < whole_step) {
+  if (fraction < tuning_.measure.whole_step) {
     const bool from_low = fraction < 0.5;
     const Measured &from = from_low ? low : next, &beside = from_low ? next : low;
     auto [nearer, interrupted] = nearly_at(low.measure + fraction * (next.measure - low.measure), from, false, &beside);
@@ -273,7 +252,7 @@ MeasureContinuation::End MeasureContinuation::stop_at(double path, double begin,
     if (end != End::lost) return end;
   }
   if (limit_point.measure == begin) return End::limit_point;
-  const double before = before_summit * std::abs(limit_point.measure - begin);
+  const double before = tuning_.measure.before_maximum * std::abs(limit_point.measure - begin);
   if (limit_point.short_of > 0.1 * before) {
     keep(limit_point, at);
     return End::limit_point;

@@ -63,7 +63,7 @@ class MeasureContinuation : Follower {
     std::optional<Measured> high{}, passed{};  // point beyond the maximum; point before `low`
 
     [[nodiscard]] const Measured* beside() const { return high ? &*high : passed ? &*passed : nullptr; }
-    void take(Measured&& next);
+    void take(Measured&& next, const MeasureControlOptions& by);
   };
   /// The reason why a path along a measure ends: the requested load, the last measure, a failed step or an
   /// interruption.
@@ -78,7 +78,7 @@ class MeasureContinuation : Follower {
             Iterate& trial);
   [[nodiscard]] static double left_to_summit(double path, const Measured* beside, const Measured& low,
                                              const Measured& next);
-  [[nodiscard]] static bool at_maximum(const Measured& point);
+  [[nodiscard]] bool at_maximum(const Measured& point) const;
   double slope_at(const LoadState& load, const Measured& point);
   End arrive_at(const Measured& near, Iterate& at, Newton::Policy policy);
   End arrive_before(Measured next, const Ascent& ascent, Iterate& at);

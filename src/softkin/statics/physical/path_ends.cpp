@@ -11,20 +11,6 @@
 
 namespace softkin::physical {
 
-namespace {
-
-/// Fraction of slipping normal forces from which on the remark on a limit mentions slip.
-constexpr double worth_telling = 0.5;
-/// A path makes no progress if this many iterations advance it by less than this fraction. Where contact begins or a
-/// body is released, the next fraction may take hundreds of iterations, and those after it few.
-constexpr int patience = 100, patience_at_contact = 250;
-constexpr double min_progress = 0.02, min_progress_at_contact = 0.01;
-/// An advance to this multiple of the last marked fraction is progress, too: the requested loads may be a thousand
-/// times those that the robot can carry.
-constexpr double much_gained = 2;
-
-}  // namespace
-
 bool Continuation::change_loads(const LoadState& from, const LoadState& to) const {
   if (from.fading != to.fading || (system_.any_dead_load() && from.load_factor != to.load_factor)) return true;
   for (Index a = 0; a < system_.actuators(); ++a)
@@ -58,7 +44,7 @@ Index Continuation::only_load(const LoadState& from, const LoadState& to) const 
 /// Does the only changing load change its measure so much, to first order, that continuation along the measure is
 /// better?
 bool Continuation::leads_too_far(const LoadState& here, const LoadState& there, const Iterate& at) {
-  constexpr double fraction = 0.01, most = 0.4;  // of the path, for the difference; of the measure
+  const double fraction = tuning_.step.measure_probe, most = tuning_.step.max_measure_change;
   const Index a = path_.load;
   if (a < 0 || system_.contact()) return false;
   Iterate near = at;
@@ -134,7 +120,7 @@ Status Continuation::limit(double done, const std::string& why, const Iterate& a
   report_.remark = why + pull_in_text(system_.model(), path_.from, between(path_.from, path_.to, done), at.positions);
   if (system_.has_wrinkling()) report_.remark += "; sheets that nothing keeps taut have no shape of their own";
   const double slipping = slipping_fraction(system_, at, work_, team_);
-  if (slipping >= worth_telling) {
+  if (slipping >= tuning_.termination.min_slipping) {
     report_.physical.slipping_fraction = slipping;
     report_.remark += "; there " + number(100 * slipping, 3) + " % of the friction contacts slip, or nearly";
   }
@@ -172,9 +158,10 @@ void Continuation::take_beyond(Iterate& at) {
 }
 
 std::optional<Status> Continuation::out_of_patience(const Iterate& at) {
-  const int most = is_non_smooth() ? patience_at_contact : patience;
-  const double least = is_non_smooth() ? min_progress_at_contact : min_progress;
-  if (path_.done - path_.marked >= least || (!is_non_smooth() && path_.done > much_gained * path_.marked)) {
+  const int most = is_non_smooth() ? tuning_.termination.contact_patience : tuning_.termination.patience;
+  const double least = is_non_smooth() ? tuning_.termination.contact_min_progress : tuning_.termination.min_progress;
+  if (path_.done - path_.marked >= least ||
+      (!is_non_smooth() && path_.done > tuning_.termination.progress_factor * path_.marked)) {
     path_.marked = path_.done;
     path_.marked_iterations = record_.iterations;
   } else if (path_.done < 1 && !options_.stable && record_.iterations - path_.marked_iterations >= most) {
@@ -198,7 +185,7 @@ Status Continuation::arrive(const LoadState& load_state, Iterate& at) {
   }
   if (corrector_.last.balanced) {
     if (record_.snapped_mm > 0) work_.trail.clear();
-    work_.trail.add(load_state, corrector_.active, at);
+    work_.trail.add(load_state, corrector_.active, at, tuning_.prediction);
     return Status::converged;
   }
   report_.remark = "the steps have become small, but " + number(corrector_.last.forces.residual, 2) +
@@ -241,7 +228,7 @@ void Continuation::go_together(Iterate& at) {
   corrector_.active = std::move(before.active);
   corrector_.last = before.last;
   corrector_.good_shape = at.positions;
-  path_.advance *= 0.4;
+  path_.advance *= tuning_.step.shortening;
   path_.factorised = false;
   path_.marked_iterations = record_.iterations;
   report_.remark.clear();

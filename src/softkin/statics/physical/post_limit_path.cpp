@@ -6,21 +6,6 @@
 
 namespace softkin::physical {
 
-namespace {
-
-/// First step over the current measure, growth of the steps, their bounds and their maximum number.
-constexpr double first_beyond = 0.1, growth_beyond = 1.6, max_beyond = 0.5, shortest_beyond = 1e-4;
-constexpr int max_steps_beyond = 200, max_missed_beyond = 6;
-/// Minimum number of points up to the requested measure.
-constexpr int points_beyond = 8;
-/// Range of the search for the next stable shape, over the measure at the limit point.
-constexpr double far_beyond = 10;
-/// Distance from the requested load, over the load, at which Newton's method under that load starts.
-constexpr double near_load = 1e-3;
-constexpr int max_halvings = 20;
-
-}  // namespace
-
 /// Follows equilibria from `last` until one has passed the requested load; `next` is then that one.
 ///
 /// longest  longest step of the measure, over its value at rest
@@ -28,10 +13,10 @@ MeasureContinuation::Passed MeasureContinuation::go_along(double path, double en
                                                           std::optional<Measured>& next) {
   const double requested = requested_load();
   const bool below = last.load < requested;
-  double length = std::min(first_beyond * last.measure, longest);
+  double length = std::min(tuning_.post_limit.first_step * last.measure, longest);
   std::optional<Measured> before;
   int missed = 0;
-  for (int i = 0; i < max_steps_beyond; ++i) {
+  for (int i = 0; i < tuning_.post_limit.max_steps; ++i) {
     const double left = path * (end - last.measure);
     if (!(left > 1e-9 * std::abs(end))) return Passed::end;
     const double there = length > 0.9 * left ? end : last.measure + path * length;
@@ -39,13 +24,15 @@ MeasureContinuation::Passed MeasureContinuation::go_along(double path, double en
     if (step.interrupted) return Passed::interrupted;
     next = std::move(step.found);
     if (!next) {
-      length *= 0.4;
-      if (length < shortest_beyond * last.measure || ++missed > max_missed_beyond) return Passed::nowhere;
+      length *= tuning_.step.shortening;
+      if (length < tuning_.post_limit.min_step * last.measure || ++missed > tuning_.post_limit.max_failures)
+        return Passed::nowhere;
       continue;
     }
     note_branch(*next);
     if (below != (next->load < requested)) return Passed::requested;
-    length = std::min({growth_beyond * std::abs(there - last.measure), max_beyond * next->measure, longest});
+    length = std::min({tuning_.post_limit.growth * std::abs(there - last.measure),
+                       tuning_.post_limit.max_step * next->measure, longest});
     before = std::exchange(last, std::move(*next));
   }
   return Passed::nowhere;
@@ -54,9 +41,9 @@ MeasureContinuation::Passed MeasureContinuation::go_along(double path, double en
 /// Finds the equilibrium under the requested load, between one with a lower and one with a higher load.
 MeasureContinuation::End MeasureContinuation::arrive_between(Measured low, Measured high, Iterate& at) {
   const double requested = requested_load();
-  const double reach = near_load * std::max(std::abs(low.load), std::abs(high.load));
+  const double reach = tuning_.post_limit.load_tolerance * std::max(std::abs(low.load), std::abs(high.load));
   double low_miss = low.load - requested, high_miss = high.load - requested;  // weighted for the regula falsi
-  for (int i = 0; i < max_halvings && std::abs(high.load - requested) > reach; ++i) {
+  for (int i = 0; i < tuning_.post_limit.max_bisections && std::abs(high.load - requested) > reach; ++i) {
     const double fraction = std::clamp(low_miss / (low_miss - high_miss), 0.05, 0.95);
     auto [middle, interrupted] = at_measure(low.measure + fraction * (high.measure - low.measure), low, false, &high);
     if (interrupted) return End::interrupted;
@@ -78,13 +65,13 @@ MeasureContinuation::End MeasureContinuation::arrive_between(Measured low, Measu
 /// Follows the post-limit-point branch until the load has the requested value again, or up to the requested measure.
 MeasureContinuation::End MeasureContinuation::go_beyond(double path, const Measured& limit_point, Iterate& at) {
   const double end = options_.beyond > 0 ? options_.beyond
-                     : path > 0          ? far_beyond * limit_point.measure
-                                         : limit_point.measure / far_beyond;
+                     : path > 0          ? tuning_.post_limit.search_range * limit_point.measure
+                                         : limit_point.measure / tuning_.post_limit.search_range;
   if (!(path * (end - limit_point.measure) > 0)) {
     remark_ += "; " + measure_text(end) + " is not beyond it";
     return End::lost;
   }
-  const double longest = options_.beyond > 0 ? std::abs(end - limit_point.measure) / points_beyond
+  const double longest = options_.beyond > 0 ? std::abs(end - limit_point.measure) / tuning_.post_limit.min_points
                                              : std::numeric_limits<double>::infinity();
   Measured last = limit_point;
   std::optional<Measured> next;
@@ -126,7 +113,7 @@ MeasureContinuation::End MeasureContinuation::back(Iterate& at) {
   record_.branch = {};
   note_branch(last);
   std::optional<Measured> next;
-  const Passed passed = go_along(path, end, max_beyond * begin, last, next);
+  const Passed passed = go_along(path, end, tuning_.post_limit.max_step * begin, last, next);
   End arrived = End::lost;
   if (passed == Passed::interrupted) {
     keep(last, at);

@@ -63,12 +63,11 @@ struct Tangent {
   /// Solves with the stiffness of the current state; false where that fails.
   bool refine(const System& system, const Balance& balance, const Balance& residual_change, Workspace& work, Team& team,
               const Iterate& at) {
-    constexpr double accuracy = 1e-3;
-    constexpr int rounds = 6;
     Bordered equations(system, work, team);
     equations.set(at, balance);
     system.gather(at, balance, work, team);
-    return equations.step(residual_change, accuracy, rounds, step, change).left < 1;
+    const PredictionOptions& options = work.options.path.prediction;
+    return equations.step(residual_change, options.tangent_accuracy, options.tangent_rounds, step, change).left < 1;
   }
 };
 
@@ -107,9 +106,7 @@ Points first_order_moves(const System& system, const LoadState& here, const Load
 
 ClearPrediction predict_clear(const System& system, const LoadState& here, const LoadState& there,
                               const std::vector<bool>& active, Workspace& work, Team& team, Iterate& at) {
-  constexpr double shorter = 0.9;                    // than the clear fraction
-  constexpr double max_cut = 0.5, long_path = 0.05;  // of the motion, of the diagonal
-  constexpr double least = 1e-3;
+  const PredictionOptions& options = work.options.path.prediction;
   const Tangent tangent(system, here, there, active, work, team, at);
   const Points from = at.positions;
   ClearPrediction clear;
@@ -130,10 +127,11 @@ ClearPrediction predict_clear(const System& system, const LoadState& here, const
     }
     if (fraction >= end) break;
     clear.cut = true;
-    end = shorter * fraction;
-    if (end < max_cut && system.largest_move(from, clear.predicted) > long_path * system.model().diagonal_mm)
+    end = options.clear_fraction * fraction;
+    if (end < options.max_cut &&
+        system.largest_move(from, clear.predicted) > options.long_move * system.model().diagonal_mm)
       return clear;
-    if (end >= least) continue;
+    if (end >= options.min_fraction) continue;
     end = 0;  // only supported vertices move
     const Motion alone = [&](double part, Points& out) {
       out = from;
@@ -174,14 +172,14 @@ bool carry_held(const System& system, const LoadState& here, const LoadState& th
 
 bool extrapolate(const System& system, const LoadState& here, const LoadState& there, Workspace& work, Team& team,
                  const Iterate& at, Points& positions) {
-  constexpr double longest = 5e-3;  // of the diagonal, that the difference moves
   Slopes& slopes = work.tangents;
   if (system.contact() || !are_of(slopes, at)) return false;
   const std::vector<bool> active = held(slopes, system.actuators());
   slopes.extrapolated_for.resize(0);
   Tangent path(slopes, here, there);
   const double length = system.freedoms().size_of(path.step, at.positions).largest;
-  const double reach = std::min(1.0, longest * system.model().diagonal_mm / length);
+  const double reach =
+      std::min(1.0, work.options.path.prediction.second_order_move * system.model().diagonal_mm / length);
   // residuals at both sides along the tangent; their first order cancels, as the tangent solves those equations
   Balance balance;
   Eigen::VectorXd force, constraint;
@@ -213,13 +211,13 @@ bool extrapolate(const System& system, const LoadState& here, const LoadState& t
 
 bool follow_extrapolated(const System& system, const LoadState& here, const LoadState& there,
                          const std::vector<bool>& active, Workspace& work, Team& team, Iterate& at) {
-  constexpr double max_left = 0.03;  // of the path: the rest is predicted along tangents at its start
   const Slopes& slopes = work.tangents;
   if (slopes.extrapolated_for.size() == 0 || !are_of(slopes, at) || held(slopes, system.actuators()) != active ||
       here.load_factor != there.load_factor || here.fading != there.fading)
     return false;
   const LoadState extrapolated{slopes.extrapolated_for, there.load_factor};
-  if (!((there.actuation - extrapolated.actuation).norm() < max_left * (there.actuation - here.actuation).norm()))
+  if (!((there.actuation - extrapolated.actuation).norm() <
+        work.options.path.prediction.max_remainder * (there.actuation - here.actuation).norm()))
     return false;
   // the rest of the path, along the tangents at its start
   const Tangent tangent(slopes, extrapolated, there);

@@ -34,7 +34,7 @@ void Equilibria::drop_vertices(Points& points) const {
 void Equilibria::find_pressures(State& at, Team& team) const {
   const Index actuators = system_.actuators();
   const bool known = at.knows(actuators) && at.multipliers.size() == actuators;
-  Lease lease(*this, at.positions, false);
+  Lease lease(*this, at.positions, false, {});
   Workspace& work = lease.work();
   State loaded = at;
   if (!known) loaded.multipliers = Eigen::VectorXd::Zero(actuators);

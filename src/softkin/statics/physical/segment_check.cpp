@@ -4,26 +4,8 @@
 
 namespace softkin::physical {
 
-namespace {
-
-/// Maximum errors of tangents, over the secant: of the tangent at the begin if it is to suffice alone; of the tangents
-/// at either end, and of their sum, if both are known.
-constexpr double max_missed_ahead = 0.1, max_missed_at_an_end = 0.4, max_missed_together = 0.2;
-/// Maximum Newton step in the middle of the curve that the tangents define, over the secant.
-constexpr double max_off_balance = 0.05;
-/// Segments that move no vertex farther than this fraction of the diagonal are not checked.
-constexpr double min_checked = 1e-3;
-/// Maximum number of successive halvings of a segment, and of all corrections of middles.
-constexpr int max_segment_halvings = 7, max_middle_corrections = 60;
-/// Accuracy of the equilibrium in a middle, over the secant.
-constexpr double middle_accuracy = 1e-3;
-/// Fraction of a segment over which supports move for a tangent.
-constexpr double rate_difference = 1e-3;
-
-}  // namespace
-
-bool SegmentCheck::is_short(const System& system, double move_mm) {
-  return move_mm <= min_checked * system.model().diagonal_mm;
+bool SegmentCheck::is_short(const System& system, const SegmentCheckOptions& options, double move_mm) {
+  return move_mm <= options.min_move * system.model().diagonal_mm;
 }
 
 SegmentCheck::SegmentCheck(Corrector& corrector, StepTracer& tracer, const Equilibria::Options& options,
@@ -47,14 +29,14 @@ bool SegmentCheck::is_balanced_between(const SegmentEnd& low, const SegmentEnd& 
   evaluate(high);
   return step && !balance.inverted &&
          system_.freedoms().size_of(*step, middle.positions).largest <=
-             max_off_balance * size(high.at->positions - low.at->positions);
+             tuning_.segment_check.max_middle_step * size(high.at->positions - low.at->positions);
 }
 
 /// Does the tangent at the begin predict the end? If the prediction was an extrapolation, the error at the end
 /// suffices.
 bool SegmentCheck::is_predicted(const SegmentEnd& low, const SegmentEnd& high, const Points& predicted) {
   const Points secant = high.at->positions - low.at->positions;
-  if (size(predicted - secant) > max_missed_ahead * size(secant)) return false;
+  if (size(predicted - secant) > tuning_.segment_check.max_error_ahead * size(secant)) return false;
   return low.rate.rows() == 0 || is_balanced_between(low, high, ((high.factor - low.factor) * low.rate - secant) / 4);
 }
 
@@ -62,7 +44,8 @@ bool SegmentCheck::is_predicted(const SegmentEnd& low, const SegmentEnd& high, c
 bool SegmentCheck::is_retraced(const SegmentEnd& low, const SegmentEnd& high) {
   const Points secant = high.at->positions - low.at->positions;
   const Points behind = (high.factor - low.factor) * high.rate - secant;
-  return size(behind) <= max_missed_at_an_end * size(secant) && is_balanced_between(low, high, -behind / 4);
+  return size(behind) <= tuning_.segment_check.max_error_at_an_end * size(secant) &&
+         is_balanced_between(low, high, -behind / 4);
 }
 
 bool SegmentCheck::tangents_agree(const SegmentEnd& low, const SegmentEnd& high) const {
@@ -70,9 +53,10 @@ bool SegmentCheck::tangents_agree(const SegmentEnd& low, const SegmentEnd& high)
   const Points secant = high.at->positions - low.at->positions;
   const Points ahead = length * low.rate - secant, behind = length * high.rate - secant;
   const double whole = size(secant);
-  return size(ahead) <= max_missed_ahead * whole ||
-         (size(ahead) <= max_missed_at_an_end * whole && size(behind) <= max_missed_at_an_end * whole &&
-          size(ahead + behind) <= max_missed_together * whole);
+  return size(ahead) <= tuning_.segment_check.max_error_ahead * whole ||
+         (size(ahead) <= tuning_.segment_check.max_error_at_an_end * whole &&
+          size(behind) <= tuning_.segment_check.max_error_at_an_end * whole &&
+          size(ahead + behind) <= tuning_.segment_check.max_error_together * whole);
 }
 
 bool SegmentCheck::agree(const SegmentEnd& low, const SegmentEnd& high) {
@@ -103,7 +87,7 @@ SegmentCheck::Verdict SegmentCheck::check(SegmentEnd low, SegmentEnd high, const
 SegmentCheck::Verdict SegmentCheck::check_by_middles(const SegmentEnd& low, const SegmentEnd& high) {
   const double energy = record_.energy, gradient_norm = record_.gradient_norm, step_mm = record_.step_mm;
   iterations_ = record_.iterations;
-  const Verdict verdict = check_halves(low, high, max_segment_halvings);
+  const Verdict verdict = check_halves(low, high, tuning_.segment_check.max_halvings);
   record_.energy = energy;
   record_.gradient_norm = gradient_norm;
   record_.step_mm = step_mm;
@@ -129,23 +113,26 @@ bool SegmentCheck::factorise(const SegmentEnd& end) {
 /// Returns the tangent of the path at one end, with the current factorisation. A support that moves on an arc follows
 /// its tangent over a small part of the segment only.
 Points SegmentCheck::rate_towards(const SegmentEnd& other, const SegmentEnd& at) {
-  const double change = (turns() ? rate_difference : 1) * (other.factor - at.factor);
+  const double change = (turns() ? tuning_.segment_check.rate_difference : 1) * (other.factor - at.factor);
   return first_order_moves(system_, load_state(at.factor), load_state(at.factor + change), corrector_.active, work_,
                            team_, *at.at) /
          change;
 }
 
 SegmentCheck::Verdict SegmentCheck::check_halves(const SegmentEnd& low, const SegmentEnd& high, int depth) {
-  const bool short_segment = is_short(system_, system_.largest_move(low.at->positions, high.at->positions)) &&
-                             is_short(system_, (high.factor - low.factor) * size(low.rate));
-  if (short_segment || (depth < max_segment_halvings && agree(low, high))) return Verdict::confirmed;
-  if (depth == 0 || record_.iterations - iterations_ > max_middle_corrections) return Verdict::unclear;
+  const bool short_segment =
+      is_short(system_, tuning_.segment_check, system_.largest_move(low.at->positions, high.at->positions)) &&
+      is_short(system_, tuning_.segment_check, (high.factor - low.factor) * size(low.rate));
+  if (short_segment || (depth < tuning_.segment_check.max_halvings && agree(low, high))) return Verdict::confirmed;
+  if (depth == 0 || record_.iterations - iterations_ > tuning_.segment_check.max_corrections) return Verdict::unclear;
   Point found;
   const Verdict verdict = find_middle(low, high, found);
   if (verdict != Verdict::confirmed) return verdict;
-  if (corrected_ <= max_off_balance * size(high.at->positions - low.at->positions) && tangents_agree(low, high))
+  if (corrected_ <= tuning_.segment_check.max_middle_step * size(high.at->positions - low.at->positions) &&
+      tangents_agree(low, high))
     return Verdict::confirmed;
-  const SegmentEnd middle{&found.at, found.load_factor, rate(found, rate_difference * (high.factor - low.factor)),
+  const SegmentEnd middle{&found.at, found.load_factor,
+                          rate(found, tuning_.segment_check.rate_difference * (high.factor - low.factor)),
                           found.negative};
   const Verdict first = check_halves(low, middle, depth - 1);
   return first == Verdict::confirmed ? check_halves(middle, high, depth - 1) : first;
@@ -182,7 +169,7 @@ SegmentCheck::Verdict SegmentCheck::find_middle(const SegmentEnd& low, const Seg
   from.ahead.normalize();
   tracer_.begin(low.factor, high.factor, length, "check");
   const Points begun = middle.at.positions;
-  bool found = correct(from, 0.5 * whole, middle_accuracy * whole, middle);
+  bool found = correct(from, 0.5 * whole, tuning_.segment_check.middle_accuracy * whole, middle);
   const auto is_passed = [&] {
     return middle.negative > std::max(low.negative, high.negative) || !(middle.slope > 0) ||
            !(low.factor < middle.load_factor && middle.load_factor < high.factor);

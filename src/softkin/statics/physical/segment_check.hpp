@@ -33,7 +33,7 @@ class SegmentCheck : ArcLength {
                const LoadState& to);
 
   /// Is a segment with this largest move of a vertex too short to be checked?
-  [[nodiscard]] static bool is_short(const System& system, double move_mm);
+  [[nodiscard]] static bool is_short(const System& system, const SegmentCheckOptions& options, double move_mm);
 
   /// Checks an accepted step, whose last factorisation is of a shape near its end.
   ///

@@ -60,6 +60,7 @@ class Follower {
         system_(corrector.system()),
         work_(corrector.work()),
         team_(corrector.team()),
+        tuning_(corrector.work().options.path),
         record_(corrector.record()),
         report_(corrector.report()) {}
 
@@ -69,6 +70,7 @@ class Follower {
   const System& system_;
   Workspace& work_;
   Team& team_;
+  const PathOptions& tuning_;
   SolveRecord& record_;
   SolveReport& report_;
 };

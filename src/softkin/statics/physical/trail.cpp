@@ -6,15 +6,6 @@ namespace softkin::physical {
 
 namespace {
 
-constexpr std::size_t max_passed = 8;
-/// Equilibria that are nearer to each other than this fraction of the step are not interpolated.
-constexpr double min_spacing = 0.2;
-/// Maximum number of vertices at which predictions are compared.
-constexpr Index max_inspected = 1000;
-/// A prediction is used if its estimated error is less than this fraction of the error of a first-order one, and less
-/// than this number of tolerances: a larger error may lead to an unstable stiffness.
-constexpr double worth = 0.3, max_tolerances = 100;
-
 /// Returns the weights of the Lagrange polynomial through `degree` + 1 values at `nodes`, from `first` on, for its
 /// value at `at`.
 std::vector<double> lagrange(const std::vector<double>& nodes, std::size_t first, int degree, double at) {
@@ -31,10 +22,13 @@ double length_of(const LoadState& from, const LoadState& to) {
 
 }  // namespace
 
-void Trail::add(const LoadState& load_state, const std::vector<bool>& active, const Iterate& at) {
+void Trail::add(const LoadState& load_state, const std::vector<bool>& active, const Iterate& at,
+                const PredictionOptions& options) {
   if (!passed_.empty() && passed_.front().active != active) clear();
   if (!passed_.empty() && length_of(passed_.front().load_state, load_state) == 0) passed_.erase(passed_.begin());
-  if (passed_.size() == max_passed) {
+  const std::size_t most = options.max_stored;
+  if (passed_.size() > most) passed_.resize(most);
+  if (passed_.size() == most) {
     std::rotate(passed_.begin(), passed_.end() - 1, passed_.end());
     passed_.front() = {load_state, active, at};
   } else {
@@ -49,7 +43,7 @@ void Trail::note_tangent(const LoadState& from, const LoadState& to, double miss
 
 /// Returns the parameters of the equilibria along the next step: 0 at the last one, 1 at the end of the step. The list
 /// ends at the first equilibrium that is too near to another one.
-std::vector<double> Trail::parameters(const LoadState& to) const {
+std::vector<double> Trail::parameters(const LoadState& to, double min_spacing) const {
   const LoadState& here = passed_.front().load_state;
   const Eigen::VectorXd path = to.actuation - here.actuation;
   const double square = std::pow(length_of(here, to), 2);
@@ -65,19 +59,19 @@ std::vector<double> Trail::parameters(const LoadState& to) const {
 }
 
 bool Trail::lead(const LoadState& here, const LoadState& to, const std::vector<bool>& active, double tolerance_mm,
-                 Iterate& at) const {
+                 const PredictionOptions& options, Iterate& at) const {
   if (passed_.size() < 3 || passed_.front().active != active || passed_.front().at.positions != at.positions)
     return false;
   const double length = length_of(here, to);
   if (length_of(passed_.front().load_state, here) > 0 || !(length > 0)) return false;
-  const std::vector<double> nodes = parameters(to);
+  const std::vector<double> nodes = parameters(to, options.min_spacing);
   if (nodes.size() < 3) return false;
   // the error of each degree in a prediction of the last equilibrium, and from that an estimate for the next one
   const Points& last = passed_.front().at.positions;
-  const Index stride = std::max<Index>(1, static_cast<Index>(last.rows()) / max_inspected);
+  const Index stride = std::max<Index>(1, static_cast<Index>(last.rows()) / options.max_compared);
   int best = 0;
-  double least = max_tolerances * tolerance_mm;
-  if (curvature_ >= 0) least = std::min(least, worth * curvature_ * length * length);
+  double least = options.max_error_tolerances * tolerance_mm;
+  if (curvature_ >= 0) least = std::min(least, options.max_error * curvature_ * length * length);
   for (int degree = 1; degree + 2 <= static_cast<int>(nodes.size()); ++degree) {
     const std::vector<double> weights = lagrange(nodes, 1, degree, 0);
     double ratio = 1;  // of the products of distances that the error is proportional to

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <softkin/statics/physical/iterate.hpp>
+#include <softkin/statics/solver_options.hpp>
 #include <vector>
 
 namespace softkin::physical {
@@ -12,7 +13,8 @@ class Trail {
   /// starts a new one.
   ///
   /// active  which constraints are active
-  void add(const LoadState& load_state, const std::vector<bool>& active, const Iterate& at);
+  void add(const LoadState& load_state, const std::vector<bool>& active, const Iterate& at,
+           const PredictionOptions& options);
   void clear() { passed_.clear(); }
 
   /// Records the error of a first-order prediction from one load state to another [mm].
@@ -25,7 +27,7 @@ class Trail {
   /// source   Allgower, Georg 1990, Numerical continuation methods, 6.3: predictors by interpolation; steps of any
   ///          length, with the projection on the step as parameter
   [[nodiscard]] bool lead(const LoadState& here, const LoadState& to, const std::vector<bool>& active,
-                          double tolerance_mm, Iterate& at) const;
+                          double tolerance_mm, const PredictionOptions& options, Iterate& at) const;
 
  private:
   struct Passed {
@@ -33,7 +35,7 @@ class Trail {
     std::vector<bool> active;
     Iterate at;
   };
-  [[nodiscard]] std::vector<double> parameters(const LoadState& to) const;
+  [[nodiscard]] std::vector<double> parameters(const LoadState& to, double min_spacing) const;
 
   std::vector<Passed> passed_;  // the last one first
   double curvature_ = -1;       // error of first-order predictions over the squared step [mm]; negative: unknown

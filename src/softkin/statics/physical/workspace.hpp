@@ -8,6 +8,7 @@
 #include <softkin/statics/physical/placement.hpp>
 #include <softkin/statics/physical/saddle.hpp>
 #include <softkin/statics/physical/trail.hpp>
+#include <softkin/statics/solver_options.hpp>
 
 namespace softkin::physical {
 
@@ -23,6 +24,7 @@ struct Workspace {
   Contacts::Scratch* contacts;  // where there is contact
   Layers::Scratch* layers;      // where there are some
 
+  SolverOptions options{};      // of the solve that uses the workspace, which sets them when it begins
   bool left_field = false;      // was a shape outside the domain of a field, as outside a grid
   std::uint64_t evaluated = 0;  // number of evaluations
   /// The stiffness.

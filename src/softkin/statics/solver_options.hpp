@@ -1,0 +1,221 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace softkin {
+
+// The tuned constants of the solvers. solver_option_fields.hpp has the unit, the admissible values, the kind and a
+// sentence on each; a file of --options sets them, and docs/following.md lists them. The defaults are what was measured
+// to be fast and reliable.
+
+/// Step-size control along the path.
+struct StepSizeOptions {
+  double min_length = 1e-4;
+  double min_smooth_length = 5e-4;
+  double min_of_completed = 0.005;
+  double shortening = 0.4;
+  double failed_gap = 0.35;
+  double max_turn = 30;
+  double min_remainder = 0.1;
+  int few_iterations = 7;
+  int some_iterations = 12;
+  double few_growth = 2.0;
+  double some_growth = 1.5;
+  int few_contact_iterations = 15;
+  int some_contact_iterations = 30;
+  double few_contact_growth = 3.0;
+  double some_contact_growth = 2.0;
+  double measure_probe = 0.01;
+  double max_measure_change = 0.4;
+};
+
+/// Which equilibria are accepted as the end of a step.
+struct AcceptanceOptions {
+  double follow_below = 0.05;
+  double max_correction = 0.5;
+  double min_snap = 0.01;
+  double min_snap_fraction = 0.9;
+  double snap_length = 0.02;
+  double max_inverting = 0.01;
+  double max_residual = 0.01;
+  double long_fall = 0.2;
+};
+
+/// Where a path ends before its requested load state.
+struct TerminationOptions {
+  double min_move = 8e-5;
+  double min_contact_move = 1e-4;
+  int patience = 100;
+  int contact_patience = 250;
+  double min_progress = 0.02;
+  double contact_min_progress = 0.01;
+  double progress_factor = 2.0;
+  double min_slipping = 0.5;
+  int curve_failures = 2;
+};
+
+/// Checks for limit points between the ends of a step.
+struct SegmentCheckOptions {
+  double max_error_ahead = 0.1;
+  double max_error_at_an_end = 0.4;
+  double max_error_together = 0.2;
+  double max_middle_step = 0.05;
+  double min_move = 1e-3;
+  int max_halvings = 7;
+  int max_corrections = 60;
+  double rate_difference = 1e-3;
+  double middle_accuracy = 1e-3;
+};
+
+/// Arc-length continuation.
+struct ArcLengthOptions {
+  double first_step = 0.5;
+  double wanted_error = 0.1;
+  double max_error = 1.0;
+  double max_growth = 2.0;
+  double min_shortening = 0.1;
+  double max_shortening = 0.4;
+  double max_bend = 0.5;
+  double max_middle_step = 0.05;
+  double middle_accuracy = 1e-3;
+  double max_slope_error = 0.3;
+  double min_contraction = 0.5;
+  int max_corrections = 8;
+  int max_failures = 3;
+  int max_iterations = 60;
+  double min_step = 0.02;
+  double factor_difference = 1e-3;
+  double before_turn = 0.02;
+};
+
+/// Arc-length continuation past a turning point, with the option stable.
+struct BeyondTurnOptions {
+  int max_iterations = 300;
+  int max_failures = 8;
+  double min_step = 1e-4;
+  double min_load_factor = -1.0;
+};
+
+/// Continuation with the volume of a chamber or the length of a cable as the parameter.
+struct MeasureControlOptions {
+  double first_step = 0.02;
+  double growth = 1.6;
+  double max_first_step = 0.5;
+  double max_step = 0.6;
+  double min_step = 1e-5;
+  int max_steps = 200;
+  int max_failures = 6;
+  double maximum_slope = 0.01;
+  double bracket_margin = 0.05;
+  double slope_allowance = 1.5;
+  double before_maximum = 0.01;
+  double coarse_tolerance = 6000.0;
+  double whole_step = 0.9;
+  double max_extrapolation = 3.0;
+  double max_second_order = 0.5;
+};
+
+/// The branch beyond a limit point, along a measure.
+struct PostLimitOptions {
+  double first_step = 0.1;
+  double growth = 1.6;
+  double max_step = 0.5;
+  double min_step = 1e-4;
+  int max_steps = 200;
+  int max_failures = 6;
+  int min_points = 8;
+  double search_range = 10.0;
+  double load_tolerance = 1e-3;
+  int max_bisections = 20;
+};
+
+/// How unstable equilibria are left with the option stable.
+struct BucklingOptions {
+  int max_buckles = 20;
+  int max_descent_steps = 60;
+  double energy_tie = 1e-9;
+  double small_push = 0.003;
+  double medium_push = 0.02;
+  double large_push = 0.1;
+  double min_departure = 0.1;
+};
+
+/// The predictor.
+struct PredictionOptions {
+  double tangent_accuracy = 1e-3;
+  int tangent_rounds = 6;
+  double clear_fraction = 0.9;
+  double max_cut = 0.5;
+  double long_move = 0.05;
+  double min_fraction = 1e-3;
+  double second_order_move = 5e-3;
+  double max_remainder = 0.03;
+  int max_stored = 8;
+  double min_spacing = 0.2;
+  int max_compared = 1000;
+  double max_error = 0.3;
+  double max_error_tolerances = 100.0;
+};
+
+/// The tuned constants of path tracking.
+struct PathOptions {
+  StepSizeOptions step{};
+  AcceptanceOptions acceptance{};
+  TerminationOptions termination{};
+  SegmentCheckOptions segment_check{};
+  ArcLengthOptions arc_length{};
+  BeyondTurnOptions beyond_turn{};
+  MeasureControlOptions measure{};
+  PostLimitOptions post_limit{};
+  BucklingOptions buckling{};
+  PredictionOptions prediction{};
+};
+
+/// All tuned constants.
+struct SolverOptions {
+  PathOptions path{};
+};
+
+/// How the default of an option was found: it follows from a textbook or an estimate of rounding; it was measured, and
+/// decides how fast a path is or which one is found; or it was chosen for its order of magnitude.
+enum class OptionKind { derived, measured, order_of_magnitude };
+/// Admissible values: 0 < x < 1, 0 < x <= 1, x > 1, x > 0, a whole number of at least 1, any finite number.
+enum class OptionRange { reduction, fraction, growth, positive, count, any };
+
+/// The description of an option.
+struct OptionField {
+  const char* name;
+  const char* unit;  // "-": a ratio; "path": a fraction of the path; "diagonal": over that of the robot; ...
+  OptionRange range;
+  OptionKind kind;
+  const char* sentence;
+};
+
+/// The value of an option, with its group and its default.
+struct OptionValue {
+  std::string group;
+  OptionField field{};
+  double value = 0, standard = 0;
+};
+
+/// Returns all options in the order of their groups.
+[[nodiscard]] std::vector<OptionValue> list_options(const SolverOptions& options = {});
+/// Returns the options that differ from their defaults.
+[[nodiscard]] std::vector<OptionValue> changed_options(const SolverOptions& options);
+/// Returns the changed options as text, "step.max_turn = 20, ..."; "" where there are none.
+[[nodiscard]] std::string changes_text(const SolverOptions& options);
+
+/// Sets an option.
+///
+/// throws  InvalidInput on an unknown group or name, with the nearest one, and on a value that is not admissible
+void set_option(SolverOptions& options, const std::string& group, const std::string& name, double value);
+/// Throws InvalidInput where a value is not admissible.
+void check_options(const SolverOptions& options);
+/// Throws InvalidInput where a group is unknown, with the nearest one.
+void check_option_group(const std::string& group);
+
+/// Returns the tables of docs/following.md: Markdown, one for each group.
+[[nodiscard]] std::string option_tables();
+
+}  // namespace softkin
