@@ -25,7 +25,6 @@ RobotSpec strip(int cells, double length) {
 struct Bent {
   physical::Newton::Outcome outcome;
   physical::SolveRecord report;
-  std::vector<IterationRecord> history{};
   Points shape;
 };
 
@@ -40,8 +39,7 @@ Bent bend(const Model& model, Precision precision) {
   Team team(1);
   Bent bent;
   const ProgressCallback silent;
-  physical::Newton newton(system, work, team, {tolerance_mm(model), 1e-6, 200, true}, silent, bent.report,
-                          bent.history);
+  physical::Newton newton(system, work, team, {tolerance_mm(model), 1e-6, 200, true}, silent, bent.report);
   physical::Iterate at{model.rest, Eigen::VectorXd::Zero(1)};
   bent.outcome = newton.solve({Actuation::Constant(1, 0.99), 1}, {true}, physical::Newton::Policy::descend, false, at);
   bent.shape = at.positions;

@@ -158,6 +158,88 @@ struct PredictionOptions {
   double max_error_tolerances = 100.0;
 };
 
+/// Iterations and tolerances of Newton's method.
+struct ConvergenceOptions {
+  int max_iterations = 30;
+  int max_contact_iterations = 100;
+  int max_brief_iterations = 10;
+  double min_balance_gain = 0.7;
+  double constraint_tolerance = 1e-8;
+  double coarse_tolerance = 1e5;
+  double max_last_error = 0.02;
+  double slow_contraction = 0.5;
+  int few_modes = 2;
+  double poor_damping = 0.2;
+  int max_poor_steps = 8;
+  double no_contraction = 0.9;
+  int max_equal_steps = 12;
+  int max_descent_steps = 5;
+};
+
+/// Damping of Newton steps.
+struct LineSearchOptions {
+  double min_damping = 1e-3;
+  double halving = 0.5;
+  double runaway = 10.0;
+  double armijo = 1e-4;
+  double min_slope = 1e-4;
+  double max_rise = 1e-8;
+  double change_weight = 2.0;
+  double multiplier_weight = 0.01;
+  double max_extension = 64.0;
+};
+
+/// How the stiffness is made positive; shifts are over its mean diagonal.
+struct RegularisationOptions {
+  double slight_shift = 1e-7;
+  double clear_shift = 1.0;
+  double shift_growth = 30.0;
+  double shift_decay = 10.0;
+  double min_shift = 1e-5;
+  double min_wrinkled_shift = 1e-4;
+  double max_shift = 100.0;
+  double projected_growth = 10.0;
+};
+
+/// How long a factor serves, and when it is computed in double precision.
+struct RefactorisationOptions {
+  double max_distance = 1e-3;
+  double max_count_distance = 2e-4;
+  double max_contraction = 0.6;
+  int max_updates = 8;
+  double max_along = 0.5;
+  double cost = 6.0;
+  double much_rounded = 5e-3;
+  double rounded_steps = 100.0;
+  double suspect_contraction = 0.25;
+  double rounded_change = 0.15;
+  double refined_accuracy = 0.03;
+  double max_refined_error = 0.3;
+  int refinement_rounds = 6;
+};
+
+/// The lowest mode, and the stiffness along it.
+struct StabilityOptions {
+  double min_shift = 1e-9;
+  double max_shift = 1e3;
+  double close_shift = 1.1;
+  int max_inverse_iterations = 60;
+  double curvature_accuracy = 1e-6;
+  int softest_iterations = 3;
+  double difference = 1e-6;
+  double max_change = 0.25;
+};
+
+/// Derivatives of an equilibrium.
+struct DerivativeOptions {
+  int nearby_rounds = 8;
+  int exact_rounds = 3;
+  int friction_rounds = 40;
+  double accuracy_fraction = 0.3;
+  double max_rounding = 1e-6;
+  double slack_margin = 1e-9;
+};
+
 /// The tuned constants of path tracking.
 struct PathOptions {
   StepSizeOptions step{};
@@ -172,9 +254,20 @@ struct PathOptions {
   PredictionOptions prediction{};
 };
 
+/// The tuned constants of Newton's method and of its factors.
+struct NewtonOptions {
+  ConvergenceOptions convergence{};
+  LineSearchOptions line_search{};
+  RegularisationOptions regularisation{};
+  RefactorisationOptions factor{};
+  StabilityOptions stability{};
+  DerivativeOptions derivative{};
+};
+
 /// All tuned constants.
 struct SolverOptions {
   PathOptions path{};
+  NewtonOptions newton{};
 };
 
 /// How the default of an option was found: it follows from a textbook or an estimate of rounding; it was measured, and

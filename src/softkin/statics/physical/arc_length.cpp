@@ -93,8 +93,7 @@ bool ArcLength::correct(const Point& from, double whole, double tolerance, Point
     point.at.multipliers += change;
     corrector_.give_loads(there, point.at);
     const IterationRecord entry{.energy = balance.energy, .step_mm = move, .gradient_norm = balance.force.norm()};
-    record_.note_iteration(entry);
-    if (options_.keep_history) report_.history.push_back(entry);
+    record_.note_iteration(entry, options_.keep_history);
     if (move < tolerance) return true;
   }
   return false;

@@ -6,8 +6,9 @@ namespace softkin::physical {
 
 namespace {
 
-/// A factorisation is reused for shapes that are nearer than this fraction of the diagonal.
-constexpr double nearby = 1e-3;
+int max_iterations_of(const System& system, const ConvergenceOptions& options) {
+  return system.contact() || system.has_wrinkling() ? options.max_contact_iterations : options.max_iterations;
+}
 
 }  // namespace
 
@@ -16,12 +17,13 @@ Corrector::Corrector(const System& system, Workspace& work, Team& team, const Eq
     : system_(system),
       work_(work),
       team_(team),
+      tuning_(work.options),
       record_(record),
       report_(report),
       newton_(system, work, team,
-              {options.tolerance_mm, options.force_fraction, system.contact() || system.has_wrinkling() ? 100 : 30,
+              {options.tolerance_mm, options.force_fraction, max_iterations_of(system, work.options.newton.convergence),
                options.keep_history},
-              progress, record, report.history) {}
+              progress, record) {}
 
 /// Sets the given loads to those of the load state, whatever the prediction has: a prediction along a curved path of
 /// several commands misses them, and no equation would correct that.
@@ -55,7 +57,7 @@ Newton::Outcome Corrector::correct_softly(const LoadState& load_state, bool fall
   constexpr int max_iterations = 20;  // of failed attempts, after which no larger reach is tried
   const std::vector<bool> before = active;
   const Iterate begun = at;
-  const auto loosely = newton_.loosely(Newton::by_far);
+  const auto loosely = newton_.loosely(tuning_.newton.convergence.coarse_tolerance);
   auto outcome = Newton::Outcome::stuck;
   const int iterations = record_.iterations;
   for (double first = nearest; outcome == Newton::Outcome::stuck && first <= most; first *= finer) {
@@ -228,7 +230,8 @@ Judgement Corrector::judged() const {
 /// Is the last factorisation exact, stable and of a nearby shape?
 bool Corrector::factorised_nearby(const Points& shape) const {
   return work_.factored.exact && work_.saddle.spectrum().unstable == 0 && work_.factored.shape.rows() == shape.rows() &&
-         system_.largest_move(work_.factored.shape, shape) <= nearby * system_.model().diagonal_mm;
+         system_.largest_move(work_.factored.shape, shape) <=
+             tuning_.newton.factor.max_distance * system_.model().diagonal_mm;
 }
 
 /// Factorises at an equilibrium, for the predictor. Returns the number of unstable modes; -1: forces are not finite.

@@ -103,6 +103,7 @@ class Corrector {
   const System& system_;
   Workspace& work_;
   Team& team_;
+  const SolverOptions& tuning_;
   SolveRecord& record_;
   SolveReport& report_;
   Newton newton_;

@@ -9,24 +9,13 @@
 
 namespace softkin::physical {
 
-namespace {
-
-/// Iterations with the factor of a shape nearby that cost about as much as a new factor, and with a new one.
-constexpr int inexact_rounds = 8, exact_rounds = 3;
-/// The same with friction, which no factor contains completely.
-constexpr int friction_rounds = 40;
-/// Fraction of the accuracy required of the preconditioned residual, which may be a third too small.
-constexpr double accuracy_fraction = 0.3;
-/// Largest relative part of a solution by rounding, with the factor of the stiffness itself; above it the stiffness is
-/// singular.
-constexpr double singular = 1e-6;
-/// A cable without tension is constrained if its length is within this fraction of the largest one.
-constexpr double verge = 1e-9;
-
-}  // namespace
-
 Derivative::Derivative(const System& system, Workspace& work, double accuracy, Team& team)
-    : system_(system), work_(work), accuracy_(accuracy), team_(team), active_(system.actuators()) {}
+    : system_(system),
+      work_(work),
+      accuracy_(accuracy),
+      tuning_(work.options.newton.derivative),
+      team_(team),
+      active_(system.actuators()) {}
 
 /// Collects the constrained measures: of chambers, and of cables that are in tension or at their largest length.
 void Derivative::hold(const Iterate& at, const LoadState& load_state) {
@@ -34,7 +23,7 @@ void Derivative::hold(const Iterate& at, const LoadState& load_state) {
     if (!system_.measures().constrains(a)) continue;
     active_[a] = !system_.measures().only_pulls(a) || at.multipliers[a] > 0 ||
                  system_.measures().value(a, at.positions) >=
-                     (1 - verge) * system_.measures().target(a, load_state.actuation, at.multipliers[a]);
+                     (1 - tuning_.slack_margin) * system_.measures().target(a, load_state.actuation, at.multipliers[a]);
     if (active_[a]) held_.push_back(a);
   }
   hold_friction(system_, at, work_, team_);
@@ -87,15 +76,15 @@ bool Derivative::solve(const Iterate& at, bool exact_factor) {
   Bordered equations(system_, work_, team_);
   equations.set(at, balance_);
   const bool symmetric = system_.symmetric();
-  const int rounds = !symmetric ? friction_rounds : exact_factor ? exact_rounds : inexact_rounds;
+  const int rounds = !symmetric ? tuning_.friction_rounds : exact_factor ? tuning_.exact_rounds : tuning_.nearby_rounds;
   // the guess is the last derivative, of a shape nearby; with an exact factor it would hide the rounding of that
   const Slopes& last = work_.tangents;
   const bool like_last = by_commands_ && !exact_factor && last.at.rows() == at.positions.rows() && last.held == held_;
   const Columns guess = like_last ? Columns{last.moves, last.multipliers} : Columns{};
   const linear::Remainder remainder =
-      equations.solve(right_, accuracy_fraction * accuracy_, rounds, found_, like_last ? &guess : nullptr);
-  const bool rounded = exact_factor && symmetric && !(remainder.apart <= singular);
-  return remainder.left <= accuracy_fraction * accuracy_ && !rounded;
+      equations.solve(right_, tuning_.accuracy_fraction * accuracy_, rounds, found_, like_last ? &guess : nullptr);
+  const bool rounded = exact_factor && symmetric && !(remainder.apart <= tuning_.max_rounding);
+  return remainder.left <= tuning_.accuracy_fraction * accuracy_ && !rounded;
 }
 
 Points Derivative::positions(const Iterate& at, Index column) const {

@@ -78,6 +78,7 @@ class Derivative {
   const System& system_;
   Workspace& work_;
   double accuracy_;
+  const DerivativeOptions& tuning_;
   Team& team_;
   Balance balance_;  // at the shape
   std::vector<bool> active_;

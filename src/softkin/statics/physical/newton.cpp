@@ -8,43 +8,20 @@
 
 namespace softkin::physical {
 
-namespace {
-
-/// Shifts that make a slightly indefinite stiffness positive definite, over its mean diagonal: the first, and the upper
-/// bound.
-constexpr double slight_shift = 1e-7, clear_shift = 1;
-/// Factor from an insufficient shift to the next one, and divisor from the last shift at a shape to the first at the
-/// next.
-constexpr double stiffer = 30, softer = 10;
-/// First and last shift of a stiffness that projection element by element did not make positive; sheets that wrinkle
-/// start with a larger one.
-constexpr double min_shift = 1e-5, min_wrinkled_shift = 1e-4, max_shift = 100;
-/// If steps are small but the residual is not, each further iteration must reduce the residual by this factor.
-constexpr double worthwhile_balance = 0.7;
-/// Largest distance from the factorised shape at which its number of negative pivots is reported, over the diagonal.
-constexpr double near_factor = 2e-4;
-/// Maximum number of iterations, and so of factorisations, of a brief solve.
-constexpr int max_briefly = 10;
-/// Rounding may be why a solve failed if its last step was at most this many tolerances.
-constexpr double near_tolerance = 100;
-
-}  // namespace
-
 Newton::Newton(const System& system, Workspace& work, Team& team, const Settings& settings,
-               const ProgressCallback& progress, SolveRecord& record, std::vector<IterationRecord>& history)
+               const ProgressCallback& progress, SolveRecord& record)
     : system_(system),
       work_(work),
       team_(team),
       settings_(settings),
       progress_(progress),
-      record_(record),
-      history_(history) {}
+      tuning_(work.options.newton),
+      record_(record) {}
 
 void Newton::note_iteration(double step_mm) {
   const IterationRecord entry{.energy = balance_.energy, .step_mm = step_mm, .gradient_norm = balance_.force.norm()};
   ending_.step_mm = step_mm;
-  record_.note_iteration(entry);
-  if (settings_.keep_history) history_.push_back(entry);
+  record_.note_iteration(entry, settings_.keep_history);
 }
 
 bool Newton::goes_on() const {
@@ -80,18 +57,21 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
   ending_.rounded = ending_.rounded || factor_.doubtful;
   const Precision closer = factor_.doubtful ? Precision::good : usual;
   if (end == Advance::made || policy != Policy::descend) return Advance::made;
-  for (double shift = std::max(slight_shift, factor_.shift); pace_.slow && end == Advance::none && shift < clear_shift;
-       shift *= stiffer) {
+  for (double shift = std::max(tuning_.regularisation.slight_shift, factor_.shift);
+       pace_.slow && end == Advance::none && shift < tuning_.regularisation.clear_shift;
+       shift *= tuning_.regularisation.shift_growth) {
     ++record_.shifts;
     // compressed sheets have many buckling modes, none of which leads to the wrinkled shape
     end = attempted(system_.has_wrinkling() ? Stiffness::projected : Stiffness::exact, shift, closer);
-    factor_.shift = shift / softer;
+    factor_.shift = shift / tuning_.regularisation.shift_decay;
   }
   if (end != Advance::none) return end;
   ++record_.projections;
   end = attempted(Stiffness::projected, 0, closer);
-  for (double shift = system_.has_wrinkling() ? min_wrinkled_shift : min_shift;
-       end == Advance::none && shift < max_shift; shift *= 10) {
+  for (double shift = system_.has_wrinkling() ? tuning_.regularisation.min_wrinkled_shift
+                                              : tuning_.regularisation.min_shift;
+       end == Advance::none && shift < tuning_.regularisation.max_shift;
+       shift *= tuning_.regularisation.projected_growth) {
     ++record_.shifts;
     end = attempted(Stiffness::projected, shift, closer);
   }
@@ -114,11 +94,9 @@ double Newton::merit(const Balance& balance) const {
 /// Sets the weights of violated constraints from their multipliers and the changes of these in a step. Adds their part
 /// of the slope of the merit function along the step, which satisfies the constraints.
 void Newton::Price::set(const Eigen::VectorXd& multipliers_before, const Eigen::VectorXd& changes,
-                        const Eigen::VectorXd& missed, double& slope) {
-  constexpr double beyond = 2;    // times the change of the multipliers
-  constexpr double least = 0.01;  // times the multipliers
+                        const Eigen::VectorXd& missed, const LineSearchOptions& by, double& slope) {
   multipliers = multipliers_before;
-  above = beyond * changes.cwiseAbs() + least * multipliers.cwiseAbs();
+  above = by.change_weight * changes.cwiseAbs() + by.multiplier_weight * multipliers.cwiseAbs();
   slope -= above.dot(missed.cwiseAbs());
 }
 
@@ -134,7 +112,7 @@ double Newton::weigh_constraints(const Iterate& at) {
     multipliers[a] = system_.measures().sign(a) * at.multipliers[a];
     changes[a] = step_.change[a];
   }
-  prices_.constraints.set(multipliers, changes, balance_.constraint, slope);
+  prices_.constraints.set(multipliers, changes, balance_.constraint, tuning_.line_search, slope);
   if (!system_.pressures()) return slope;
   // pressures are the multipliers of the volume constraints of mixed elements
   const std::vector<Index>& unknowns = system_.freedoms().scalar_unknowns();
@@ -143,7 +121,7 @@ double Newton::weigh_constraints(const Iterate& at) {
   Eigen::VectorXd pressures = Eigen::VectorXd::Zero(step_.move.size()), more = pressures;
   system_.freedoms().reduce(at.positions, at.positions, pressures);
   system_.freedoms().reduce(moves, at.positions, more);
-  prices_.volumes.set(pressures(unknowns), more(unknowns), balance_.force(unknowns), slope);
+  prices_.volumes.set(pressures(unknowns), more(unknowns), balance_.force(unknowns), tuning_.line_search, slope);
   return slope;
 }
 
@@ -179,17 +157,17 @@ bool Newton::balanced() const {
 /// The steps are small enough. Is the residual still too large, and do more iterations reduce it?
 bool Newton::improve_balance() {
   const double before = std::exchange(imbalance_, system_.imbalance(balance_, work_, team_)).residual;
-  return !balanced() && imbalance_.residual < worthwhile_balance * before;
+  return !balanced() && imbalance_.residual < tuning_.convergence.min_balance_gain * before;
 }
 
 /// The same question for the constraints on commanded lengths and volumes.
 bool Newton::improve_constraints() {
-  constexpr double promised = 1e-8;  // of the measure at rest
   double missed = 0;
   for (Index a = 0; a < system_.actuators(); ++a)
     if ((*requested_.active)[a])
       missed = std::max(missed, std::abs(balance_.constraint[a]) / system_.measures().rest(a));
-  return missed > ending_.loose * promised && missed < worthwhile_balance * std::exchange(missed_, missed);
+  return missed > ending_.loose * tuning_.convergence.constraint_tolerance &&
+         missed < tuning_.convergence.min_balance_gain * std::exchange(ending_.missed, missed);
 }
 
 /// Sets the pressure of a sealed gas to that of its volume, so that the reported values satisfy the gas law to the last
@@ -208,7 +186,7 @@ void Newton::correct_gases(Iterate& at) const {
 bool Newton::doubts_stability(const Iterate& at) {
   if (factor_.negative != 0 && factor_.doubtful) return true;
   const double moved = (at.positions - factor_.shape).rowwise().norm().maxCoeff();
-  if (!(moved > near_factor * system_.model().diagonal_mm)) return false;
+  if (!(moved > tuning_.factor.max_count_distance * system_.model().diagonal_mm)) return false;
   if (factor_.negative != 0) return true;
   const bool as_stiff =
       as_stiff_as_factorised(system_, at, *requested_.load_state, *requested_.active, balance_, work_, team_);
@@ -234,7 +212,8 @@ Newton::Outcome Newton::solve(const LoadState& load_state, const std::vector<boo
   if (outcome != Outcome::stuck) return outcome;
   const bool in_single = record_.factorisations - record_.factorisations_in_double != before && !system_.contact();
   // with sheets that wrinkle rounding may also be why an intermediate solve with a relaxed tolerance failed
-  const double near = near_tolerance * (system_.has_wrinkling() ? tolerance_mm() : settings_.tolerance_mm);
+  const double near =
+      tuning_.factor.rounded_steps * (system_.has_wrinkling() ? tolerance_mm() : settings_.tolerance_mm);
   const bool rounded = ending_.rounded || ending_.step_mm < near;
   if (!in_single || ending_.brief || !rounded) return outcome;
   at = start_;
@@ -246,7 +225,7 @@ Newton::Outcome Newton::solve(const LoadState& load_state, const std::vector<boo
 bool Newton::rests() {
   imbalance_ = system_.imbalance(balance_, work_, team_);
   if (!(imbalance_.residual <= imbalance_.rounding) || !balance_.constraint.isZero(0)) return false;
-  missed_ = 0;
+  ending_.missed = 0;
   factor_.negative = 0;
   return true;
 }
@@ -269,8 +248,9 @@ Newton::Outcome Newton::descend(Policy policy, bool factorised, Iterate& at) {
   Advance advance = Advance::made;
   double damping = 1;
   if (system_.has_wrinkling() && system_.layers()->flat(at.positions) && rests()) return Outcome::converged;
-  imbalance_.residual = missed_ = std::numeric_limits<double>::infinity();
-  const int most = ending_.brief ? std::min(settings_.max_iterations, max_briefly) : settings_.max_iterations;
+  imbalance_.residual = ending_.missed = std::numeric_limits<double>::infinity();
+  const int most = ending_.brief ? std::min(settings_.max_iterations, tuning_.convergence.max_brief_iterations)
+                                 : settings_.max_iterations;
   for (int iteration = 0; advance == Advance::made && iteration < most; ++iteration) {
     if (factorised && iteration == 0) {
       factor_.negative = 0;

@@ -19,7 +19,7 @@ class Newton {
   struct Settings {
     double tolerance_mm = 0;       // largest move of a vertex by a step
     double force_fraction = 1e-6;  // largest residual over the largest internal force at a vertex
-    int max_iterations = 30;
+    int max_iterations = ConvergenceOptions().max_iterations;
     bool keep_history = true;
   };
   /// unmet: converged to a shape that violates active constraints, as they contradict each other or cannot be
@@ -27,7 +27,7 @@ class Newton {
   enum class Outcome { converged, unstable, stuck, unmet, interrupted, blocked, too_far };
 
   Newton(const System& system, Workspace& work, Team& team, const Settings& settings, const ProgressCallback& progress,
-         SolveRecord& record, std::vector<IterationRecord>& history);
+         SolveRecord& record);
 
   /// descend: with a stiffness made positive where it is not, towards stable equilibria. follow: with the exact
   /// stiffness, towards the nearest equilibrium, stable or not. near: like descend, but the first step uses the exact
@@ -41,8 +41,6 @@ class Newton {
   /// While the returned object exists, the tolerances of a solve are multiplied by this factor; for solves that only
   /// prepare the next one.
   [[nodiscard]] Temporarily<double> loosely(double times) { return {ending_.loose, times}; }
-  /// Factor of the tolerances of a coarse solve, which only gives an initial guess for the next one.
-  static constexpr double by_far = 1e5;
   /// Does the caller let the solve continue? Polled before operations that take as long as many iterations.
   [[nodiscard]] bool goes_on() const;
 
@@ -110,7 +108,7 @@ class Newton {
     Eigen::VectorXd above{};        // weights of the magnitudes of the violations
 
     void set(const Eigen::VectorXd& multipliers_before, const Eigen::VectorXd& changes, const Eigen::VectorXd& missed,
-             double& slope);
+             const LineSearchOptions& by, double& slope);
   };
   /// The weights of the actuators' constraints and of the volume constraints of mixed elements.
   struct Prices {
@@ -123,6 +121,7 @@ class Newton {
     bool rounded = false;  // may rounding be why the last one failed
     const char* why = "";  // why the last one failed
     double step_mm = 0;    // the last step of the current one; infinite: none yet
+    double missed = 0;     // its largest constraint violation, over the measure at rest [-]
   };
 
   void begin_steps();
@@ -164,8 +163,8 @@ class Newton {
   Team& team_;
   Settings settings_;
   const ProgressCallback& progress_;
+  const NewtonOptions& tuning_;
   SolveRecord& record_;
-  std::vector<IterationRecord>& history_;
   Requested requested_;
   Balance balance_, trial_balance_;  // at the iterate, at the one being tried
   Step step_, next_;
@@ -176,7 +175,6 @@ class Newton {
   Pace pace_;
   Factored factor_;
   Imbalance imbalance_;
-  double missed_ = 0;  // the largest constraint violation, over its rest measure [-]
 };
 
 }  // namespace softkin::physical

@@ -9,38 +9,14 @@
 
 namespace softkin::physical {
 
-namespace {
-
-constexpr double min_damping = 1e-3;
-/// Multiple of the diagonal; a step that moves a vertex farther than this has diverged.
-constexpr double runaway = 10;
-/// Fraction of the merit function's slope by which a step must lower it.
-constexpr double worthwhile_descent = 1e-4;
-/// Fraction of the steepest slope; without contact a flatter slope is not used as a criterion.
-constexpr double worthwhile_slope = 1e-4;
-/// Relative rise of the merit function that is tolerated.
-constexpr double max_rise = 1e-8;
-/// Quasi-Newton steps with one factor: the largest ratio of the lengths of successive steps, and the number of steps
-/// that cost as much as a factorisation.
-constexpr double worthwhile_contraction = 0.6;
-constexpr int max_updates = 8;
-/// Largest fraction of a step that may remain along its direction.
-constexpr double max_along = 0.5;
-/// Relative change of x . M x by rounding from which on rounding may be why steps shrink too little.
-constexpr double much_rounded = 5e-3;
-/// Cost of a factorisation, in steps with an existing one.
-constexpr double cost_of_factor = 6;
-
-}  // namespace
-
 /// Is a step the last? The remaining error is the same fraction of the step as the step is of the one before, or zero
 /// with a factor in double precision.
 ///
 /// before  largest move of the undamped step before it; 0: none
 bool Newton::last(const Step& step, double before) const {
-  constexpr double max_left = 0.02;  // of the tolerance
   const double size = step.size.largest, fraction = before > 0 ? std::min(1.0, size / before) : 1;
-  return size < tolerance_mm() && (work_.saddle.factor().in_double() || fraction * size < max_left * tolerance_mm());
+  return size < tolerance_mm() &&
+         (work_.saddle.factor().in_double() || fraction * size < tuning_.convergence.max_last_error * tolerance_mm());
 }
 
 /// Moves by `damping` times a step, or less where surfaces would pass through each other. False where the law has no
@@ -62,13 +38,12 @@ bool Newton::attempt_whole(const Step& step, const Iterate& from) {
 ///
 /// returns  relative difference of the factor's own step from it; 0 where the refinement fails
 double Newton::refine(const Balance& balance, const Iterate& at, Step& step) {
-  constexpr double accuracy = 0.03, worthwhile = 0.3;
-  constexpr int rounds = 6;
   Bordered equations(system_, work_, team_);
   equations.set_factorised(at);
   Step found;
-  const linear::Remainder remainder = equations.step(balance, accuracy, rounds, found.move, found.change);
-  if (!(remainder.left < worthwhile)) return 0;
+  const linear::Remainder remainder = equations.step(balance, tuning_.factor.refined_accuracy,
+                                                     tuning_.factor.refinement_rounds, found.move, found.change);
+  if (!(remainder.left < tuning_.factor.max_refined_error)) return 0;
   found.size = system_.freedoms().size_of(found.move, at.positions);
   step = std::move(found);
   return remainder.apart;
@@ -77,12 +52,11 @@ double Newton::refine(const Balance& balance, const Iterate& at, Step& step) {
 /// Refines step_ where rounding of the factor may be why the next step is hardly shorter. If it is, all later steps
 /// with this factor are refined, and the next factors are in double precision.
 bool Newton::refine_first(const Iterate& at) {
-  constexpr double slow = 0.25, much = 0.15;
   if (factor_.looked_at || work_.saddle.factor().in_double() || system_.contact() || system_.tendons().any())
     return false;
-  if (next_.size.mean < slow * step_.size.mean) return false;
+  if (next_.size.mean < tuning_.factor.suspect_contraction * step_.size.mean) return false;
   factor_.looked_at = true;
-  factor_.refines = refine(balance_, at, step_) > much;
+  factor_.refines = refine(balance_, at, step_) > tuning_.factor.rounded_change;
   if (factor_.refines) work_.saddle.factor().distrust();
   ending_.rounded = ending_.rounded || factor_.refines;
   return factor_.refines;
@@ -105,30 +79,29 @@ void Newton::find(const Balance& balance, const Iterate& at, Step& step) {
 /// resistance. Else they lower the merit function alone, as steps with a projected stiffness do where there is no
 /// equilibrium.
 bool Newton::stagnates(double damping) {
-  constexpr double poor = 0.2, same = 0.9;
-  constexpr int max_poor = 8, max_same = 12, max_downhill = 5;  // in a row
-  pace_.poor = damping < poor ? pace_.poor + 1 : 0;
-  pace_.same = damping == 1 && next_.size.mean > same * step_.size.mean ? pace_.same + 1 : 0;
-  if (!system_.kinked()) return pace_.downhill >= max_downhill;
-  return pace_.poor >= max_poor || (has_friction(work_) && pace_.same >= max_same);
+  pace_.poor = damping < tuning_.convergence.poor_damping ? pace_.poor + 1 : 0;
+  pace_.same =
+      damping == 1 && next_.size.mean > tuning_.convergence.no_contraction * step_.size.mean ? pace_.same + 1 : 0;
+  if (!system_.kinked()) return pace_.downhill >= tuning_.convergence.max_descent_steps;
+  return pace_.poor >= tuning_.convergence.max_poor_steps ||
+         (has_friction(work_) && pace_.same >= tuning_.convergence.max_equal_steps);
 }
 
 /// Detects slow convergence with a stiffness that was projected element by element. Where few modes are unstable, it is
 /// far too stiff along these: many steps follow, each nearly as long as the one before.
 void Newton::note_pace(double damping) {
-  constexpr double slow = 0.5;
-  constexpr int few = 2;
   if (factor_.negative == 0)
     pace_.slow = system_.has_wrinkling();
-  else if (system_.contact() && factor_.negative <= few && damping == 1)
-    pace_.slow |= next_.size.mean > slow * step_.size.mean;
+  else if (system_.contact() && factor_.negative <= tuning_.convergence.few_modes && damping == 1)
+    pace_.slow |= next_.size.mean > tuning_.convergence.slow_contraction * step_.size.mean;
 }
 
 /// Returns the factor of a damping that was too large: with it a quadratic model of the residual is just good enough.
 double Newton::shorter(double damping) const {
-  if (system_.contact() || system_.has_wrinkling() || !std::isfinite(next_.size.mean)) return 0.5;
+  if (system_.contact() || system_.has_wrinkling() || !std::isfinite(next_.size.mean))
+    return tuning_.line_search.halving;
   const double residue = (next_.move - (1 - damping) * step_.move).norm() / step_.move.norm();
-  return std::min(0.5, damping / (2 * residue));
+  return std::min(tuning_.line_search.halving, damping / (2 * residue));
 }
 
 /// Makes a Newton step, damped until the simplified step that follows it is shorter. next_ becomes that step.
@@ -149,18 +122,19 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
                          !(work_.contacts && work_.contacts->friction_follows);
   double slope = potential ? weigh_constraints(at) : 0;
   pace_.steepest = std::min(pace_.steepest, slope);
-  if (!system_.contact() && !system_.has_wrinkling() && slope > worthwhile_slope * pace_.steepest) slope = 0;
+  if (!system_.contact() && !system_.has_wrinkling() && slope > tuning_.line_search.min_slope * pace_.steepest)
+    slope = 0;
   const double before = slope < 0 ? merit(balance_) : 0;
   for (;;) {
-    double factor = 0.5;
+    double factor = tuning_.line_search.halving;
     if (attempt(step_, damping, at)) {
       if (last(step_, 0)) return accept(damping * step_.size.largest, damping == 1, at);
       const double rise = slope < 0 ? merit(trial_balance_) - before : 0;
-      const bool lower = rise < worthwhile_descent * damping * slope;
+      const bool lower = rise < tuning_.line_search.armijo * damping * slope;
       // with contact the simplified step after a damped one is no criterion
       if (lower && system_.contact() && damping < 1) break;
       // up to rounding: with contact, steps that get shorter while the merit function rises go round in circles
-      if (!(system_.contact() && rise > max_rise * std::abs(before))) {
+      if (!(system_.contact() && rise > tuning_.line_search.max_rise * std::abs(before))) {
         find(trial_balance_, trial_, next_);
         if (refine_first(at)) continue;
         // near a singular stiffness the next step may be long although the residual is small
@@ -172,12 +146,13 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
       }
     }
     damping *= factor;
-    if (!(damping >= min_damping)) {
+    if (!(damping >= tuning_.line_search.min_damping)) {
       ending_.rounded = true;  // near a singular stiffness it may be by rounding, and nothing else shows it
       return ends("no length of a step comes nearer");
     }
   }
-  if (damping * step_.size.largest > runaway * system_.model().diagonal_mm) return ends("the shape runs away");
+  if (damping * step_.size.largest > tuning_.line_search.runaway * system_.model().diagonal_mm)
+    return ends("the shape runs away");
   note_pace(damping);
   if (stagnates(damping)) return ends("step after step hardly comes nearer");
   if (slope < 0 && damping == 1 && !work_.factored.exact && (system_.contact() || system_.has_wrinkling()))
@@ -188,12 +163,11 @@ Newton::Advance Newton::damped_step(Iterate& at, double& damping) {
 /// Away from a saddle point, a step with a projected stiffness leaves nearly its own length in the same direction.
 /// Doubles the step as long as that lowers the merit function. Multipliers are those of the step.
 void Newton::lengthen(double& damping) {
-  constexpr double longest = 64;
-  if (!(step_.move.dot(next_.move) > max_along * step_.move.squaredNorm())) return;
+  if (!(step_.move.dot(next_.move) > tuning_.factor.max_along * step_.move.squaredNorm())) return;
   Step on = step_;
   on.change.setZero();
   double lowest = merit(trial_balance_);
-  while (damping < longest) {
+  while (damping < tuning_.line_search.max_extension) {
     Iterate nearer = trial_;
     double more = damping;
     const bool lower = attempt(on, more, nearer) && more == damping && merit(trial_balance_) < lowest;
@@ -211,7 +185,7 @@ void Newton::lengthen(double& damping) {
 bool Newton::update_next() {
   const double square = step_.move.squaredNorm(), part = step_.move.dot(next_.move) / square;
   const double size = next_.size.mean / step_.size.mean;
-  if (!(part < max_along && size < worthwhile_contraction * (1 - part))) return false;
+  if (!(part < tuning_.factor.max_along && size < tuning_.factor.max_contraction * (1 - part))) return false;
   const double scale = 1 / (square * (1 - part));
   secants_.push_back({step_.move, scale * next_.move, scale * next_.change});
   next_.move /= 1 - part;
@@ -227,9 +201,9 @@ bool Newton::update_next() {
 Newton::Advance Newton::quasi_newton_steps(Iterate& at) {
   linear::MixedLdlt& factor = work_.saddle.factor();
   const auto slow = [&] {
-    if (factor.rounded() > much_rounded && !system_.contact()) factor.distrust();
+    if (factor.rounded() > tuning_.factor.much_rounded && !system_.contact()) factor.distrust();
   };
-  for (int made = 1; made <= max_updates; ++made) {
+  for (int made = 1; made <= tuning_.factor.max_updates; ++made) {
     if (!update_next()) {
       slow();
       break;
@@ -267,9 +241,9 @@ Newton::Advance Newton::step_to_stable(Iterate& at, double& damping) {
 /// Do steps shrink so fast that a new factor costs more than they do?
 bool Newton::shrink_fast() const {
   const double rate = next_.size.largest / step_.size.largest;
-  if (!(rate < worthwhile_contraction)) return false;
+  if (!(rate < tuning_.factor.max_contraction)) return false;
   const double left = std::log(tolerance_mm() / next_.size.largest) / std::log(rate);
-  return left < cost_of_factor;
+  return left < tuning_.factor.cost;
 }
 
 /// Steps with the factor of a shape close by, as long as they shrink fast enough.

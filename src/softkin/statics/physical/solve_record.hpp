@@ -21,13 +21,15 @@ struct SolveRecord {
   int buckled = 0;                                    // number of unstable equilibria left
   double buckled_mm = 0;                              // by the longest of these displacements
   LoadBranch branch{};                                // traced by a measure
+  std::vector<IterationRecord> history{};             // of every iteration, where requested
 
   /// Adds a step of Newton's method or of arc-length continuation.
-  void note_iteration(const IterationRecord& iteration) {
+  void note_iteration(const IterationRecord& iteration, bool keep) {
     ++iterations;
     energy = iteration.energy;
     step_mm = iteration.step_mm;
     gradient_norm = iteration.gradient_norm;
+    if (keep) history.push_back(iteration);
   }
   /// Adds a factorisation of the stiffness, perhaps in double precision.
   void note_factorisation(bool in_double) {
@@ -62,6 +64,7 @@ struct SolveRecord {
     report.physical.buckled = buckled;
     report.physical.buckled_mm = buckled_mm;
     report.physical.branch = branch;
+    report.history = history;
   }
 };
 

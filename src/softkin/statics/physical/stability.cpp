@@ -6,29 +6,15 @@
 
 namespace softkin::physical {
 
-namespace {
-
-// Shifts are relative to the mean diagonal of the stiffness.
-constexpr double min_shift = 1e-9, max_shift = 1e3;
-constexpr double close_shift = 1.1;  // relative to the largest shift that is not enough
-constexpr int max_inverse_iterations = 60;
-constexpr double accuracy = 1e-6;  // relative change of the curvature
-
-// Inverse iterations that approximate the softest change of shape, the trial move along it relative to the diagonal,
-// and the relative change of its curvature that is tolerated.
-constexpr int soft_iterations = 3;
-constexpr double difference = 1e-6, as_stiff = 0.25;
-
-}  // namespace
-
 bool as_stiff_as_factorised(const System& system, const Iterate& at, const LoadState& load_state,
                             const std::vector<bool>& active, const Balance& balance, Workspace& work, Team& team) {
+  const StabilityOptions& options = work.options.newton.stability;
   if (!work.factored.softest) {
     Balance right;
     right.constraint = Eigen::VectorXd::Zero(system.actuators());
     Eigen::VectorXd next, multipliers;
     Workspace::Softest softest{unsymmetric(system.freedoms().size()).normalized(), 0};
-    for (int i = 0; i < soft_iterations; ++i) {
+    for (int i = 0; i < options.softest_iterations; ++i) {
       right.force = -softest.direction;
       system.drop_pressures(right.force);
       work.saddle.step(right, next, multipliers, team);
@@ -42,7 +28,7 @@ bool as_stiff_as_factorised(const System& system, const Iterate& at, const LoadS
   const Eigen::VectorXd& direction = work.factored.softest->direction;
   Iterate beside = at;
   const double largest = system.freedoms().size_of(direction, at.positions).largest;
-  const double reach = difference * system.model().diagonal_mm / largest;
+  const double reach = options.difference * system.model().diagonal_mm / largest;
   system.freedoms().move(direction, reach, beside.positions);
   Balance there;
   system.evaluate(beside, load_state, active, work, there, team);
@@ -53,11 +39,12 @@ bool as_stiff_as_factorised(const System& system, const Iterate& at, const LoadS
     if (active[a] && balance.compliance[a] > 0)
       curvature += std::pow((there.constraint[a] - balance.constraint[a]) / reach, 2) / balance.compliance[a];
   const double expected = work.factored.softest->curvature;
-  return std::abs(curvature - expected) <= as_stiff * expected;
+  return std::abs(curvature - expected) <= options.max_change * expected;
 }
 
 LowestMode lowest_mode(const System& system, const Iterate& at, const LoadState& load_state,
                        const std::vector<bool>& active, Workspace& work, Team& team, SolveRecord& record) {
+  const StabilityOptions& options = work.options.newton.stability;
   Balance balance;
   system.evaluate(at, load_state, active, work, balance, team);
   double mean = 0;
@@ -73,12 +60,12 @@ LowestMode lowest_mode(const System& system, const Iterate& at, const LoadState&
   mode.unstable = negative(0);
   mode.mean = mean;
   if (mode.unstable == 0) return mode;
-  double low = 0, high = min_shift;
+  double low = 0, high = options.min_shift;
   for (; negative(high) > 0; high *= 10) {
     low = high;
-    if (high > max_shift) return mode;
+    if (high > options.max_shift) return mode;
   }
-  while (low > 0 && high > close_shift * low) {
+  while (low > 0 && high > options.close_shift * low) {
     const double middle = std::sqrt(low * high);
     (negative(middle) > 0 ? low : high) = middle;
   }
@@ -89,13 +76,13 @@ LowestMode lowest_mode(const System& system, const Iterate& at, const LoadState&
   Eigen::VectorXd vector = unsymmetric(system.freedoms().size()), next, multipliers;
   system.drop_pressures(vector);
   vector.normalize();
-  for (int i = 0; i < max_inverse_iterations; ++i) {
+  for (int i = 0; i < options.max_inverse_iterations; ++i) {
     right.force = -vector;
     work.saddle.step(right, next, multipliers, team);
     system.drop_pressures(next);
     const double curvature = 1 / vector.dot(next) - high * mean;
     vector = next.normalized();
-    if (i > 2 && std::abs(curvature - mode.curvature) < accuracy * std::abs(curvature)) break;
+    if (i > 2 && std::abs(curvature - mode.curvature) < options.curvature_accuracy * std::abs(curvature)) break;
     mode.curvature = curvature;
   }
   Index largest = 0;
@@ -126,10 +113,11 @@ double lagrangian(const System& system, const LoadState& load_state, const Balan
 
 Descent step_down(const System& system, const LoadState& load_state, const std::vector<bool>& active, double& shift,
                   Iterate& at, Workspace& work, Team& team) {
+  const StabilityOptions& options = work.options.newton.stability;
   Descent down;
   Balance balance, there;
   Eigen::VectorXd step, change;
-  for (; shift < max_shift; shift *= 4) {
+  for (; shift < options.max_shift; shift *= 4) {
     system.evaluate(at, load_state, active, work, balance, team);
     ++down.factorisations;
     const int modes = system.factorise(at, load_state, active, balance, {System::Stiffness::exact, shift}, work, team);
@@ -147,7 +135,7 @@ Descent step_down(const System& system, const LoadState& load_state, const std::
           lagrangian(system, load_state, balance, at.positions, at.positions, at.multipliers)))
       continue;
     at = std::move(trial);
-    shift = std::max(min_shift, shift / 4);
+    shift = std::max(options.min_shift, shift / 4);
     down.lower = true;
     break;
   }
