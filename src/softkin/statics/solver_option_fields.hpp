@@ -621,6 +621,60 @@ void visit_fields(Options& options, const Visit& visit) {
         options.slack_margin);
 }
 
+template <OptionsOf<ContactOptions> Options, class Visit>
+void visit_fields(Options& options, const Visit& visit) {
+  using enum OptionRange;
+  using enum OptionKind;
+  visit(OptionField{"soft_modulus", "-", positive, measured,
+                    "The soft contact that predicts first contact has this multiple of the modulus of the scene."},
+        options.soft_modulus);
+  visit(OptionField{"soft_reach", "contact distance", growth, measured, "This is the final range of the soft contact."},
+        options.soft_reach);
+  visit(OptionField{"soft_reduction", "-", growth, measured, "Its range shrinks by this factor from round to round."},
+        options.soft_reduction);
+  visit(OptionField{"fall_reach", "diagonal", positive, order_of_magnitude,
+                    "This is its largest range for falling bodies, where a smaller one shortens steps to nothing."},
+        options.fall_reach);
+  visit(OptionField{"max_soft_iterations", "iterations", count, order_of_magnitude,
+                    "After so many iterations of failed rounds no larger range is tried."},
+        options.max_soft_iterations);
+  visit(OptionField{"linear_reach", "contact distance", positive, measured,
+                    "Linearised contact forces extend over this distance."},
+        options.linear_reach);
+  visit(OptionField{"max_force_steps", "steps", count, measured,
+                    "With shape and contact forces as unknowns, so many steps are made."},
+        options.max_force_steps);
+  visit(
+      OptionField{
+          "force_agreement", "-", positive, measured,
+          "If contact forces differ by less from those of their gaps, Newton's method on the shape alone converges."},
+      options.force_agreement);
+  visit(OptionField{"faint_force", "-", positive, order_of_magnitude,
+                    "In this comparison a force counts as at least this fraction of the largest one."},
+        options.faint_force);
+  visit(OptionField{"fixed_friction_rounds", "rounds", count, order_of_magnitude,
+                    "Friction with fixed normal forces is updated at most so often."},
+        options.fixed_friction_rounds);
+  visit(OptionField{"following_friction_rounds", "rounds", count, order_of_magnitude,
+                    "Friction that follows its normal forces is updated at most so often."},
+        options.following_friction_rounds);
+  visit(OptionField{"friction_tolerance", "-", positive, order_of_magnitude,
+                    "Friction and normal forces are consistent if an update changes friction by less."},
+        options.friction_tolerance);
+  visit(OptionField{"piece_turn", "rad", positive, order_of_magnitude,
+                    "A motion that turns contact surfaces farther is checked in pieces."},
+        options.piece_turn);
+  visit(OptionField{"max_turn", "rad", positive, order_of_magnitude,
+                    "A motion that turns contact surfaces farther is shortened."},
+        options.max_turn);
+  visit(OptionField{"min_advance", "-", reduction, order_of_magnitude,
+                    "A step of which a collision leaves less is not made."},
+        options.min_advance);
+  visit(OptionField{"clear_fraction", "-", reduction, order_of_magnitude,
+                    "A step covers this fraction of its free motion, because a shorter motion is not quite the same."},
+        options.clear_fraction);
+}
+
 /// Calls visit(name, description, options) for each group.
 template <OptionsOf<SolverOptions> Options, class Visit>
 void visit_groups(Options& options, const Visit& visit) {
@@ -643,6 +697,7 @@ void visit_groups(Options& options, const Visit& visit) {
   visit("factor", "How long a factor serves, and when it is computed in double precision.", options.newton.factor);
   visit("stability", "The lowest mode, and the stiffness along it.", options.newton.stability);
   visit("derivative", "Derivatives of an equilibrium.", options.newton.derivative);
+  visit("contact", "Contact continuation and friction updates.", options.contact);
 }
 
 }  // namespace softkin

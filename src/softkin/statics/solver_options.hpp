@@ -240,6 +240,26 @@ struct DerivativeOptions {
   double slack_margin = 1e-9;
 };
 
+/// Contact continuation and friction updates.
+struct ContactOptions {
+  double soft_modulus = 1e-4;
+  double soft_reach = 6.0;
+  double soft_reduction = 8.0;
+  double fall_reach = 0.1;
+  int max_soft_iterations = 20;
+  double linear_reach = 2.0;
+  int max_force_steps = 20;
+  double force_agreement = 0.2;
+  double faint_force = 0.01;
+  int fixed_friction_rounds = 40;
+  int following_friction_rounds = 5;
+  double friction_tolerance = 1e-4;
+  double piece_turn = 0.7;
+  double max_turn = 2.5;
+  double min_advance = 1e-3;
+  double clear_fraction = 0.95;
+};
+
 /// The tuned constants of path tracking.
 struct PathOptions {
   StepSizeOptions step{};
@@ -268,6 +288,7 @@ struct NewtonOptions {
 struct SolverOptions {
   PathOptions path{};
   NewtonOptions newton{};
+  ContactOptions contact{};
 };
 
 /// How the default of an option was found: it follows from a textbook or an estimate of rounding; it was measured, and

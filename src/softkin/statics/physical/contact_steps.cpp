@@ -55,7 +55,7 @@ void OtherContact::forget() {
 }
 
 double missed_by_pushes(const System& system, const Workspace& work) {
-  constexpr double faint = 0.01;  // over the largest
+  const double faint = work.options.contact.faint_force;
   double largest = 0, most = 0;
   for (const ContactPush& push : work.contacts->pushes) largest = std::max(largest, push.push);
   for (const ContactPush& push : work.contacts->pushes) {
@@ -69,13 +69,13 @@ double missed_by_pushes(const System& system, const Workspace& work) {
 
 double clear_fraction(const System& system, const Points& from, const Motion& path, double end, Workspace& work,
                       Points& to, Team& team) {
-  constexpr double gentle = 0.7, wild = 2.5;  // turns of a piece, and of a shape that is distorted
+  const ContactOptions& options = work.options.contact;
   path(end, to);
   if (!system.contact()) return end;
   const Contacts& contacts = *system.contacts();
-  const double turn = to.allFinite() ? contacts.largest_turn(from, to) : 2 * wild;
-  if (!(turn <= wild)) return 0.5 * end * wild / turn;
-  const int pieces = std::max(1, static_cast<int>(std::ceil(turn / gentle)));
+  const double turn = to.allFinite() ? contacts.largest_turn(from, to) : 2 * options.max_turn;
+  if (!(turn <= options.max_turn)) return 0.5 * end * options.max_turn / turn;
+  const int pieces = std::max(1, static_cast<int>(std::ceil(turn / options.piece_turn)));
   Points last = from, next;
   for (int piece = 1; piece <= pieces; ++piece) {
     if (piece < pieces)
@@ -91,20 +91,19 @@ double clear_fraction(const System& system, const Points& from, const Motion& pa
 
 bool advance_clear(const System& system, const Eigen::VectorXd& step, double& scale, Workspace& work, Points& positions,
                    Team& team) {
-  constexpr double least = 1e-3;
-  constexpr double within = 0.95;  // of a safe fraction: a shorter motion is not quite the same
+  const ContactOptions& options = work.options.contact;
   const Points from = positions;
   const Motion path = [&](double fraction, Points& out) {
     out = from;
     system.advance(step, fraction * scale, work, out, team);
   };
-  for (double end = 1; end >= least;) {
+  for (double end = 1; end >= options.min_advance;) {
     const double fraction = clear_fraction(system, from, path, end, work, positions, team);
     if (fraction >= end) {
       scale *= end;
       return true;
     }
-    end = within * fraction;
+    end = options.clear_fraction * fraction;
   }
   return false;
 }

@@ -49,24 +49,22 @@ bool Corrector::touches(const Iterate& at) const {
 /// Corrects a shape with a softer contact of larger reach. With `falls` larger reaches are tried until collisions no
 /// longer cut the steps to nothing; the reach is then reduced again.
 Newton::Outcome Corrector::correct_softly(const LoadState& load_state, bool falls, OtherContact& contact, Iterate& at) {
-  constexpr double modulus = 1e-4;
-  constexpr double nearest = 6, finer = 8;  // reach over the contact distance, and its reduction
-  constexpr double farthest = 0.1;          // of the diagonal
-  const double most =
-      falls ? std::max(nearest, farthest * system_.model().diagonal_mm / system_.model().contact.distance_mm) : nearest;
-  constexpr int max_iterations = 20;  // of failed attempts, after which no larger reach is tried
+  const double nearest = tuning_.contact.soft_reach, finer = tuning_.contact.soft_reduction;
+  const double most = falls ? std::max(nearest, tuning_.contact.fall_reach * system_.model().diagonal_mm /
+                                                    system_.model().contact.distance_mm)
+                            : nearest;
   const std::vector<bool> before = active;
   const Iterate begun = at;
   const auto loosely = newton_.loosely(tuning_.newton.convergence.coarse_tolerance);
   auto outcome = Newton::Outcome::stuck;
   const int iterations = record_.iterations;
   for (double first = nearest; outcome == Newton::Outcome::stuck && first <= most; first *= finer) {
-    if (record_.iterations - iterations > max_iterations) break;
+    if (record_.iterations - iterations > tuning_.contact.max_soft_iterations) break;
     at = begun;
     active = before;
     outcome = Newton::Outcome::converged;
     for (double reach = first; outcome == Newton::Outcome::converged && reach > nearest / finer; reach /= finer) {
-      contact.set_stiffness_scale({modulus, reach, 1});
+      contact.set_stiffness_scale({tuning_.contact.soft_modulus, reach, 1});
       outcome = correct_constraints(load_state, Newton::Policy::descend, at, false);
     }
   }
@@ -79,12 +77,11 @@ Newton::Outcome Corrector::correct_softly(const LoadState& load_state, bool fall
 /// the contact distance of where the forces end. Without contact so far, softer contact is used. Friction is added
 /// later.
 Newton::Outcome Corrector::predict_contact(const LoadState& load_state, const Iterate& from, bool falls, Iterate& at) {
-  constexpr double foresight = 2;
   const std::vector<bool> before = active;
   Iterate trial = at;
   work_.contacts->holds.clear();
   OtherContact contact(system_, work_, team_);
-  contact.straighten(from, foresight);
+  contact.straighten(from, tuning_.contact.linear_reach);
   auto outcome = Newton::Outcome::converged;
   if (!contact.any_push()) {
     contact.forget();
@@ -116,7 +113,7 @@ double Corrector::renew_anchors(Iterate& at) {
 /// Solves with friction that follows the normal forces; if that fails, with friction from fixed normal forces, which
 /// are updated after each solve.
 Newton::Outcome Corrector::correct(const LoadState& load_state, Newton::Policy policy, Iterate& at, bool factorised) {
-  constexpr int max_rounds = 40;
+  const int max_rounds = tuning_.contact.fixed_friction_rounds;
   give_loads(load_state, at);
   if (!system_.friction()) return correct_constraints(load_state, policy, at, factorised);
   auto outcome = correct_following(load_state, policy, at, factorised);
@@ -128,7 +125,7 @@ Newton::Outcome Corrector::correct(const LoadState& load_state, Newton::Policy p
     rounds_ = round;
     if (outcome != Newton::Outcome::converged && outcome != Newton::Outcome::unstable) return outcome;
     record_.friction_change = renew_anchors(at);
-    if (record_.friction_change <= frictions_agree) break;
+    if (record_.friction_change <= tuning_.contact.friction_tolerance) break;
     if (round > 8 || (round & (round - 1)) != 0) continue;  // 1, 2, 4, 8
     const auto followed = correct_following(load_state, policy, at, false);
     if (followed != Newton::Outcome::stuck) return followed;
@@ -140,7 +137,7 @@ Newton::Outcome Corrector::correct(const LoadState& load_state, Newton::Policy p
 /// Solves with friction that follows its normal forces, until no new contact begins. If it fails, nothing has changed.
 Newton::Outcome Corrector::correct_following(const LoadState& load_state, Newton::Policy policy, Iterate& at,
                                              bool factorised) {
-  constexpr int max_rounds = 5;
+  const int max_rounds = tuning_.contact.following_friction_rounds;
   const std::vector<bool> before = active;
   Iterate trial = at;
   rounds_ = 1;
@@ -154,7 +151,7 @@ Newton::Outcome Corrector::correct_following(const LoadState& load_state, Newton
       return outcome;
     }
     record_.friction_change = renew_anchors(trial);
-    if (record_.friction_change <= frictions_agree) {
+    if (record_.friction_change <= tuning_.contact.friction_tolerance) {
       at = std::move(trial);
       return outcome;
     }

@@ -25,9 +25,6 @@ struct Search {
 /// normal forces at the shape, predicted contact, and sheets inflated from flat.
 class Corrector {
  public:
-  /// Friction and normal forces are consistent if an update changes friction by less than this fraction.
-  static constexpr double frictions_agree = 1e-4;
-
   /// All must outlive the object.
   Corrector(const System& system, Workspace& work, Team& team, const Equilibria::Options& options,
             const ProgressCallback& progress, SolveRecord& record, SolveReport& report);

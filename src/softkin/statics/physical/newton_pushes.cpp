@@ -8,17 +8,15 @@ namespace softkin::physical {
 /// source  the primal-dual step of interior points, with the barrier of contact as it is instead of one that vanishes:
 ///         Nocedal, Wright 2006, Numerical optimization, chapter 19
 Newton::Outcome Newton::correct_pushes(const LoadState& load_state, const std::vector<bool>& active, Iterate& at) {
-  constexpr int max_steps = 20;
-  constexpr double near = 0.2;  // distance of contact forces from those of their gaps, over them
   requested_.load_state = &load_state;
   requested_.active = &active;
   trial_ = at;
   double damping = 0;
-  for (int i = 0; i < max_steps; ++i) {
+  for (int i = 0; i < work_.options.contact.max_force_steps; ++i) {
     system_.evaluate(trial_, load_state, active, work_, balance_, team_);
     if (balance_.forbidden || !balance_.force.allFinite()) return Outcome::stuck;
     const double missed = missed_by_pushes(system_, work_);
-    if (damping == 1 && missed < near) {
+    if (damping == 1 && missed < work_.options.contact.force_agreement) {
       at = std::move(trial_);
       return Outcome::converged;
     }

@@ -178,7 +178,7 @@ Status Continuation::arrive(const LoadState& load_state, Iterate& at) {
   if (options_.stable && !buckle(corrector_, load_state, at)) return Status::interrupted;
   if (corrector_.last.modes > 0) report_stability(load_state, at);
   report_balance();
-  if (record_.friction_change > Corrector::frictions_agree) {
+  if (record_.friction_change > work_.options.contact.friction_tolerance) {
     report_.remark = "friction and the normal forces that limit it do not agree: it changed by " +
                      number(100 * record_.friction_change, 2) + " % when they were found anew";
     return Status::not_converged;
