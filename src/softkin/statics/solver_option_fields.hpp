@@ -675,6 +675,57 @@ void visit_fields(Options& options, const Visit& visit) {
         options.clear_fraction);
 }
 
+template <OptionsOf<WrinklingOptions> Options, class Visit>
+void visit_fields(Options& options, const Visit& visit) {
+  using enum OptionRange;
+  using enum OptionKind;
+  visit(OptionField{"mean_slope", "-", positive, measured,
+                    "The initial shape of flat sheets has this slope: flatter ones are stiffer on the path to the end, "
+                    "steeper ones are far from it."},
+        options.mean_slope);
+  visit(OptionField{"smoothing", "-", positive, measured,
+                    "The initial smoothing of wrinkles is this multiple of the squared strain under the loads: more "
+                    "contracts the sheet, less makes the path long."},
+        options.smoothing);
+  visit(OptionField{"max_smoothing", "-", positive, measured, "The initial smoothing is at most this large."},
+        options.max_smoothing);
+  visit(OptionField{"min_strain", "-", positive, measured,
+                    "The pressures cause at least this strain at first; below it wrinkled film is too stiff in its "
+                    "plane for its loads."},
+        options.min_strain);
+  visit(OptionField{"start_accuracy", "-", positive, order_of_magnitude,
+                    "The equations of the initial shape are solved to this accuracy."},
+        options.start_accuracy);
+  visit(OptionField{"start_iterations", "iterations", count, order_of_magnitude,
+                    "They take at most so many conjugate gradients."},
+        options.start_iterations);
+  visit(
+      OptionField{
+          "motion_rounds", "rounds", count, order_of_magnitude,
+          "The free parts continue towards the initial shape in at most so many rounds, where collisions stop others."},
+      options.motion_rounds);
+  visit(OptionField{"clear_fraction", "-", reduction, order_of_magnitude,
+                    "A round covers this fraction of the motion without collision."},
+        options.clear_fraction);
+  visit(OptionField{"min_smoothing", "-", positive, measured,
+                    "This is the last smoothing before sheets wrinkle with kinks."},
+        options.min_smoothing);
+  visit(OptionField{"smoothing_reduction", "-", reduction, measured,
+                    "The smoothing shrinks to this fraction from one solve to the next."},
+        options.smoothing_reduction);
+  visit(OptionField{"max_smoothing_reduction", "-", reduction, measured,
+                    "After a failed solve no larger fraction is tried."},
+        options.max_smoothing_reduction);
+  visit(
+      OptionField{
+          "pressure_reduction", "-", reduction, measured,
+          "Pressures that had to be larger to stretch the film shrink to this fraction from one solve to the next."},
+      options.pressure_reduction);
+  visit(OptionField{"max_pressure_reduction", "-", reduction, measured,
+                    "After a failed solve no larger fraction is tried."},
+        options.max_pressure_reduction);
+}
+
 /// Calls visit(name, description, options) for each group.
 template <OptionsOf<SolverOptions> Options, class Visit>
 void visit_groups(Options& options, const Visit& visit) {
@@ -698,6 +749,7 @@ void visit_groups(Options& options, const Visit& visit) {
   visit("stability", "The lowest mode, and the stiffness along it.", options.newton.stability);
   visit("derivative", "Derivatives of an equilibrium.", options.newton.derivative);
   visit("contact", "Contact continuation and friction updates.", options.contact);
+  visit("wrinkling", "Sheets that wrinkle or begin flat.", options.wrinkling);
 }
 
 }  // namespace softkin

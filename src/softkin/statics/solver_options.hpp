@@ -260,6 +260,23 @@ struct ContactOptions {
   double clear_fraction = 0.95;
 };
 
+/// Sheets that wrinkle or begin flat.
+struct WrinklingOptions {
+  double mean_slope = 0.3;
+  double smoothing = 50.0;
+  double max_smoothing = 1e-4;
+  double min_strain = 1e-3;
+  double start_accuracy = 1e-3;
+  int start_iterations = 2000;
+  int motion_rounds = 40;
+  double clear_fraction = 0.9;
+  double min_smoothing = 1e-11;
+  double smoothing_reduction = 0.1;
+  double max_smoothing_reduction = 0.4;
+  double pressure_reduction = 0.2;
+  double max_pressure_reduction = 0.9;
+};
+
 /// The tuned constants of path tracking.
 struct PathOptions {
   StepSizeOptions step{};
@@ -289,6 +306,7 @@ struct SolverOptions {
   PathOptions path{};
   NewtonOptions newton{};
   ContactOptions contact{};
+  WrinklingOptions wrinkling{};
 };
 
 /// How the default of an option was found: it follows from a textbook or an estimate of rounding; it was measured, and

@@ -7,21 +7,6 @@ namespace softkin::physical {
 
 namespace {
 
-/// Mean slope of the initial shape; its strains are half of the square.
-constexpr double mean_slope = 0.3;
-/// Smoothing of wrinkling, over the square of the strain under the loads, and its maximum. With more smoothing the
-/// sheet contracts, with less the path becomes long.
-constexpr double smooth = 50, widest_barrier = 1e-4;
-/// Strain to which pressures are to stretch the sheets at first; below it the sheets are too stiff in their plane for
-/// their loads.
-constexpr double min_strain = 1e-3;
-/// Relative residual to which the initial shape is solved, and maximum number of iterations.
-constexpr double begin_accuracy = 1e-3;
-constexpr int begin_rounds = 2000;
-/// Motion near an obstacle: maximum number of partial moves, and the fraction of the free motion that each covers.
-constexpr int motion_rounds = 40;
-constexpr double of_free = 0.9;
-
 /// Returns the driving forces: the loads, and unit pressures in the chambers whose measures are active.
 Eigen::VectorXd push_of(const System& system, const LoadState& there, const std::vector<bool>& active,
                         const Iterate& at, Workspace& work, Team& team) {
@@ -41,7 +26,8 @@ Eigen::VectorXd push_of(const System& system, const LoadState& there, const std:
 /// Moves of the vertices of sheets alone under a uniform tension. Vertices of elements are fixed.
 class Drum {
  public:
-  Drum(const System& system, const Points& positions) : system_(system), positions_(positions) {
+  Drum(const System& system, const Points& positions, const WrinklingOptions& options)
+      : system_(system), positions_(positions), options_(options) {
     alone_.assign(positions.rows(), false);
     for (const Index v : system.layers()->alone()) alone_[v] = true;
   }
@@ -51,8 +37,8 @@ class Drum {
     left = kept(left);
     Eigen::VectorXd sum = Eigen::VectorXd::Zero(left.size()), along = left;
     double before = left.squaredNorm();
-    const double end = begin_accuracy * begin_accuracy * before;
-    for (int round = 0; round < begin_rounds && before > end; ++round) {
+    const double end = options_.start_accuracy * options_.start_accuracy * before;
+    for (int round = 0; round < options_.start_iterations && before > end; ++round) {
       const Eigen::VectorXd product = stiffness(along);
       const double curvature = along.dot(product);
       if (!(curvature > 0)) break;
@@ -90,19 +76,21 @@ class Drum {
 
   const System& system_;
   const Points& positions_;
+  const WrinklingOptions& options_;
   std::vector<bool> alone_;
 };
 
 /// Moves vertices without penetration: a vertex stops when it comes near a surface, while the others continue.
 void move_clear(const System& system, Points moves, Points& positions, Workspace& work, Team& team) {
+  const WrinklingOptions& options = work.options.wrinkling;
   if (!system.contact()) {
     positions += moves;
     return;
   }
   const Contacts& contacts = *system.contacts();
-  for (int round = 0; round < motion_rounds && !moves.isZero(0); ++round) {
+  for (int round = 0; round < options.motion_rounds && !moves.isZero(0); ++round) {
     const double free = contacts.longest_step(positions, positions + moves, *work.contacts, team);
-    const double gone = free < 1 ? of_free * free : 1;
+    const double gone = free < 1 ? options.clear_fraction * free : 1;
     positions += gone * moves;
     moves *= 1 - gone;
     contacts.find(positions, *work.contacts, team);
@@ -115,6 +103,7 @@ void move_clear(const System& system, Points moves, Points& positions, Workspace
 
 std::optional<Swelling> swell(const System& system, const LoadState& there, const std::vector<bool>& active,
                               Iterate& at, Workspace& work, Team& team) {
+  const WrinklingOptions& options = work.options.wrinkling;
   Iterate begin = at;
   for (Index a = 0; a < system.actuators(); ++a)
     if (!active[a] && system.measures().given_load(a))
@@ -122,14 +111,15 @@ std::optional<Swelling> swell(const System& system, const LoadState& there, cons
   system.placement().hold(there, begin.positions);
   const Eigen::VectorXd push = push_of(system, there, active, begin, work, team);
   if (push.isZero(0) || !push.allFinite()) return std::nullopt;
-  const Points moves = Drum(system, begin.positions).moves(push);
+  const Points moves = Drum(system, begin.positions, options).moves(push);
   const double slope = system.layers()->mean_slope(moves);  // under 1 N/mm; the tension for slope 1
   if (!(slope > 0)) return std::nullopt;
-  move_clear(system, mean_slope / slope * moves, begin.positions, work, team);
+  move_clear(system, options.mean_slope / slope * moves, begin.positions, work, team);
   at = std::move(begin);
   const double strain = slope / system.layers()->stiffness_N_mm();
-  return Swelling{std::min(widest_barrier, smooth * std::pow(std::max(strain, min_strain), 2)),
-                  std::max(1.0, min_strain / strain)};
+  return Swelling{
+      std::min(options.max_smoothing, options.smoothing * std::pow(std::max(strain, options.min_strain), 2)),
+      std::max(1.0, options.min_strain / strain)};
 }
 
 }  // namespace softkin::physical

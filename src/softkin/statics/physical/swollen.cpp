@@ -3,14 +3,6 @@
 
 namespace softkin::physical {
 
-namespace {
-
-/// Smallest smoothing of wrinkles, its reduction per solve, and the mildest reduction after failed solves; reduction of
-/// the pressures per solve, and the mildest one after failed solves.
-constexpr double narrowest_barrier = 1e-11, narrower = 0.1, hardly_narrower = 0.4, fall = 0.2, gentlest_fall = 0.9;
-
-}  // namespace
-
 /// Returns the load state with its given pressures multiplied by `times`.
 LoadState Corrector::pressed(LoadState load_state, double times) const {
   for (Index a = 0; a < system_.actuators(); ++a) {
@@ -36,17 +28,18 @@ Newton::Outcome Corrector::sharpen_swollen(const LoadState& load_state, double b
                                            Iterate& trial) {
   std::optional<Iterate> good;
   double before = barrier;
-  for (double by = narrower;;) {
-    const bool sharp = barrier <= narrowest_barrier;
+  for (double by = tuning_.wrinkling.smoothing_reduction;;) {
+    const bool sharp = barrier <= tuning_.wrinkling.min_smoothing;
     const auto outcome = correct_wrinkled(load_state, sharp ? 0 : barrier, sharp && requested, trial);
     const bool stuck = outcome == Newton::Outcome::stuck && good;
-    if (outcome == Newton::Outcome::interrupted || (stuck && by >= hardly_narrower) || (sharp && !stuck))
+    if (outcome == Newton::Outcome::interrupted || (stuck && by >= tuning_.wrinkling.max_smoothing_reduction) ||
+        (sharp && !stuck))
       return outcome;
     if (stuck) {
       by = std::sqrt(by);
       trial = *good;
     } else {
-      by = std::max(narrower, by * by);
+      by = std::max(tuning_.wrinkling.smoothing_reduction, by * by);
       good = trial;
       before = barrier;
     }
@@ -59,19 +52,19 @@ Newton::Outcome Corrector::sharpen_swollen(const LoadState& load_state, double b
 Newton::Outcome Corrector::correct_swollen(const LoadState& there, const Swelling& how, Iterate& trial) {
   double times = how.boost;
   auto outcome = sharpen_swollen(pressed(there, times), how.barrier, times == 1, trial);
-  for (double falls = fall; times > 1;) {
+  for (double falls = tuning_.wrinkling.pressure_reduction; times > 1;) {
     if (outcome == Newton::Outcome::stuck || outcome == Newton::Outcome::interrupted) return outcome;
     const Iterate before = trial;
     const double next = std::max(1.0, falls * times);
     outcome = correct_wrinkled(pressed(there, next), 0, next == 1, trial);
-    if (outcome == Newton::Outcome::stuck && falls < gentlest_fall) {
+    if (outcome == Newton::Outcome::stuck && falls < tuning_.wrinkling.max_pressure_reduction) {
       trial = before;
       outcome = Newton::Outcome::converged;
       falls = std::sqrt(falls);
       continue;
     }
     times = next;
-    falls = std::max(fall, falls * falls);
+    falls = std::max(tuning_.wrinkling.pressure_reduction, falls * falls);
   }
   return outcome;
 }
