@@ -726,6 +726,70 @@ void visit_fields(Options& options, const Visit& visit) {
         options.max_pressure_reduction);
 }
 
+template <OptionsOf<TargetShapeOptions> Options, class Visit>
+void visit_fields(Options& options, const Visit& visit) {
+  using enum OptionRange;
+  using enum OptionKind;
+  visit(OptionField{"max_halvings", "halvings", count, measured,
+                    "A step is halved at most so often where the energy alone decides."},
+        options.max_halvings);
+  visit(OptionField{"few_halvings", "halvings", count, measured,
+                    "A step is halved at most so often where there is an alternative."},
+        options.few_halvings);
+  visit(OptionField{"loosest_tolerance", "-", positive, measured,
+                    "GMRES has at most this tolerance; less exact directions lead astray on slender robots."},
+        options.loosest_tolerance);
+  visit(OptionField{"tightest_tolerance", "-", positive, derived,
+                    "GMRES has at least this tolerance; below it is rounding."},
+        options.tightest_tolerance);
+  visit(
+      OptionField{"max_steps", "steps", count, measured, "Newton's method makes at most so many steps to the target."},
+      options.max_steps);
+  visit(OptionField{"max_intermediate_steps", "steps", count, measured,
+                    "It makes at most so many to an intermediate equilibrium, which is near."},
+        options.max_intermediate_steps);
+  visit(OptionField{"max_idle_steps", "steps", count, order_of_magnitude, "So many steps that move nothing end a run."},
+        options.max_idle_steps);
+  visit(OptionField{"rescue_iterations", "iterations", count, measured,
+                    "So many accelerated local-global iterations are made at a time."},
+        options.rescue_iterations);
+  visit(OptionField{"rescue_window", "iterations", count, measured, "Each of them combines so many earlier ones."},
+        options.rescue_window);
+  visit(OptionField{"first_patience", "iterations", count, measured,
+                    "The first run takes at most so many local-global iterations."},
+        options.first_patience);
+  visit(OptionField{"patience", "iterations", count, measured,
+                    "The run after failed intermediate equilibria takes at most so many."},
+        options.patience);
+  visit(OptionField{"last_window", "iterations", count, measured,
+                    "As the last resort, progress of Algorithm 1 is measured over so many iterations."},
+        options.last_window);
+  visit(OptionField{"max_last_iterations", "iterations", positive, measured,
+                    "It ends if more iterations are left at the rate of this progress."},
+        options.max_last_iterations);
+  visit(OptionField{"first_fraction", "path", fraction, measured,
+                    "The first intermediate equilibrium lies at this fraction of the path."},
+        options.first_fraction);
+  visit(OptionField{"min_fraction", "path", reduction, order_of_magnitude,
+                    "No fraction of the path between intermediate equilibria is smaller."},
+        options.min_fraction);
+  visit(OptionField{"safe_step", "tolerance", positive, order_of_magnitude,
+                    "Another step with the last factor ends the search if it is shorter."},
+        options.safe_step);
+  visit(OptionField{"armijo", "-", positive, derived,
+                    "A step must decrease the energy by this fraction of its slope (Armijo's rule)."},
+        options.armijo);
+  visit(OptionField{"energy_drop", "-", fraction, measured,
+                    "An energy below this multiple of its minimum so far is a success, too."},
+        options.energy_drop);
+  visit(OptionField{"kept_factor", "-", fraction, measured,
+                    "A factor is kept after a step that reduces the preconditioned residual to this fraction."},
+        options.kept_factor);
+  visit(OptionField{"max_turn", "degrees", positive, measured,
+                    "Supports turn at most this far at once, because elements that are turned over stay so."},
+        options.max_turn);
+}
+
 /// Calls visit(name, description, options) for each group.
 template <OptionsOf<SolverOptions> Options, class Visit>
 void visit_groups(Options& options, const Visit& visit) {
@@ -750,6 +814,7 @@ void visit_groups(Options& options, const Visit& visit) {
   visit("derivative", "Derivatives of an equilibrium.", options.newton.derivative);
   visit("contact", "Contact continuation and friction updates.", options.contact);
   visit("wrinkling", "Sheets that wrinkle or begin flat.", options.wrinkling);
+  visit("target_shape", "The solvers of the target-shape formulation.", options.target_shape);
 }
 
 }  // namespace softkin

@@ -277,6 +277,30 @@ struct WrinklingOptions {
   double max_pressure_reduction = 0.9;
 };
 
+/// The solvers of the target-shape formulation.
+struct TargetShapeOptions {
+  int max_halvings = 12;
+  int few_halvings = 2;
+  double loosest_tolerance = 1e-2;
+  double tightest_tolerance = 1e-10;
+  int max_steps = 80;
+  int max_intermediate_steps = 40;
+  int max_idle_steps = 4;
+  int rescue_iterations = 50;
+  int rescue_window = 6;
+  int first_patience = 50;
+  int patience = 300;
+  int last_window = 100;
+  double max_last_iterations = 1000.0;
+  double first_fraction = 0.25;
+  double min_fraction = 0.00390625;
+  double safe_step = 0.1;
+  double armijo = 1e-4;
+  double energy_drop = 0.9;
+  double kept_factor = 0.1;
+  double max_turn = 10.0;
+};
+
 /// The tuned constants of path tracking.
 struct PathOptions {
   StepSizeOptions step{};
@@ -307,6 +331,7 @@ struct SolverOptions {
   NewtonOptions newton{};
   ContactOptions contact{};
   WrinklingOptions wrinkling{};
+  TargetShapeOptions target_shape{};
 };
 
 /// How the default of an option was found: it follows from a textbook or an estimate of rounding; it was measured, and

@@ -49,12 +49,12 @@ Equilibrium TargetShapeSolver::solve(const Actuation& actuation, const State& st
 /// vertices are put in their places at once, and elements that this turns over would stay so.
 void TargetShapeSolver::follow_turns(const Actuation& start, const StaticsOptions& options,
                                      const ProgressCallback& progress, Team& team, Equilibrium& result) const {
-  constexpr double max_turn = 10;  // at once [degrees]
   const Actuation requested = result.actuation;
   Actuation from = start.size() > 0 ? start : requested;
   for (Index a = 0; start.size() == 0 && a < requested.size(); ++a)
     if (model_.actuators[a].is<TurnCommand>()) from[a] = turning_.angle(a, result.state.positions);
-  const int steps = std::max(1, static_cast<int>(std::ceil(turning_.largest_turn(from, 1, requested, 1) / max_turn)));
+  const int steps = std::max(1, static_cast<int>(std::ceil(turning_.largest_turn(from, 1, requested, 1) /
+                                                           options.tuning.target_shape.max_turn)));
   Actuation last = steps > 1 ? from : start;
   int intermediate = 0;
   for (int step = 1; step <= steps; ++step) {

@@ -14,6 +14,8 @@ constexpr double straight = 2e-3;
 
 /// Slip over the creep from which a cable is slipping: the stored lengths follow to 1, apart from rounding.
 constexpr double whole = 1 - 1e-6;
+/// Changes of slip and sines of turns below this value are zero apart from rounding.
+constexpr double least = 1e-9;
 
 /// Returns the fraction of the friction limit, towards the motor, at a slip over the creep.
 double friction_fraction(double slip) {
@@ -25,7 +27,6 @@ double friction_slope(double slip) {
 }
 
 double friction_secant(double slip, double change) {
-  constexpr double least = 1e-9;
   if (std::abs(change) < least) return friction_slope(slip);
   return (friction_fraction(slip + change) - friction_fraction(slip)) / change;
 }
@@ -34,7 +35,6 @@ double friction_secant(double slip, double change) {
 struct Turn {
   double angle = 0, slope = 0;
   Turn(const Vec3& before, const Vec3& after) {
-    constexpr double least = 1e-9;
     const double sine = before.cross(after).norm(), theta = std::atan2(sine, before.dot(after));
     const double root = std::sqrt(theta * theta + straight * straight);
     angle = theta * theta / root;

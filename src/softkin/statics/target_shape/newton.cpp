@@ -9,20 +9,6 @@ using namespace energy;
 
 namespace {
 
-/// Maximum number of halvings of a step: where the energy alone decides, and where there is an alternative.
-constexpr int max_halvings = 12, few_halvings = 2;
-
-/// Largest and smallest tolerance of GMRES, relative to the residual: below is rounding. Less exact directions lead
-/// astray on slender robots.
-constexpr double loosest = 1e-2, tightest = 1e-10;
-
-/// Maximum number of steps of the run to the target, of runs to intermediate equilibria, which are near, and of steps
-/// that move nothing and yet do not end a run.
-constexpr int max_steps = 80, max_intermediate_steps = 40, max_idle_steps = 4;
-
-/// Accelerated local-global iterations at a time, and how many earlier ones each combines.
-constexpr int rescue = 50, rescue_window = 6;
-
 /// Energy of Eq. (9) that the rounding of coordinates alone can make, in its unit.
 double rounding_energy(const Model& model, const ElementSets& sets) {
   double weight = 0;
@@ -42,24 +28,17 @@ double rounding_energy(const Model& model, const ElementSets& sets) {
 
 using End = NewtonSearch::End;
 
-/// Local-global iterations that support Newton's method in a run after which intermediate equilibria are tried, and in
-/// one after these failed.
-constexpr int first_patience = rescue, patience = 300;
-/// Patience of Algorithm 1 as the last resort: most such robots have no fixed point within reach, and its full limit of
-/// iterations is for users who select it.
-constexpr Patience at_last = {100, 1000, false};
-
 /// Follows intermediate equilibria from one actuation to another; the step is halved where one is not found and doubled
 /// where one is.
-End follow(const Actuation& from, const Actuation& to, NewtonSearch& search, Points& positions, SolveReport& report) {
-  constexpr double first = 0.25, least = 1.0 / 256;
-  double fraction = 0, step = first;
+End follow(const Actuation& from, const Actuation& to, const TargetShapeOptions& options, NewtonSearch& search,
+           Points& positions, SolveReport& report) {
+  double fraction = 0, step = options.first_fraction;
   Points reached = positions;
   report.continuation_steps = 0;
   while (fraction < 1) {
     const double next = std::min(1.0, fraction + step);
     positions = reached;
-    const End end = search.run(from + next * (to - from), max_intermediate_steps, 0, positions);
+    const End end = search.run(from + next * (to - from), options.max_intermediate_steps, 0, positions);
     if (end == End::interrupted || end == End::astray) return end;
     if (end == End::converged) {
       fraction = next;
@@ -68,7 +47,7 @@ End follow(const Actuation& from, const Actuation& to, NewtonSearch& search, Poi
       ++report.continuation_steps;
     } else {
       step /= 2;
-      if (step < least) return End::stuck;
+      if (step < options.min_fraction) return End::stuck;
     }
   }
   return End::converged;
@@ -112,7 +91,9 @@ bool NewtonSearch::exact_direction(const Points& positions) {
   // Eisenstat and Walker 1996, choice 2: as accurate as the last steps were successful, and as is needed at last
   const double norm = moves_.norm(), ratio = natural_start_ > 0 ? norm / natural_start_ : 1;
   const double enough = 0.1 * report_.tolerance_mm / std::max(norm, report_.tolerance_mm);
-  tolerance_ = std::clamp(0.9 * ratio * ratio, std::clamp(enough, tightest, loosest), loosest);
+  tolerance_ =
+      std::clamp(0.9 * ratio * ratio, std::clamp(enough, tuning().tightest_tolerance, tuning().loosest_tolerance),
+                 tuning().loosest_tolerance);
   natural_start_ = norm;
   direction_.exact = !workspace_.tangent.symmetric() || !workspace_.tangent.shifted();
   return workspace_.tangent.solve(workspace_.local, positions, natural_, tolerance_, team_, step_) && step_.allFinite();
@@ -153,11 +134,10 @@ bool NewtonSearch::at_fixed_point(const Points& positions) {
 
 /// Takes another step with the last factor if it ends the search.
 bool NewtonSearch::close(const Actuation& actuation, Points& positions, double& step_mm) {
-  constexpr double safely = 0.1;
   if (workspace_.tangent.shifted()) return false;
   if (workspace_.tangent.symmetric()) (void)natural_norm(positions);  // else search_residual did it
   step_mm = moves_.rowwise().norm().maxCoeff();
-  if (!(step_mm < safely * report_.tolerance_mm)) return false;
+  if (!(step_mm < tuning().safe_step * report_.tolerance_mm)) return false;
   workspace_.tangent.freedoms().move(natural_, 1, positions);
   evaluate(actuation, positions);
   direction_.keep_factor = false;
@@ -166,14 +146,14 @@ bool NewtonSearch::close(const Actuation& actuation, Points& positions, double& 
 
 /// Backtracking to a sufficient decrease (Armijo) of the energy; below its rounding any step is as good.
 NewtonSearch::Step NewtonSearch::search_energy(const Actuation& actuation, Points& positions) {
-  constexpr double sufficient = 1e-4, rounding = 1e-12;
+  constexpr double rounding = 1e-12;
   const double start = energy_, slope = -2 * residual_.dot(step_);
   double scale = 1;
-  const int halvings = workspace_.tangent.symmetric() ? max_halvings : few_halvings;
+  const int halvings = workspace_.tangent.symmetric() ? tuning().max_halvings : tuning().few_halvings;
   for (int i = 0; i <= halvings; ++i, scale /= 2) {
     move(scale, positions);
     evaluate(actuation, positions);
-    if (negligible(i, positions) || energy_ <= start + sufficient * scale * slope + rounding * start)
+    if (negligible(i, positions) || energy_ <= start + tuning().armijo * scale * slope + rounding * start)
       return i == 0 ? Step::full : Step::shortened;
   }
   return Step::none;
@@ -182,14 +162,14 @@ NewtonSearch::Step NewtonSearch::search_energy(const Actuation& actuation, Point
 /// Backtracks until the preconditioned residual falls, with one preconditioner (Deuflhard 2004, Section 3.3), or the
 /// energy falls well below its minimum so far, which is the better criterion far from the fixed point.
 NewtonSearch::Step NewtonSearch::search_residual(const Actuation& actuation, Points& positions) {
-  constexpr double well_below = 0.9, still_near = 0.1;
   double scale = 1;
-  for (int i = 0; i <= few_halvings; ++i, scale /= 2) {
+  for (int i = 0; i <= tuning().few_halvings; ++i, scale /= 2) {
     move(scale, positions);
     evaluate(actuation, positions);
     const double norm = natural_norm(positions);
-    if (negligible(i, positions) || norm <= (1 - scale / 4) * natural_start_ || energy_ < well_below * min_energy_) {
-      direction_.keep_factor = i == 0 && norm < still_near * natural_start_;
+    if (negligible(i, positions) || norm <= (1 - scale / 4) * natural_start_ ||
+        energy_ < tuning().energy_drop * min_energy_) {
+      direction_.keep_factor = i == 0 && norm < tuning().kept_factor * natural_start_;
       return i == 0 ? Step::full : Step::shortened;
     }
   }
@@ -239,7 +219,7 @@ NewtonSearch::End NewtonSearch::enter(const IterationRecord& record) {
 
 /// stuck: the search continues
 NewtonSearch::End NewtonSearch::local_global(const Actuation& actuation, int count, Points& positions) {
-  LocalGlobal iteration(unknowns_.system, global_, rescue_window, actuation, positions);
+  LocalGlobal iteration(unknowns_.system, global_, tuning().rescue_window, actuation, positions);
   End end = End::stuck;
   for (int i = 0; i < count && end == End::stuck; ++i) {
     if (i > 0) iteration.extrapolate();
@@ -272,13 +252,13 @@ NewtonSearch::End NewtonSearch::run(const Actuation& actuation, int most, int le
     return End::converged;
   }
   int idle = 0;
-  for (int i = 0; i < most && idle < max_idle_steps; ++i) {
+  for (int i = 0; i < most && idle < tuning().max_idle_steps; ++i) {
     IterationRecord record = here();
     const Step step = newton_step(actuation, positions);
     if (step == Step::none) {
       if (left <= 0) return End::stuck;
-      left -= rescue;
-      if (const End end = local_global(actuation, rescue, positions); end != End::stuck) return end;
+      left -= tuning().rescue_iterations;
+      if (const End end = local_global(actuation, tuning().rescue_iterations, positions); end != End::stuck) return end;
       continue;
     }
     record.step_mm = largest_move(before_, positions);
@@ -326,6 +306,7 @@ void Newton::put_back(std::unique_ptr<Workspace> workspace) const {
 
 void Newton::solve(const Actuation& start, const StaticsOptions& options, const ProgressCallback& progress, Team& team,
                    Equilibrium& result) const {
+  const TargetShapeOptions& tuning = options.tuning.target_shape;
   SolveReport& report = result.report;
   report.solver = "newton";
   report.continuation_steps = 1;
@@ -334,22 +315,24 @@ void Newton::solve(const Actuation& start, const StaticsOptions& options, const 
   std::unique_ptr<Workspace> workspace = take_workspace();
   workspace->home.resize(0, 3);
   NewtonSearch search(unknowns_, global_, *workspace, options, progress, team, report);
-  End end = search.run(result.actuation, max_steps, first_patience, positions);
+  End end = search.run(result.actuation, tuning.max_steps, tuning.first_patience, positions);
   if (end == End::stuck) {
     positions = begin;
     const Actuation from = start.size() == result.actuation.size() ? start : unknowns_.model.rest_actuation();
-    end = follow(from, result.actuation, search, positions, report);
+    end = follow(from, result.actuation, tuning, search, positions, report);
   }
   if (end == End::stuck) {
     positions = begin;
     report.continuation_steps = 1;
-    end = search.run(result.actuation, max_steps, patience, positions);
+    end = search.run(result.actuation, tuning.max_steps, tuning.patience, positions);
   }
   if (end == End::converged && report.factorisations > 0) workspace->home = positions;
   put_back(std::move(workspace));
   if (end == End::stuck) {
     positions = begin;
     report.continuation_steps = 1;
+    const Patience at_last{tuning.last_window, tuning.max_last_iterations,
+                           false};  // most such robots have no fixed point
     solve_local_global({unknowns_.model, unknowns_.system, global_}, options, at_last, progress, team, result);
     report.solver = "newton";
     if (report.status != Status::converged)

@@ -52,6 +52,7 @@ class NewtonSearch {
   End local_global(const Actuation& actuation, int count, Points& positions);
   [[nodiscard]] End enter(const IterationRecord& record);
   [[nodiscard]] IterationRecord here() const;
+  [[nodiscard]] const TargetShapeOptions& tuning() const { return options_.tuning.target_shape; }
 
   const Unknowns& unknowns_;
   const supports::GlobalStep& global_;
