@@ -15,7 +15,7 @@ constexpr double straight = 2e-3;
 /// Slip over the creep from which a cable is slipping: the stored lengths follow to 1, apart from rounding.
 constexpr double whole = 1 - 1e-6;
 /// Changes of slip and sines of turns below this value are zero apart from rounding.
-constexpr double least = 1e-9;
+constexpr double rounding_size = 1e-9;
 
 /// Returns the fraction of the friction limit, towards the motor, at a slip over the creep.
 double friction_fraction(double slip) {
@@ -27,7 +27,7 @@ double friction_slope(double slip) {
 }
 
 double friction_secant(double slip, double change) {
-  if (std::abs(change) < least) return friction_slope(slip);
+  if (std::abs(change) < rounding_size) return friction_slope(slip);
   return (friction_fraction(slip + change) - friction_fraction(slip)) / change;
 }
 
@@ -38,7 +38,7 @@ struct Turn {
     const double sine = before.cross(after).norm(), theta = std::atan2(sine, before.dot(after));
     const double root = std::sqrt(theta * theta + straight * straight);
     angle = theta * theta / root;
-    const double over_sine = sine > least ? theta / sine : theta < 1 ? 1 : theta / least;
+    const double over_sine = sine > rounding_size ? theta / sine : theta < 1 ? 1 : theta / rounding_size;
     slope = over_sine * (theta * theta + 2 * straight * straight) / (root * root * root);
   }
 };
