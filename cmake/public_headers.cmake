@@ -99,6 +99,7 @@ set(softkin_public_headers
     runs/records.hpp
     runs/reports.hpp
     runs/shortfall_text.hpp
+    runs/solver_options_file.hpp
     runs/turns.hpp
     runs/workspace_file.hpp)
 

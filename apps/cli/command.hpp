@@ -76,6 +76,7 @@ void add_map(CLI::App& app, Run& run);
 void add_map_export(CLI::App& map, Run& run);
 void add_mesh(CLI::App& app, Run& run);
 void add_measure(CLI::App& app, Run& run);
+void add_options_command(CLI::App& app, Run& run);
 void add_view_command(CLI::App& app, Run& run);
 void add_walk(CLI::App& app, Run& run);
 void add_workspace(CLI::App& app, Run& run);

@@ -29,7 +29,8 @@ void check_map(const EstimateRequest& requested) {
   if (requested.map.empty()) return;
   const SolveOptions usual;
   const bool changed = requested.solver_name != usual.solver_name || requested.tolerance_mm != usual.tolerance_mm ||
-                       requested.max_iterations != usual.max_iterations || requested.stable || requested.instant;
+                       requested.max_iterations != usual.max_iterations || requested.stable || requested.instant ||
+                       !requested.tuning_file.empty();
   if (requested.plan || requested.estimate.fade_s > 0 || requested.estimate.keep_all || changed)
     throw InvalidInput(
         "a map estimates each row by itself, leaves no reading out and plans none: --map goes without --plan, --fade, "

@@ -53,6 +53,7 @@ int main(int argc, char** argv) {
   cli::add_map(app, run);
   cli::add_view_command(app, run);
   cli::add_examples(app, run);
+  cli::add_options_command(app, run);
   return cli::outcome_of([&] {
     (void)target();  // refused, where it is, before anything is done
     std::string command = "softkin";

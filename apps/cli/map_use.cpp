@@ -23,7 +23,8 @@ void check_map_use(const MapUse& use, const SolveOptions& options, std::vector<s
   inputs.emplace_back(use.map);
   const SolveOptions usual;
   const bool changed = options.solver_name != usual.solver_name || options.tolerance_mm != usual.tolerance_mm ||
-                       options.max_iterations != usual.max_iterations || options.stable || options.instant;
+                       options.max_iterations != usual.max_iterations || options.stable || options.instant ||
+                       !options.tuning_file.empty();
   if (changed && !use.polish)
     throw InvalidInput("a map answers without the solver: --map with the solver's options needs --polish");
 }

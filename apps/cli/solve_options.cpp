@@ -5,6 +5,7 @@
 #include <softkin/core/error.hpp>
 #include <softkin/io/scanner.hpp>
 #include <softkin/runs/page.hpp>
+#include <softkin/runs/solver_options_file.hpp>
 #include <thread>
 
 #include "terminal.hpp"
@@ -81,6 +82,7 @@ StaticsOptions SolveOptions::statics() const {
   result.anderson = anderson.value_or(result.anderson);
   result.threads = threads;
   result.stable = stable;
+  result.tuning = tuning;
   if (instant) result.elapsed_s = 0;
   result.deadline = deadline;
   return result;
@@ -154,6 +156,15 @@ void add_solver(CLI::App& command, SolveOptions& options, const std::string& thr
       "Physical: shapes before a viscous material relaxes (default:\nrelaxed; of a path with times, t_s, at "
       "those)");
   command
+      .add_option_function<std::string>(
+          "--options",
+          [&options](const std::string& file) {
+            options.tuning = runs::read_solver_options(file);
+            options.tuning_file = file;
+          },
+          "Other tuned constants of the solvers, by group, such as\nstep: {max_turn: 20}; docs/following.md lists them")
+      ->type_name("F.yaml");
+  command
       .add_option_function<double>(
           "--budget", [&options](double seconds) { stop_at(options.deadline = Deadline(seconds)); },
           "Stop after so long, with the last good shape [s]; counts from the\nstart of the command (default: never)")
@@ -222,6 +233,7 @@ void check_solver(const SolveOptions& options) {
 
 RobotSpec requested_spec(const SolveOptions& options, std::vector<std::filesystem::path>& inputs) {
   RobotSpec spec = read_requested_scene(options, inputs);
+  if (!options.tuning_file.empty()) inputs.emplace_back(options.tuning_file);
   if (spec.formulation == Formulation::physical && options.solver() == Solver::local_global)
     throw InvalidInput(
         "--solver local-global is for the target-shape formulation, and this robot is physical: leave it out, or add "

@@ -26,6 +26,8 @@ struct SolveOptions : RequestedScene {
   int threads = StaticsOptions().threads;
   bool stable = false;
   bool instant = false;
+  std::string tuning_file{};  // of --options; empty: none
+  SolverOptions tuning{};
   Deadline deadline{};
 
   [[nodiscard]] Solver solver() const;

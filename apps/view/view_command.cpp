@@ -124,7 +124,7 @@ void open_browser(const std::string& address) {
 std::string fingerprint_of(const Model& model, const ViewOptions& options) {
   const std::string solver = options.solver_name + " " + exact(options.tolerance_mm) + " " +
                              std::to_string(options.max_iterations) + " " + std::to_string(options.statics().anderson) +
-                             (options.stable ? " stable" : "");
+                             (options.stable ? " stable" : "") + changes_text(options.tuning);
   std::string reported = exact(options.estimate.fade_s) + (options.estimate.keep_all ? " all" : "");
   for (const std::string& unknown : options.estimate.unknowns) reported += " " + unknown;
   for (const double deviation : options.estimate.requested_deviations()) reported += " " + exact(deviation);

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import inspect
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Mapping
 from dataclasses import asdict, astuple, dataclass, replace
 from functools import lru_cache, wraps
 from typing import Any, ClassVar, NamedTuple, ParamSpec, TypeVar
@@ -13,6 +14,27 @@ from ._core import InvalidInput
 from ._warning import warn
 
 __all__ = ["Progress", "Solver"]
+
+
+def _pairs_of(options: Any) -> tuple[tuple[str, float], ...] | None:
+    """Returns tuned constants as pairs of 'group.name' and value; None: all have their defaults."""
+    if options is None:
+        return None
+    if isinstance(options, (str, os.PathLike)):
+        return tuple(_core.read_solver_options(os.fspath(options))) or None
+    pairs: list[tuple[str, float]] = []
+    try:
+        for group, values in options.items() if isinstance(options, Mapping) else options:
+            named = values.items() if isinstance(values, Mapping) else [(None, values)]
+            pairs += [(group if name is None else f"{group}.{name}", value) for name, value in named]
+    except (TypeError, ValueError):
+        raise InvalidInput(
+            f"options must be a map of groups, such as {{'step': {{'max_turn': 20}}}}, or a file, not {options!r}"
+        ) from None
+    for name, value in pairs:
+        if isinstance(value, bool) or not isinstance(value, (int, float)):
+            raise InvalidInput(f"the option {name} must be a number, not {value!r}")
+    return tuple((str(name), float(value)) for name, value in pairs) or None
 
 
 @dataclass(frozen=True)
@@ -35,13 +57,16 @@ class Solver:
     as_published: bool = False
     """local-global, of `solve` and `path`: stop where the program of the paper's authors does, without acceleration: from
     the tenth iteration on when no marker moves by 0.032 mm; no equilibrium"""
+    options: Any = None
+    """other tuned constants, {'step': {'max_turn': 20}}, or the file of `--options`; a tuple of pairs once it is set"""
     _options: ClassVar[_core.SolveOptions]  # of each value, but no field
 
     def __post_init__(self) -> None:
         if self.tolerance_mm is not None and not self.tolerance_mm > 0:
             raise InvalidInput(f"the tolerance must be a length > 0 in mm, not {self.tolerance_mm}")
-        method, tolerance_mm, *others = astuple(self)
-        object.__setattr__(self, "_options", _core.SolveOptions(method, tolerance_mm or 0.0, *others))
+        object.__setattr__(self, "options", _pairs_of(self.options))
+        method, tolerance_mm, *others, options = astuple(self)
+        object.__setattr__(self, "_options", _core.SolveOptions(method, tolerance_mm or 0.0, *others, options or ()))
 
     def __repr__(self) -> str:
         """Shows the options that differ from the defaults."""

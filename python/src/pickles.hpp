@@ -4,6 +4,7 @@
 #include <softkin/kinematics/inverse.hpp>
 #include <softkin/model/equilibrium.hpp>
 #include <softkin/runs/reports.hpp>
+#include <softkin/statics/solver_option_fields.hpp>
 #include <softkin/statics/statics.hpp>
 
 #include "archive.hpp"
@@ -76,14 +77,20 @@ void members(A& archive, Equilibrium& e) {
   auto& [state, actuation, report] = e;
   archive(state, actuation, report);
 }
+template <class A>
+void members(A& archive, SolverOptions& o) {
+  visit_groups(o, [&](const char*, const char*, auto& group) {
+    visit_fields(group, [&](const OptionField&, auto& value) { archive(value); });
+  });
+}
 /// But for the deadline, which is past when a pickle is read.
 template <class A>
 void members(A& archive, StaticsOptions& o) {
   auto& [solver, step_tolerance_mm, max_iterations, anderson, as_published, threads, keep_history, trace, deadline,
-         stable, beyond, reuse_factor, history, elapsed_s] = o;
+         stable, beyond, reuse_factor, history, elapsed_s, tuning] = o;
   (void)deadline;
   archive(solver, step_tolerance_mm, max_iterations, anderson, as_published, threads, keep_history, trace, stable,
-          beyond, reuse_factor, elapsed_s);
+          beyond, reuse_factor, elapsed_s, tuning);
   remembered(archive, history);
 }
 

@@ -1,6 +1,7 @@
 #include "solve.hpp"
 
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/shared_ptr.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -8,6 +9,7 @@
 #include <cmath>
 #include <softkin/kinematics/jacobian.hpp>
 #include <softkin/runs/shape_files.hpp>
+#include <softkin/runs/solver_options_file.hpp>
 
 #include "bindings.hpp"
 #include "convert.hpp"
@@ -47,6 +49,24 @@ ShapePtr solve(const RobotPtr& robot, const SessionPtr& session, const VectorIn&
   return std::make_shared<Shape>(robot, std::move(found), options);
 }
 
+/// Returns the tuned constants with these changes: "group.name" and value.
+SolverOptions options_of(const std::vector<std::pair<std::string, double>>& changes) {
+  SolverOptions options;
+  for (const auto& [key, value] : changes) {
+    const std::size_t dot = key.find('.');
+    set_option(options, key.substr(0, dot), dot == std::string::npos ? "" : key.substr(dot + 1), value);
+  }
+  return options;
+}
+
+/// Returns the options of a file that differ from their defaults: "group.name" and value.
+std::vector<std::pair<std::string, double>> read_options(const std::string& file) {
+  std::vector<std::pair<std::string, double>> changes;
+  for (const OptionValue& option : changed_options(runs::read_solver_options(file)))
+    changes.emplace_back(option.group + "." + option.field.name, option.value);
+  return changes;
+}
+
 TableOut jacobian_of(const Shape& shape, const Session* session, const std::vector<Index>& markers) {
   Eigen::Matrix<double, Eigen::Dynamic, Eigen::Dynamic, Eigen::RowMajor> slopes;
   {
@@ -68,12 +88,15 @@ void bind_solve(nb::module_& module) {
       .def(
           "__init__",
           [](StaticsOptions* self, const std::string& solver, double tolerance_mm, std::optional<int> max_iterations,
-             int anderson, int threads, bool stable, bool as_published) {
+             int anderson, int threads, bool stable, bool as_published,
+             const std::vector<std::pair<std::string, double>>& tuned) {
             if (solver != "newton" && solver != "local-global")
               throw InvalidInput("solver must be 'newton' or 'local-global', not '" + solver + "'");
             if (max_iterations && *max_iterations < 1)
               throw InvalidInput("max_iterations must be at least 1, not " + std::to_string(*max_iterations));
+            const SolverOptions tuning = options_of(tuned);
             auto* options = new (self) StaticsOptions();
+            options->tuning = tuning;
             options->solver = solver == "newton" ? Solver::newton : Solver::local_global;
             options->step_tolerance_mm = tolerance_mm;
             options->max_iterations = max_iterations.value_or(0);
@@ -83,7 +106,7 @@ void bind_solve(nb::module_& module) {
             options->as_published = as_published;
           },
           nb::arg("solver"), nb::arg("tolerance_mm"), nb::arg("max_iterations").none(), nb::arg("anderson"),
-          nb::arg("threads"), nb::arg("stable"), nb::arg("as_published"))
+          nb::arg("threads"), nb::arg("stable"), nb::arg("as_published"), nb::arg("options"))
       .def_ro("as_published", &StaticsOptions::as_published)
       .def(
           "of_call",
@@ -102,9 +125,10 @@ void bind_solve(nb::module_& module) {
             const StaticsOptions usual;
             return options.solver != usual.solver || options.step_tolerance_mm != usual.step_tolerance_mm ||
                    options.max_iterations != usual.max_iterations || options.stable || options.beyond > 0 ||
-                   options.as_published || options.elapsed_s != usual.elapsed_s;
+                   options.as_published || options.elapsed_s != usual.elapsed_s || options.tuning != usual.tuning;
           },
           "Does a request need the solver?");
+  module.def("read_solver_options", &read_options, nb::arg("file"), "Pairs of group.name and value.");
   module.def("solve", &solve, nb::arg("robot"), nb::arg("session").none(), nb::arg("actuation"),
              nb::arg("start").none(), nb::arg("positions").none(), nb::arg("file").none(), nb::arg("options"),
              nb::arg("progress").none());

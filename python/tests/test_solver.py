@@ -107,3 +107,25 @@ def test_the_document() -> None:
     names: dict[str, Any] = {"robot": beam(2, 5), "softkin": softkin}
     exec(compile(shown, "docs/python.md", "exec"), names)
     assert names["shape"].converged
+
+
+def test_options(small: softkin.Robot, tmp_path: Path) -> None:
+    """Tuned constants by name or from a file, as a value; they reach the solver and its report."""
+    file = tmp_path / "tuned.yaml"
+    file.write_text("step: {max_turn: 20}\nnewton:\n  max_iterations: 25\n")
+    tuned = Solver(options={"step": {"max_turn": 20}, "newton": {"max_iterations": 25}})
+    assert tuned == Solver(options=file) == Solver(options={"step.max_turn": 20, "newton.max_iterations": 25})
+    assert tuned != Solver() and pickle.loads(pickle.dumps(tuned)) == tuned and len({tuned, Solver()}) == 2
+    assert Solver(options={}) == Solver()
+    shape = small.solve(solver=tuned)
+    assert shape.report["solver"]["options"] == {"step": {"max_turn": 20}, "newton": {"max_iterations": 25}}
+    assert "options" not in small.solve().report["solver"]
+    for options, message in (
+        ({"stpe": {"max_turn": 20}}, "did you mean 'step'"),
+        ({"step": {"max_trun": 20}}, "did you mean 'max_turn'"),
+        ({"step": {"max_turn": -1}}, "must be above 0, not -1"),
+        ({"step": {"max_turn": "20"}}, "must be a number, not '20'"),
+        (3, "options must be a map of groups"),
+    ):
+        with pytest.raises(softkin.InvalidInput, match=re.escape(message)):
+            Solver(options=options)

@@ -415,9 +415,9 @@ TEST(FkHelp, NamesEveryOptionInALine) {
   const ProgramResult help = run_program({"fk", "--help"});
   EXPECT_EQ(help.exit_code, 0);
   EXPECT_EQ(help.errors, "");
-  for (const char* option :
-       {"SCENE", "--set", "--path", "-o,--output", "--report", "--image", "--view", "--solver", "--formulation",
-        "--force", "--solver-tolerance", "--max-iterations", "--anderson", "--threads", "--resume", "--json"})
+  for (const char* option : {"SCENE", "--set", "--path", "-o,--output", "--report", "--image", "--view", "--solver",
+                             "--formulation", "--force", "--solver-tolerance", "--max-iterations", "--anderson",
+                             "--options", "--threads", "--resume", "--json"})
     EXPECT_NE(help.output.find(std::string("\n  ") + option), std::string::npos) << option;
   for (const std::string& line : lines_of(help.output)) EXPECT_LE(line.size(), 100u) << line;
   EXPECT_NE(help.output.find("Exit code: 0 done, 1 not converged, a\nlimit or interrupted, 2 bad usage or bad input."),

@@ -89,12 +89,13 @@ std::string journal_head(const Model& model, const MapOptions& options) {
   std::string ranges;
   for (const Actuator& actuator : model.actuators)
     ranges += " " + actuator.name + " " + exact(actuator.low) + " " + exact(actuator.high);
+  const std::string changes = changes_text(options.statics.tuning);
   return "softkin map journal 1, softkin " SOFTKIN_VERSION "\nrobot " + fingerprint_of(model) + ranges + "\naccuracy " +
          exact(options.accuracy_mm) + " mm, loads " + exact(options.load_accuracy) + ", ratios " +
          exact(options.ratio_accuracy) + ", shape " + exact(options.shape_accuracy_mm) + " mm; seed " +
          std::to_string(options.seed) + "; solver tolerance " + exact(options.statics.step_tolerance_mm) +
          " mm, iterations " + std::to_string(options.statics.iteration_limit()) +
-         (options.statics.stable ? ", stable" : "") + "\n";
+         (options.statics.stable ? ", stable" : "") + (changes.empty() ? "" : ", options " + changes) + "\n";
 }
 
 }  // namespace

@@ -124,6 +124,8 @@ Json solver_json(const StaticsOptions& options, const UsedMap* map) {
   if (options.as_published) json["as_published"] = true;
   if (options.stable) json["stable"] = true;
   if (options.beyond > 0) json["beyond"] = options.beyond;
+  for (const OptionValue& option : changed_options(options.tuning))
+    json["options"][option.group][option.field.name] = option.value;
   if (map != nullptr) json["begun_from_map"] = map_json(*map);
   return json;
 }

@@ -56,6 +56,7 @@ std::string solver_text(const StaticsOptions& solver) {
     text += ", at most " + counted(static_cast<std::size_t>(solver.iteration_limit()), "iteration");
   if (solver.stable) text += ", stable";
   if (solver.anderson != defaults.anderson) text += ", anderson " + std::to_string(solver.anderson);
+  if (const std::string changes = changes_text(solver.tuning); !changes.empty()) text += ", options " + changes;
   return text;
 }
 

@@ -28,6 +28,8 @@ struct StepSizeOptions {
   double some_contact_growth = 2.0;
   double measure_probe = 0.01;
   double max_measure_change = 0.4;
+
+  friend bool operator==(const StepSizeOptions&, const StepSizeOptions&) = default;
 };
 
 /// Which equilibria are accepted as the end of a step.
@@ -40,6 +42,8 @@ struct AcceptanceOptions {
   double max_inverting = 0.01;
   double max_residual = 0.01;
   double long_fall = 0.2;
+
+  friend bool operator==(const AcceptanceOptions&, const AcceptanceOptions&) = default;
 };
 
 /// Where a path ends before its requested load state.
@@ -53,6 +57,8 @@ struct TerminationOptions {
   double progress_factor = 2.0;
   double min_slipping = 0.5;
   int curve_failures = 2;
+
+  friend bool operator==(const TerminationOptions&, const TerminationOptions&) = default;
 };
 
 /// Checks for limit points between the ends of a step.
@@ -66,6 +72,8 @@ struct SegmentCheckOptions {
   int max_corrections = 60;
   double rate_difference = 1e-3;
   double middle_accuracy = 1e-3;
+
+  friend bool operator==(const SegmentCheckOptions&, const SegmentCheckOptions&) = default;
 };
 
 /// Arc-length continuation.
@@ -87,6 +95,8 @@ struct ArcLengthOptions {
   double min_step = 0.02;
   double factor_difference = 1e-3;
   double before_turn = 0.02;
+
+  friend bool operator==(const ArcLengthOptions&, const ArcLengthOptions&) = default;
 };
 
 /// Arc-length continuation past a turning point, with the option stable.
@@ -95,6 +105,8 @@ struct BeyondTurnOptions {
   int max_failures = 8;
   double min_step = 1e-4;
   double min_load_factor = -1.0;
+
+  friend bool operator==(const BeyondTurnOptions&, const BeyondTurnOptions&) = default;
 };
 
 /// Continuation with the volume of a chamber or the length of a cable as the parameter.
@@ -114,6 +126,8 @@ struct MeasureControlOptions {
   double whole_step = 0.9;
   double max_extrapolation = 3.0;
   double max_second_order = 0.5;
+
+  friend bool operator==(const MeasureControlOptions&, const MeasureControlOptions&) = default;
 };
 
 /// The branch beyond a limit point, along a measure.
@@ -128,6 +142,8 @@ struct PostLimitOptions {
   double search_range = 10.0;
   double load_tolerance = 1e-3;
   int max_bisections = 20;
+
+  friend bool operator==(const PostLimitOptions&, const PostLimitOptions&) = default;
 };
 
 /// How unstable equilibria are left with the option stable.
@@ -139,6 +155,8 @@ struct BucklingOptions {
   double medium_push = 0.02;
   double large_push = 0.1;
   double min_departure = 0.1;
+
+  friend bool operator==(const BucklingOptions&, const BucklingOptions&) = default;
 };
 
 /// The predictor.
@@ -156,6 +174,8 @@ struct PredictionOptions {
   int max_compared = 1000;
   double max_error = 0.3;
   double max_error_tolerances = 100.0;
+
+  friend bool operator==(const PredictionOptions&, const PredictionOptions&) = default;
 };
 
 /// Iterations and tolerances of Newton's method.
@@ -174,6 +194,8 @@ struct ConvergenceOptions {
   double no_contraction = 0.9;
   int max_equal_steps = 12;
   int max_descent_steps = 5;
+
+  friend bool operator==(const ConvergenceOptions&, const ConvergenceOptions&) = default;
 };
 
 /// Damping of Newton steps.
@@ -187,6 +209,8 @@ struct LineSearchOptions {
   double change_weight = 2.0;
   double multiplier_weight = 0.01;
   double max_extension = 64.0;
+
+  friend bool operator==(const LineSearchOptions&, const LineSearchOptions&) = default;
 };
 
 /// How the stiffness is made positive; shifts are over its mean diagonal.
@@ -199,6 +223,8 @@ struct RegularisationOptions {
   double min_wrinkled_shift = 1e-4;
   double max_shift = 100.0;
   double projected_growth = 10.0;
+
+  friend bool operator==(const RegularisationOptions&, const RegularisationOptions&) = default;
 };
 
 /// How long a factor serves, and when it is computed in double precision.
@@ -216,6 +242,8 @@ struct RefactorisationOptions {
   double refined_accuracy = 0.03;
   double max_refined_error = 0.3;
   int refinement_rounds = 6;
+
+  friend bool operator==(const RefactorisationOptions&, const RefactorisationOptions&) = default;
 };
 
 /// The lowest mode, and the stiffness along it.
@@ -228,6 +256,8 @@ struct StabilityOptions {
   int softest_iterations = 3;
   double difference = 1e-6;
   double max_change = 0.25;
+
+  friend bool operator==(const StabilityOptions&, const StabilityOptions&) = default;
 };
 
 /// Derivatives of an equilibrium.
@@ -238,6 +268,8 @@ struct DerivativeOptions {
   double accuracy_fraction = 0.3;
   double max_rounding = 1e-6;
   double slack_margin = 1e-9;
+
+  friend bool operator==(const DerivativeOptions&, const DerivativeOptions&) = default;
 };
 
 /// Contact continuation and friction updates.
@@ -258,6 +290,8 @@ struct ContactOptions {
   double max_turn = 2.5;
   double min_advance = 1e-3;
   double clear_fraction = 0.95;
+
+  friend bool operator==(const ContactOptions&, const ContactOptions&) = default;
 };
 
 /// Sheets that wrinkle or begin flat.
@@ -275,6 +309,8 @@ struct WrinklingOptions {
   double max_smoothing_reduction = 0.4;
   double pressure_reduction = 0.2;
   double max_pressure_reduction = 0.9;
+
+  friend bool operator==(const WrinklingOptions&, const WrinklingOptions&) = default;
 };
 
 /// The solvers of the target-shape formulation.
@@ -299,6 +335,8 @@ struct TargetShapeOptions {
   double energy_drop = 0.9;
   double kept_factor = 0.1;
   double max_turn = 10.0;
+
+  friend bool operator==(const TargetShapeOptions&, const TargetShapeOptions&) = default;
 };
 
 /// The tuned constants of path tracking.
@@ -313,6 +351,8 @@ struct PathOptions {
   PostLimitOptions post_limit{};
   BucklingOptions buckling{};
   PredictionOptions prediction{};
+
+  friend bool operator==(const PathOptions&, const PathOptions&) = default;
 };
 
 /// The tuned constants of Newton's method and of its factors.
@@ -323,6 +363,8 @@ struct NewtonOptions {
   RefactorisationOptions factor{};
   StabilityOptions stability{};
   DerivativeOptions derivative{};
+
+  friend bool operator==(const NewtonOptions&, const NewtonOptions&) = default;
 };
 
 /// All tuned constants.
@@ -332,6 +374,8 @@ struct SolverOptions {
   ContactOptions contact{};
   WrinklingOptions wrinkling{};
   TargetShapeOptions target_shape{};
+
+  friend bool operator==(const SolverOptions&, const SolverOptions&) = default;
 };
 
 /// How the default of an option was found: it follows from a textbook or an estimate of rounding; it was measured, and

@@ -3,6 +3,7 @@ import {type RobotDocument, robotName} from './document';
 /** Solver options that are copied from the command that made the page, with the number of their values. */
 const solverOptions: Record<string, number> = {
   '--force': 1, '--formulation': 1, '--solver': 1, '--solver-tolerance': 1, '--max-iterations': 1, '--anderson': 1,
+  '--options': 1,
   '--stable': 0,
 };
 /** The same for options of an estimate; --fade is not copied, as it has no effect on a table of one row. */
