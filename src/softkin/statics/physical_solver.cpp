@@ -57,7 +57,8 @@ Equilibrium PhysicalSolver::solve(const Actuation& actuation, const State& start
     rest.state.actuation.resize(0);
     rest.state.load_factor = -1;
     rest.report.reached = 0;
-    rest.report.remark = "where the robot rests before times begin: " + rest.report.remark;
+    const std::string& why = rest.report.remark;
+    rest.report.remark = "the robot finds no rest before times begin" + (why.empty() ? "" : ": " + why);
     return rest;
   }
   physical::Equilibria::Options begun = options_of(options);

@@ -32,12 +32,11 @@ class GivenSolver : public FormulationSolver {
   std::unique_ptr<const GivenEquilibria> given_;
 };
 
-/// Reports that the limit of iterations ended a solve, also within a remark that has begun.
+/// Adds to a remark that the limit of iterations ended a solve.
 void report_limit(int iterations, SolveReport& report) {
   const std::string reported =
       "the limit of " + counted(static_cast<std::size_t>(iterations), "iteration") + " (max_iterations) was reached";
-  const bool begun = report.remark.ends_with(": ");
-  report.remark = report.remark.empty() ? reported : report.remark + (begun ? reported : " (" + reported + ")");
+  report.remark = report.remark.empty() ? reported : report.remark + " (" + reported + ")";
 }
 
 std::unique_ptr<FormulationSolver> solver_of(const Model& model, Lender& lender) {
