@@ -58,7 +58,6 @@ set(softkin_public_headers
     statics/electric_layer.hpp
     statics/self_overlap.hpp
     statics/sensitivity.hpp
-    statics/solver_option_fields.hpp
     statics/solver_options.hpp
     statics/statics.hpp
     statics/worst_place.hpp
@@ -111,6 +110,7 @@ set(softkin_included_headers
     io/table/settings.hpp
     io/table/table.hpp
     io/table/workspace_table.hpp
+    statics/solver_option_groups.hpp
     statics/viscous_clock.hpp
     kinematics/maps/piece_solver.hpp
     kinematics/maps/polynomials.hpp
