@@ -96,12 +96,25 @@ TEST(SolverOptions, ReachThePhysicalSolver) {
   const Equilibrium other = solve_converged(statics, bent, few);
   EXPECT_GT(other.report.factorisations, usual.report.factorisations);
   EXPECT_LT(largest_move(other.state.positions, usual.state.positions), 1e-6);
+}
 
-  few.tuning = {};
-  few.tuning.newton.convergence.max_iterations = 4;  // too few for the whole path in one step
-  const Equilibrium shorter = solve_converged(statics, bent, few);
+/// A shallow arch near its limit load takes several steps; shorter ones after a failed step are more.
+TEST(SolverOptions, ReachThePathTracker) {
+  RobotSpec spec = physical_robot(block_mesh({20, 1, 1}, {100, 10, 2}));
+  for (Index v = 0; v < spec.mesh.vertices.rows(); ++v)
+    spec.mesh.vertices(v, 2) += 6 * std::sin(EIGEN_PI * spec.mesh.vertices(v, 0) / 100);
+  spec.mesh_options.quadratic = true;
+  spec.fixed.push_back({{std::string("x_high"), {}}});
+  spec.loads.forces = {{"weight", {Vec3(50, 5, 7), {}}, {0, 0, -0.0095}}};
+  const Model model = compile(spec);
+  const Statics statics(model);
+  StaticsOptions options;
+  const Equilibrium usual = solve_converged(statics, {}, options);
+  EXPECT_GT(usual.report.continuation_steps, 1);
+  options.tuning.path.step.shortening = 0.05;
+  const Equilibrium shorter = solve_converged(statics, {}, options);
   EXPECT_GT(shorter.report.continuation_steps, usual.report.continuation_steps);
-  EXPECT_LT(largest_move(shorter.state.positions, usual.state.positions), 1e-6);
+  EXPECT_LT(largest_move(shorter.state.positions, usual.state.positions), 1e-3);
 }
 
 TEST(SolverOptions, ReachTheTargetShapeSolver) {
