@@ -25,7 +25,7 @@ PYTHON ?= python3
 example := examples/pneumatic_finger
 # without `large`, which takes long and up to 24 GiB
 BENCH ?= iteration factor tracking newton
-# tested under the address and undefined-behaviour sanitizers too; large rooms with some files only (tests/CMakeLists.txt)
+# tested under the address and undefined-behaviour sanitizers too; large modules with some files only (tests/CMakeLists.txt)
 sanitized := core model io statics kinematics drive runs view
 empty :=
 sanitized_pattern = ^($(subst $(empty) $(empty),|,$(strip $(sanitized))))$$
@@ -137,12 +137,12 @@ any_target := env -u SOFTKIN_TARGET
 test-sanitize:
 	cmake --preset sanitize
 	cmake --build --preset sanitize --target $(sanitized:%=test_%)
-	$(any_target) ctest --test-dir build-sanitize --parallel $(cores) --no-tests=error --tests-regex '$(sanitized_pattern)'
+	$(any_target) ctest --test-dir build-sanitize --parallel $(cores) --no-tests=error --label-regex '$(sanitized_pattern)'
 
 test-threads:
 	cmake --preset sanitize-threads
 	cmake --build --preset sanitize-threads --target test_threads
-	$(any_target) ctest --test-dir build-threads --no-tests=error --tests-regex '^threads$$'
+	$(any_target) ctest --test-dir build-threads --no-tests=error --label-regex '^threads$$'
 
 test-fuzz:
 	cmake --preset sanitize
@@ -154,7 +154,7 @@ test-arm:
 	scripts/arm_sysroot.sh
 	cmake -S . -B build-arm/build -G Ninja --toolchain cmake/aarch64.cmake -DSOFTKIN_OPENCV=OFF -DSOFTKIN_BENCH=OFF -DSOFTKIN_TESTS=ON
 	cmake --build build-arm/build --target test_core test_linear test_energy test_contact
-	$(any_target) ctest --test-dir build-arm/build --parallel $(cores) --no-tests=error --tests-regex '^(core|(linear|energy|contact)_neon)$$'
+	$(any_target) ctest --test-dir build-arm/build --parallel $(cores) --no-tests=error --label-regex '^(core|(linear|energy|contact)_neon)$$'
 
 # What builds the package stays in the folder of its own, as pip's isolated builds lie in another place each time, and
 # the module would be compiled anew.

@@ -1,4 +1,4 @@
-# cmake --install: headers, rooms, programs, and the package that find_package(softkin CONFIG) finds.
+# cmake --install: headers, modules, programs, and the package that find_package(softkin CONFIG) finds.
 include(CMakePackageConfigHelpers)
 set(package_dir ${CMAKE_INSTALL_LIBDIR}/cmake/softkin)
 

@@ -1,7 +1,7 @@
 #pragma once
 
 // Vectors of the target that a kernel is compiled for; included by the files of `kernels` folders alone, which are
-// compiled once for each target with SOFTKIN_TARGET and SOFTKIN_VECTOR_BYTES set (cmake/rooms.cmake).
+// compiled once for each target with SOFTKIN_TARGET and SOFTKIN_VECTOR_BYTES set (cmake/modules.cmake).
 #ifndef SOFTKIN_TARGET
 #error "for files in a folder `kernels` only"
 #endif

@@ -6,7 +6,7 @@
 namespace softkin {
 
 /// Instruction sets that the inner loops are compiled for. What has inner loops stands in the `kernels` folder of its
-/// room and is compiled once for each (cmake/rooms.cmake), in a namespace of that name.
+/// module and is compiled once for each (cmake/modules.cmake), in a namespace of that name.
 enum class Target {
   sse4,    // SSE4.2
   avx2,    // AVX2, FMA

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-/// What this room leaves to OpenCV: decoding, and the finding of tags and boards. The room has these declarations
+/// What this module leaves to OpenCV: decoding, and the finding of tags and boards. The module has these declarations
 /// alone; who uses it brings the functions: programs those of linked/, which call OpenCV's libraries, the Python
 /// package those of python/src/vision, which call its cv2.
 namespace softkin::vision::opencv {

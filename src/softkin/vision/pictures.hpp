@@ -14,7 +14,7 @@ namespace opencv {
 class Video;
 }
 
-/// Before anything else of this room: threads of OpenCV (0: one a core), and its own messages off.
+/// Before anything else of this module: threads of OpenCV (0: one a core), and its own messages off.
 void prepare_opencv(int threads);
 
 /// A picture of any common form (PNG, JPEG, TIFF, BMP, ...), 8 bits a channel, turned as its camera specifies.

@@ -1,4 +1,4 @@
-# How every target of this project is compiled, what its users are told, and one static library per room.
+# How every target of this project is compiled, what its users are told, and one static library per module.
 
 # For this project alone: nothing of it reaches whoever links softkin.
 add_compile_options(-Wall -Wextra -Wpedantic -Wshadow -fno-math-errno -ffp-contract=fast)
@@ -22,7 +22,7 @@ if((CMAKE_CXX_COMPILER_ID STREQUAL Clang AND CMAKE_CXX_COMPILER_VERSION VERSION_
   add_compile_options(-Werror)
 endif()
 if(SOFTKIN_SANITIZE)
-  # what libFuzzer watches is marked in the rooms whose readers it is given alone: an eighth of the compiler's time
+  # what libFuzzer watches is marked in the modules whose readers it is given alone: an eighth of the compiler's time
   string(REGEX REPLACE ",?fuzzer-no-link" "" softkin_sanitizers ${SOFTKIN_SANITIZE})
   set(softkin_fuzzed softkin_core softkin_model softkin_io softkin_drive softkin_runs fuzz_main softkin_fuzz softkin_fuzz_journals)
   add_compile_options(-fsanitize=${softkin_sanitizers} -fno-sanitize-recover=all -fno-omit-frame-pointer)
@@ -38,7 +38,7 @@ endif()
 # and command and package give the same bits.
 add_compile_options(-fPIC -fno-semantic-interposition)
 
-# What users get too. Eigen chooses by -march how it aligns, and with it how it allocates and frees: a matrix of a room
+# What users get too. Eigen chooses by -march how it aligns, and with it how it allocates and frees: a matrix of a module
 # built for AVX-512 would crash a user's program built for any x86-64. So both are told one alignment. Of those that
 # suit every machine (16 and 64) 64 it is: sums of vectors that begin between two packets would depend on the address.
 add_library(softkin_settings INTERFACE)
@@ -81,7 +81,7 @@ function(softkin_precompile target)
 endfunction()
 
 # softkin_compile_together(TARGET): its files in groups, for half the work; not kernels. So what a file has for itself has
-# a name that no other file of its room gives to something else. Groups of 20 take up to a fifth less of the compiler's
+# a name that no other file of its module gives to something else. Groups of 20 take up to a fifth less of the compiler's
 # time than those of 10, and up to 3.4 GiB each in place of 2 (gcc); those of 40 another fifth less, but keep few
 # processors busy.
 set(softkin_group 20)
@@ -108,7 +108,7 @@ function(softkin_compile_together target)
                          $<$<AND:$<CXX_COMPILER_ID:Clang>,$<CONFIG:Release>>:SHELL:${level}>)
 endfunction()
 
-# What has inner loops, the folder `kernels` of a room, is compiled for each of these; the best that the machine has is
+# What has inner loops, the folder `kernels` of a module, is compiled for each of these; the best that the machine has is
 # chosen when the program starts (src/softkin/core/target.hpp). All else is compiled for any processor.
 if(SOFTKIN_PLAIN)
   set(softkin_targets plain)
@@ -126,15 +126,15 @@ set(softkin_flags_avx512 ${softkin_flags_avx2} -mavx512f -mavx512bw -mavx512dq -
 set(softkin_bytes_avx2 32)
 set(softkin_bytes_avx512 64)
 
-# softkin_kernels(ROOM FILES...): compiled for every target, into the room's library. They have no precompiled header,
+# softkin_kernels(MODULE FILES...): compiled for every target, into the module's library. They have no precompiled header,
 # whose inline functions would be taken for all of the program (tests/check_kernels.cmake looks that there are none).
-function(softkin_kernels room)
+function(softkin_kernels module)
   foreach(target ${softkin_targets})
     set(bytes ${softkin_bytes_${target}})
     if(NOT bytes)
       set(bytes 16)
     endif()
-    set(kernels softkin_${room}_${target})
+    set(kernels softkin_${module}_${target})
     add_library(${kernels} OBJECT ${ARGN})
     target_link_libraries(${kernels} PRIVATE softkin_settings)
     softkin_under_sanitizers(${kernels})
@@ -147,13 +147,13 @@ function(softkin_kernels room)
       target_compile_options(${kernels} PRIVATE -mmove-max=${bits} -mstore-max=${bits}
                              -mmemcpy-strategy=vector_loop:-1:noalign -mmemset-strategy=vector_loop:-1:noalign)
     endif()
-    target_sources(softkin_${room} PRIVATE $<TARGET_OBJECTS:${kernels}>)
+    target_sources(softkin_${module} PRIVATE $<TARGET_OBJECTS:${kernels}>)
   endforeach()
 endfunction()
 
-# softkin_room(NAME [rooms and libraries it uses...]): every .cpp of the folder and of those in it, but for `linked`, which
+# softkin_module(NAME [modules and libraries it uses...]): every .cpp of the folder and of those in it, but for `linked`, which
 # is vision's alone
-function(softkin_room name)
+function(softkin_module name)
   file(GLOB_RECURSE sources CONFIGURE_DEPENDS ${CMAKE_CURRENT_SOURCE_DIR}/${name}/*.cpp)
   set(kernels ${sources})
   list(FILTER kernels INCLUDE REGEX "/kernels/")

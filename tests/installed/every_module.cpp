@@ -1,5 +1,5 @@
-// A program that includes every public header, and calls each room of an installed softkin (tests/installed.cmake).
-//   every_room SCENE
+// A program that includes every public header, and calls each module of an installed softkin (tests/installed.cmake).
+//   every_module SCENE
 
 #include "public_headers.hpp"  // written by installed.cmake
 
