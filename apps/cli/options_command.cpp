@@ -19,7 +19,8 @@ int print_tables(const NoOptions& /*options*/) {
 }  // namespace
 
 void add_options_command(CLI::App& app, Run& run) {
-  add_command(app, run, "options", "Tuned constants of the solvers, as docs/following.md lists them", "", &declare_none,
+  add_command(app, run, "options", "Tuned constants of the solvers, as docs/path_tracking.md lists them", "",
+              &declare_none,
               &print_tables)
       ->group("");  // hidden: scripts/option_tables.py calls it
 }

@@ -162,7 +162,8 @@ void add_solver(CLI::App& command, SolveOptions& options, const std::string& thr
             options.tuning = runs::read_solver_options(file);
             options.tuning_file = file;
           },
-          "Other tuned constants of the solvers, by group, such as\nstep: {max_turn: 20}; docs/following.md lists them")
+          "Other tuned constants of the solvers, by group, such as\nstep: {max_turn: 20}; docs/path_tracking.md lists "
+          "them")
       ->type_name("F.yaml");
   command
       .add_option_function<double>(

@@ -11,6 +11,7 @@ from typing import Any, ClassVar, NamedTuple, ParamSpec, TypeVar
 
 from . import _core
 from ._core import InvalidInput
+from ._kinds import shown
 from ._warning import warn
 
 __all__ = ["Progress", "Solver"]
@@ -29,11 +30,11 @@ def _pairs_of(options: Any) -> tuple[tuple[str, float], ...] | None:
             pairs += [(group if name is None else f"{group}.{name}", value) for name, value in named]
     except (TypeError, ValueError):
         raise InvalidInput(
-            f"options must be a map of groups, such as {{'step': {{'max_turn': 20}}}}, or a file, not {options!r}"
+            f"options must be a map of groups, such as {{'step': {{'max_turn': 20}}}}, or a file, not {shown(options)}"
         ) from None
     for name, value in pairs:
         if isinstance(value, bool) or not isinstance(value, (int, float)):
-            raise InvalidInput(f"the option {name} must be a number, not {value!r}")
+            raise InvalidInput(f"the option {name} must be a number, not {shown(value)}")
     return tuple((str(name), float(value)) for name, value in pairs) or None
 
 
@@ -65,8 +66,17 @@ class Solver:
         if self.tolerance_mm is not None and not self.tolerance_mm > 0:
             raise InvalidInput(f"the tolerance must be a length > 0 in mm, not {self.tolerance_mm}")
         object.__setattr__(self, "options", _pairs_of(self.options))
-        method, tolerance_mm, *others, options = astuple(self)
-        object.__setattr__(self, "_options", _core.SolveOptions(method, tolerance_mm or 0.0, *others, options or ()))
+        made = _core.SolveOptions(
+            self.method,
+            self.tolerance_mm or 0.0,
+            self.max_iterations,
+            self.anderson,
+            self.threads,
+            self.stable,
+            self.as_published,
+            self.options or (),
+        )
+        object.__setattr__(self, "_options", made)
 
     def __repr__(self) -> str:
         """Shows the options that differ from the defaults."""

@@ -43,9 +43,9 @@ void members(A& archive, LoadBranch& b) {
 template <class A>
 void members(A& archive, PhysicalReport& r) {
   auto& [residual_N, pull_N, unstable_modes, buckled, buckled_mm, snapped_mm, snapped_from, friction_change,
-         slipping_fraction, unstable_from, branch] = r;
+         unstable_from, branch] = r;
   archive(residual_N, pull_N, unstable_modes, buckled, buckled_mm, snapped_mm, snapped_from, friction_change,
-          slipping_fraction, unstable_from, branch);
+          unstable_from, branch);
 }
 template <class A>
 void members(A& archive, SolveReport& r) {
@@ -163,8 +163,8 @@ void members(A& archive, PullDirection& d) {
 }
 template <class A>
 void members(A& archive, Pull& p) {
-  auto& [direction, status, force_N, moved_mm, pressed, last] = p;
-  archive(direction, status, force_N, moved_mm, pressed, last);
+  auto& [direction, status, slips, force_N, moved_mm, pressed, last] = p;
+  archive(direction, status, slips, force_N, moved_mm, pressed, last);
 }
 template <class A>
 void members(A& archive, Grasp& g) {

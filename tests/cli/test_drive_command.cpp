@@ -267,7 +267,7 @@ TEST(DriveCommand, TakesThePressuresOfAMap) {
   const json reported = json::parse(folder.drive({"--map", map, "--dry-run", "--json"}).output);
   EXPECT_EQ(reported["pressures_by_map"]["file"], map);
 
-  folder.refused({"--map", map, "--pressures", report, "--dry-run"}, "give one of them");
+  folder.refused({"--map", map, "--pressures", report, "--dry-run"}, "use one of them");
   folder.refused({"--map", report, "--dry-run"}, report + ": is no map of softkin");
   folder.refused({"--map", map, "--schedule", map}, "would replace a file that is read");
   folder.write("commands.csv", "t_s,tendon\n0,1\n1,0.9\n");
@@ -470,7 +470,7 @@ TEST(DriveCommand, CtrlZPausesAndGoesOn) {
                                   {"drive", folder.scene, folder.commands, "--port", board.port(), "--boot-wait", "0"});
   ASSERT_TRUE(program.wait_until([&] { return board.moves() >= 5; }));
   program.send(SIGTSTP);
-  ASSERT_TRUE(program.wait_until([&] { return has(read_text(folder / "stderr.txt"), "paused: Ctrl-Z goes on"); }));
+  ASSERT_TRUE(program.wait_until([&] { return has(read_text(folder / "stderr.txt"), "paused: Ctrl-Z continues"); }));
   ::usleep(300'000);  // the move in flight ends
   const long paused = board.moves();
   ::usleep(100'000);

@@ -131,8 +131,8 @@ TEST(EstimateCommand, ByAMapTellsTheSame) {
     EXPECT_EQ(rows[r]["readings"].size(), others[r]["readings"].size());
   }
   for (const auto& [more, why] : std::vector<std::pair<std::vector<std::string>, std::string>>{
-           {{"--unknown", "push:place", "--deviation", "1"}, "a map knows forces at known places"},
-           {{"--unknown", "push", "--deviation", "1", "--fade", "2"}, "a map tells each row by itself"},
+           {{"--unknown", "push:place", "--deviation", "1"}, "a map has forces at known places"},
+           {{"--unknown", "push", "--deviation", "1", "--fade", "2"}, "a map estimates each row by itself"},
            {{"--unknown", "materials.all.stiffness=1+-0.1", "--deviation", "1"}, "is no input of the map"}}) {
     std::vector<std::string> words = more;
     words.insert(words.end(), {"--map", map});

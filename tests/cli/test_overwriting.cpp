@@ -250,9 +250,9 @@ Words all_commands() {
 
 /// An option that names a file is read, or stands above; --pull has a direction.
 TEST(Overwriting, EveryOutputOptionIsTested) {
-  const std::set<std::string> read{"--path",      "--map",     "--start",   "--workspace", "--hardware",
-                                   "--pressures", "--tensile", "--twist",   "--creep",     "--sum",
-                                   "--pull",      "--camera",  "--outlines"};
+  const std::set<std::string> read{"--path",      "--map",     "--start",    "--workspace", "--hardware",
+                                   "--pressures", "--tensile", "--twist",    "--creep",     "--sum",
+                                   "--pull",      "--camera",  "--outlines", "--options"};
   std::set<std::pair<std::string, std::string>> tested;
   for (const Written& each : all_outputs()) tested.emplace(each.command, each.option);
   for (const auto& [command, option] : {std::pair("drive", "--log"), {"measure", "-o"}, {"measure camera", "-o"}})

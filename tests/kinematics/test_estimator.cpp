@@ -331,7 +331,7 @@ TEST(Estimator, SaysWhatAVolumeDoesNotTell) {
   ASSERT_EQ(reported.status, Status::converged);
   EXPECT_LT(reported.numbers[2].deviation, reported.numbers[2].known_deviation);
   const std::vector<std::string> words = estimate_words(reported, estimator.groups());
-  for (const std::string start : {"touch_fx is told to", "touch_fy is told to", "the place of touch is told to"})
+  for (const std::string start : {"touch_fx is known to", "touch_fy is known to", "the place of touch is known to"})
     EXPECT_TRUE(std::any_of(words.begin(), words.end(), [&](const std::string& w) { return w.starts_with(start); }))
         << start;
 }

@@ -48,7 +48,7 @@ Constants constants_in(const std::string& source) {
   return found;
 }
 
-/// By file, what the tables of following.md have.
+/// By file, what the tables of path_tracking.md have.
 std::map<std::string, Constants> constants_reported(const std::string& page) {
   static const std::regex heading(R"(### `(\w+)`)"), row(R"(\| `(\w+)` \| ([^|]+) \|.*)");
   std::map<std::string, Constants> reported;
@@ -66,10 +66,10 @@ std::map<std::string, Constants> constants_reported(const std::string& page) {
 
 }  // namespace
 
-/// following.md has every number of laws that is no option, with its value.
+/// path_tracking.md has every number of laws that is no option, with its value.
 TEST(Architecture, ListsConstantsOfLaws) {
   const fs::path source(SOFTKIN_SOURCE_DIR);
-  const auto reported = constants_reported(text_of(source / "docs/following.md"));
+  const auto reported = constants_reported(text_of(source / "docs/path_tracking.md"));
   for (const std::string file : {"pressures", "fibres", "fibre_families"}) {
     ASSERT_TRUE(reported.contains(file)) << file;
     EXPECT_EQ(reported.at(file), constants_in(text_of(source / "src/softkin/statics/physical" / (file + ".cpp"))))
@@ -88,13 +88,13 @@ TEST(Architecture, LeavesFewConstantsThatAreNoOptions) {
   EXPECT_LE(count, 60u);
 }
 
-/// Every source of the rooms that are not read in a minute.
+/// Every source of the modules that are not read in a minute.
 TEST(Architecture, HasARowForEverySource) {
   const fs::path source(SOFTKIN_SOURCE_DIR);
   const std::set<std::string> names = names_in_tables(source / "docs/architecture.md");
   std::set<std::string> stems;
-  for (const char* room : {"statics", "runs"})
-    for (const auto& entry : fs::recursive_directory_iterator(source / "src/softkin" / room)) {
+  for (const char* module : {"statics", "runs"})
+    for (const auto& entry : fs::recursive_directory_iterator(source / "src/softkin" / module)) {
       if (entry.path().extension() != ".hpp" && entry.path().extension() != ".cpp") continue;
       stems.insert(entry.path().stem().string());
       EXPECT_TRUE(names.contains(entry.path().stem().string())) << entry.path();

@@ -121,7 +121,7 @@ TEST(TurnedBodies, CurvingNamesWhereTheMeshIsTooCoarse) {
     for (const std::string& note : compile(spec).notes) all += note;
     return all;
   };
-  EXPECT_NE(notes_of(1).find("too coarse to tell how the surface runs at"), std::string::npos) << notes_of(1);
+  EXPECT_NE(notes_of(1).find("too coarse to determine how the surface runs at"), std::string::npos) << notes_of(1);
   EXPECT_EQ(notes_of(6).find("too coarse"), std::string::npos) << notes_of(6);
 }
 

@@ -132,7 +132,7 @@ TEST(SolverOptions, ReachTheTargetShapeSolver) {
 /// `scripts/option_tables.py` writes them.
 TEST(SolverOptions, TablesOfTheDocumentAreUpToDate) {
   std::ostringstream text;
-  text << std::ifstream(std::string(SOFTKIN_SOURCE_DIR) + "/docs/following.md").rdbuf();
+  text << std::ifstream(std::string(SOFTKIN_SOURCE_DIR) + "/docs/path_tracking.md").rdbuf();
   const std::string page = text.str(), begin = "<!-- options -->\n\n", end = "<!-- end of options -->\n";
   const std::size_t from = page.find(begin), to = page.find(end);
   ASSERT_NE(from, std::string::npos);

@@ -65,7 +65,7 @@ TEST(ViewCommand, RefusesWhatCannotBe) {
   for (const char* option : {"--deviation", "--deviation-volume", "--fade", "--readings-port"})
     refuses({option, "1"}, std::string(option) + ": it needs --unknown");
   refuses({"--keep-all"}, "--keep-all: it needs --unknown");
-  refuses({"--unknown", "air", "--make-map"}, "--make-map: what is told of --unknown is told by the solver alone");
+  refuses({"--unknown", "air", "--make-map"}, "--make-map: --unknown is estimated by the solver alone");
   refuses({"--unknown", "air:", "--deviation", "1"}, "what comes after the colon can only be 'place'");
   refuses({"--unknown", "air", "--deviation", "0"}, "--deviation: must be a number > 0 in mm, not 0");
   if (!runs::page_is_there()) return refuses({}, "this softkin was built without its page");

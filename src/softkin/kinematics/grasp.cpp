@@ -120,7 +120,7 @@ std::vector<PullDirection> axes_to_pull_along() {
 const char* what_then(const Pull& pull) {
   if (pull.status == Status::converged) return "holds more";
   if (pull.status != Status::limit) return name_of(pull.status);
-  return pull.last.report.physical.slipping_fraction > 0 ? "slips" : "gives way";
+  return pull.slips ? "slips" : "gives way";
 }
 
 Actuation pulled(const Model& model, Actuation actuation, Index body, const Vec3& direction, double force_N) {
@@ -237,7 +237,8 @@ class Pulling {
     report.stopped = false;
     if (status == Status::converged) return;
     report.remark = lost_.empty() ? "no equilibrium was found under a larger pull" : lost_;
-    if (lost_.empty() && friction_used() >= nearly) report.remark += ", where it slips";
+    pull_.slips = lost_.empty() && friction_used() >= nearly;
+    if (pull_.slips) report.remark += ", where it slips";
     if (!lost_.empty()) pull_.status = report.status = Status::not_converged;
   }
 

@@ -64,6 +64,7 @@ struct PullTask {
 struct Pull {
   PullDirection direction;                // of length 1
   Status status = Status::not_converged;  // limit: it was found; converged: it exceeds the maximum; interrupted
+  bool slips = false;                     // at the limit: is its friction used up
   double force_N = 0;                     // the largest at which there is an equilibrium
   double moved_mm = 0;                    // the center of mass of the body from where it was without the pull
   Pressed pressed;                        // the body, at that force

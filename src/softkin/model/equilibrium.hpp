@@ -87,17 +87,16 @@ struct LoadBranch {
 
 /// The report of the physical formulation on a solve, in addition to SolveReport.
 struct PhysicalReport {
-  double residual_N = 0;         // the largest residual force at a vertex or on a rigid region [N]
-  double pull_N = 0;             // the largest sum of element forces at a vertex [N], with which it is compared
-  int unstable_modes = 0;        // number of unstable modes of the equilibrium
-  int buckled = 0;               // how often an unstable equilibrium was left for a stable one
-  double buckled_mm = 0;         // the largest displacement of a vertex in these [mm]
-  double snapped_mm = 0;         // the largest deviation of a step from its tangent prediction [mm]; 0: no snap-through
-  double snapped_from = 0;       // fraction of the path at which that step began [-]
-  double friction_change = 0;    // of a vertex' friction in the last update of normal forces, over the largest [-]
-  double slipping_fraction = 0;  // at a limit, of the normal forces whose friction slips, or nearly; 0: below half [-]
-  double unstable_from = 0;      // the first fraction of the path at which a passed equilibrium was unstable [-]
-  LoadBranch branch;             // where a limit point was traced
+  double residual_N = 0;       // the largest residual force at a vertex or on a rigid region [N]
+  double pull_N = 0;           // the largest sum of element forces at a vertex [N], with which it is compared
+  int unstable_modes = 0;      // number of unstable modes of the equilibrium
+  int buckled = 0;             // how often an unstable equilibrium was left for a stable one
+  double buckled_mm = 0;       // the largest displacement of a vertex in these [mm]
+  double snapped_mm = 0;       // the largest deviation of a step from its tangent prediction [mm]; 0: no snap-through
+  double snapped_from = 0;     // fraction of the path at which that step began [-]
+  double friction_change = 0;  // of a vertex' friction in the last update of normal forces, over the largest [-]
+  double unstable_from = 0;    // the first fraction of the path at which a passed equilibrium was unstable [-]
+  LoadBranch branch;           // where a limit point was traced
 };
 
 /// How a solve ended, and what it took.

@@ -5,7 +5,7 @@
 
 namespace softkin::runs {
 
-/// Reads solver options from a YAML file: a map of groups, each a map of names and numbers; docs/following.md lists
+/// Reads solver options from a YAML file: a map of groups, each a map of names and numbers; docs/path_tracking.md lists
 /// them. Options that are absent keep their defaults.
 ///
 /// throws  InvalidInput naming file and line, and the nearest name where a group or an option is unknown

@@ -72,7 +72,7 @@ PlotPanel panel_of(const Model& model, const StepRecord& step, const StrainAxes&
   PlotPanel panel;
   panel.title = commands_title(model, step.actuation) + beyond_text(step.strain);
   panel.x.label = "principal strain [%]";
-  panel.y.label = "fraction of the body's volume [%]";
+  panel.y.label = "fraction of volume [%]";
   panel.x.low = axes.least;
   panel.x.high = axes.greatest;
   panel.y.low = 0;

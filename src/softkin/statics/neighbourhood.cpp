@@ -1,5 +1,5 @@
 #include <softkin/core/error.hpp>
-#include <softkin/statics/physical/lease.hpp>
+#include <softkin/statics/physical/workspace_handle.hpp>
 #include <softkin/statics/statics_parts.hpp>
 
 namespace softkin {
@@ -11,7 +11,7 @@ struct Neighbourhood::Parts {
   State at;
   TeamPool::Lent team;
   const physical::Equilibria* equilibria = nullptr;
-  std::optional<physical::Equilibria::Lease> lease;
+  std::optional<physical::Equilibria::WorkspaceHandle> handle;
   std::optional<physical::Predictor> physical;
 };
 
@@ -27,8 +27,8 @@ Neighbourhood::Neighbourhood(const Statics& statics, const State& at, int thread
   if (!physical || at.multipliers.size() == 0) return;
   parts_->equilibria = physical;
   const physical::Equilibria::Inside inside(*physical, at, *parts_->team);
-  parts_->lease.emplace(*physical, inside->positions, false, SolverOptions{});
-  parts_->physical.emplace(physical->system(), parts_->lease->work(), *inside, *parts_->team);
+  parts_->handle.emplace(*physical, inside->positions, false, SolverOptions{});
+  parts_->physical.emplace(physical->system(), parts_->handle->work(), *inside, *parts_->team);
 }
 
 Neighbourhood::~Neighbourhood() = default;

@@ -3,7 +3,7 @@
 namespace softkin {
 
 // The tuned constants of the solvers, by group. solver_option_fields.hpp has their units, admissible values, kinds and
-// sentences, and docs/following.md their table. The defaults are what was measured to be fast and reliable.
+// sentences, and docs/path_tracking.md their table. The defaults are what was measured to be fast and reliable.
 
 /// Step-size control along the path.
 struct StepSizeOptions {

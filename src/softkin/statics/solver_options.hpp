@@ -6,7 +6,7 @@
 
 namespace softkin {
 
-/// All tuned constants of the solvers. A file of --options sets them, and docs/following.md lists them.
+/// All tuned constants of the solvers. A file of --options sets them, and docs/path_tracking.md lists them.
 struct SolverOptions {
   PathOptions path{};                 // of path tracking
   NewtonOptions newton{};             // of Newton's method and of its factors
@@ -57,7 +57,7 @@ void check_options(const SolverOptions& options);
 /// Throws InvalidInput where a group is unknown, with the nearest one.
 void check_option_group(const std::string& group);
 
-/// Returns the tables of docs/following.md: Markdown, one for each group.
+/// Returns the tables of docs/path_tracking.md: Markdown, one for each group.
 [[nodiscard]] std::string option_tables();
 
 }  // namespace softkin

@@ -59,7 +59,7 @@ bool ArcLength::correct(const Point& from, double whole, double tolerance, Point
   missed_ = std::numeric_limits<double>::infinity();
   why_ = "its iterations were not enough";
   for (int i = 0; i < tuning_.arc_length.max_corrections; ++i) {
-    if (!corrector_.newton().goes_on()) {
+    if (!corrector_.newton().may_continue()) {
       interrupted_ = true;
       return false;
     }

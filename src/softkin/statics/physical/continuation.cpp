@@ -30,18 +30,18 @@ Continuation::Continuation(const System& system, Workspace& work, Team& team, co
 
 /// Predicts the end of a whole path without a tangent: by the caller's initial guess, by a stored second-order
 /// extrapolation or by a polynomial through the last equilibria. Returns false if none of these is available.
-bool Continuation::lead(const LoadState& here, const LoadState& there, Iterate& trial) {
-  return !system_.contact() &&
-         (follow_initial_guess(here, there, work_, trial) ||
-          follow_extrapolated(system_, here, there, corrector_.active, work_, team_, trial) ||
-          work_.trail.lead(here, there, corrector_.active, options_.tolerance_mm, tuning_.prediction, trial));
+bool Continuation::extrapolate(const LoadState& here, const LoadState& there, Iterate& trial) {
+  return !system_.contact() && (follow_initial_guess(here, there, work_, trial) ||
+                                follow_extrapolated(system_, here, there, corrector_.active, work_, team_, trial) ||
+                                work_.predictor_history.extrapolate(here, there, corrector_.active,
+                                                                    options_.tolerance_mm, tuning_.prediction, trial));
 }
 
 /// Makes one step from flat sheets, which have no stiffness against their loads and so no tangent.
 Newton::Outcome Continuation::step_from_flat(const LoadState& there, const Iterate& at, Iterate& trial) {
   if (corrector_.runs_into_flat(there, at)) return Newton::Outcome::blocked;
   const std::optional<Swelling> swelling = swell(system_, there, corrector_.active, trial, work_, team_);
-  step_.unforetold = swelling.has_value();
+  step_.unpredicted = swelling.has_value();
   step_.predicted = step_.begun = trial.positions;
   step_.move_mm = system_.largest_move(at.positions, step_.predicted);
   return swelling ? corrector_.correct_swollen(there, *swelling, trial)
@@ -53,11 +53,11 @@ Newton::Outcome Continuation::step(const LoadState& here, const LoadState& there
                                    Iterate& trial) {
   if (system_.has_wrinkling() && system_.layers()->flat(at.positions)) return step_from_flat(there, at, trial);
   const bool whole = path_.done == 0 && length == 1;  // later steps are short where the path is difficult
-  bool led = false, cut = false;
+  bool extrapolated = false, cut = false;
   const auto prediction = [&] {
-    led = whole && !led && lead(here, there, trial);
-    step_.extrapolated = led;
-    if (led) {
+    extrapolated = whole && !extrapolated && extrapolate(here, there, trial);
+    step_.extrapolated = extrapolated;
+    if (extrapolated) {
       system_.placement().hold(there, trial.positions);
       step_.predicted = step_.begun = trial.positions;
       step_.move_mm = system_.largest_move(at.positions, step_.predicted);
@@ -75,10 +75,10 @@ Newton::Outcome Continuation::step(const LoadState& here, const LoadState& there
     return clear.move_mm.has_value();
   };
   if (!prediction()) return whole ? fall_onto(here, there, at, trial) : Newton::Outcome::blocked;
-  if (whole && !led && leads_too_far(here, there, at)) return Newton::Outcome::too_far;
+  if (whole && !extrapolated && leads_too_far(here, there, at)) return Newton::Outcome::too_far;
   const bool follows =
       corrector_.last.modes > 0 && !options_.stable && length <= 1.001 * tuning_.acceptance.follow_below;
-  const auto policy = follows ? Newton::Policy::follow : led ? Newton::Policy::near : Newton::Policy::descend;
+  const auto policy = follows ? Newton::Policy::follow : extrapolated ? Newton::Policy::near : Newton::Policy::descend;
   const bool again = system_.contact() && !follows, first = again && whole && cut;
   const Iterate begun = again ? trial : Iterate{};
   const auto correct_with_predicted_contact = [&] {
@@ -93,8 +93,8 @@ Newton::Outcome Continuation::step(const LoadState& here, const LoadState& there
     outcome = corrector_.correct(there, policy, trial, whole && corrector_.factorised_nearby(trial.positions));
   }
   if (outcome == Newton::Outcome::stuck && again && !first) outcome = correct_with_predicted_contact();
-  if (outcome == Newton::Outcome::converged && !led && whole)
-    work_.trail.note_tangent(here, there, system_.largest_move(step_.begun, trial.positions));
+  if (outcome == Newton::Outcome::converged && !extrapolated && whole)
+    work_.predictor_history.note_tangent(here, there, system_.largest_move(step_.begun, trial.positions));
   if (outcome == Newton::Outcome::stuck && !follows && length < tuning_.acceptance.follow_below &&
       corrector_.prepare(here, at) >= 0) {
     trial = at;
@@ -112,7 +112,7 @@ Newton::Outcome Continuation::fall_onto(const LoadState& here, const LoadState& 
   if (!carry_held(system_, here, there, corrector_.active, work_, team_, trial)) return Newton::Outcome::blocked;
   corrector_.give_loads(there, trial);
   step_.predicted = step_.begun = trial.positions;
-  step_.unforetold = true;
+  step_.unpredicted = true;
   const auto outcome = corrector_.predict_contact(there, at, true, trial);
   if (outcome == Newton::Outcome::interrupted) return outcome;
   step_.begun = trial.positions;
@@ -124,7 +124,7 @@ Newton::Outcome Continuation::fall_onto(const LoadState& here, const LoadState& 
 /// start on the side on which the tangent at the start misses the end, and by about as much. After a snap-through or
 /// branch switch it misses the start on the other side.
 bool Continuation::jumped(const LoadState& here, const LoadState& there, const Iterate& at, const Iterate& trial) {
-  if (step_.unforetold) return false;
+  if (step_.unpredicted) return false;
   const double correction = system_.largest_move(step_.predicted, trial.positions);
   const auto jumps = [&] {
     Iterate back = trial;
@@ -160,9 +160,9 @@ Status Continuation::follow_whole(const LoadState& from, const LoadState& to, It
   (void)corrector_.release(to, at, false);
   corrector_.good_shape = at.positions;
   (void)corrector_.renew_anchors(at);
-  if (!same_shape(work_.home, at.positions)) work_.trail.clear();
-  path_.factorised = same_shape(work_.home, at.positions) && corrector_.factor_holds_active();
-  work_.home.resize(0, 3);
+  if (!same_shape(work_.solved_shape, at.positions)) work_.predictor_history.clear();
+  path_.factorised = same_shape(work_.solved_shape, at.positions) && corrector_.factor_holds_active();
+  work_.solved_shape.resize(0, 3);
   if (!path_.factorised && from.actuation == to.actuation && from.load_factor == to.load_factor &&
       from.fading == to.fading) {
     const auto outcome = correct_here(to, at);
@@ -214,7 +214,7 @@ void Continuation::set_out(const LoadState& from, const LoadState& to) {
 /// Runs a measure-controlled continuation of a load, and continues from the load state that it reaches.
 MeasureContinuation::End Continuation::follow_measure(MeasureContinuation::End (MeasureContinuation::*along)(Iterate&),
                                                       Index load, Iterate& at) {
-  if (!corrector_.newton().goes_on()) return MeasureContinuation::End::interrupted;
+  if (!corrector_.newton().may_continue()) return MeasureContinuation::End::interrupted;
   MeasureContinuation follow_measure(corrector_, tracer_, options_,
                                      {load, path_.from, path_.to, path_.here, path_.done, path_.whole()});
   const MeasureContinuation::End end = (follow_measure.*along)(at);
@@ -239,7 +239,7 @@ double Continuation::next_fraction() {
 /// Prepares a step; returns a status if the path ends without one.
 std::optional<Status> Continuation::start_step(const LoadState& there, Iterate& at) {
   if (corrector_.release(there, at, false)) path_.factorised = false;
-  if (!path_.factorised && !corrector_.newton().goes_on()) return Status::interrupted;
+  if (!path_.factorised && !corrector_.newton().may_continue()) return Status::interrupted;
   const int modes = path_.factorised ? corrector_.last.modes : corrector_.prepare(path_.here, at);
   if (modes < 0)
     return limit(path_.done, "no step leads on from here: the stiffness is singular, or an element is inverted", at);
@@ -248,7 +248,7 @@ std::optional<Status> Continuation::start_step(const LoadState& there, Iterate& 
     const MeasureContinuation::End back = follow_measure(&MeasureContinuation::back, path_.load, at);
     if (back == MeasureContinuation::End::interrupted) return Status::interrupted;
     if (back == MeasureContinuation::End::arrived) return arrive(path_.to, at);
-    if (!corrector_.newton().goes_on()) return Status::interrupted;
+    if (!corrector_.newton().may_continue()) return Status::interrupted;
     path_.factorised = corrector_.prepare(path_.here, at) >= 0;
   }
   return std::nullopt;
@@ -300,7 +300,7 @@ SegmentCheck::Verdict Continuation::check_segment(double length, bool changed, c
                                                   const Iterate& trial) {
   using Verdict = SegmentCheck::Verdict;
   const bool has_tangent = step_.extrapolated || step_.straight.rows() > 0;  // flat sheets have none
-  if (step_.unforetold || !has_tangent || !is_smooth()) return Verdict::confirmed;
+  if (step_.unpredicted || !has_tangent || !is_smooth()) return Verdict::confirmed;
   const double farthest = std::max(system_.largest_move(at.positions, trial.positions),
                                    system_.largest_move(at.positions, step_.predicted));
   if (SegmentCheck::is_short(system_, tuning_.segment_check, farthest)) return Verdict::confirmed;
@@ -336,10 +336,11 @@ std::optional<Status> Continuation::go_on(Iterate& at) {
   const std::vector<bool> active = corrector_.active;
   work_.left_field = false;
   tracer_.begin(whole(path_.done), whole(next), length);
-  step_.unforetold = step_.extrapolated = false;
+  step_.unpredicted = step_.extrapolated = false;
   step_.straight.resize(0, 3);
   const auto outcome = [&] {
-    const auto briefly = corrector_.newton().briefly(ends_early(length < tuning_.acceptance.follow_below));
+    const auto limited =
+        corrector_.newton().with_few_factorisations(ends_early(length < tuning_.acceptance.follow_below));
     return step(path_.here, there, length, at, trial);
   }();
   corrector_.free_motion = {};
@@ -417,9 +418,9 @@ std::optional<Status> Continuation::shorten(double length, Iterate& at) {
   const ArcLength::End curve = follow_curve(at);
   if (curve == ArcLength::End::interrupted) return Status::interrupted;
   if (curve == ArcLength::End::turned) {
-    if (path_.loads_change && !path_.bears_all) return limit(path_.done, beyond_here(), at);
-    path_.advance =
-        path_.bears_all ? 1 - path_.done : tuning_.acceptance.snap_length;  // may snap through to a stable shape
+    if (path_.loads_change && !path_.carries_full_load) return limit(path_.done, beyond_here(), at);
+    path_.advance = path_.carries_full_load ? 1 - path_.done
+                                            : tuning_.acceptance.snap_length;  // may snap through to a stable shape
     path_.thorough = true;
   }
   if (curve != ArcLength::End::lost) return std::nullopt;

@@ -32,7 +32,7 @@ class Continuation {
     Points predicted{}, begun{};      // the prediction, and its part without collision
     Points straight{};                // the first-order prediction, along the tangent
     double move_mm = 0, jump_mm = 0;  // largest predicted move; distance of the end from the path
-    bool unforetold = false;          // is there no tangent that predicts its end
+    bool unpredicted = false;         // is there no tangent that predicts its end
     bool extrapolated = false;        // was it predicted from nearby equilibria, without a tangent
   };
   /// The result of a step.
@@ -75,9 +75,9 @@ class Continuation {
     double before = 0;     // fraction of the whole request that earlier paths completed
     double marked = 0;     // the fraction at the last sufficient progress
     int marked_iterations = 0;
-    int misses = 0, next_look = 0;  // failed steps; how many start arc-length continuation
-    bool turned = false;            // does the curve of equilibria turn back here
-    bool bears_all = false;         // does a shape after the turn carry about the whole load
+    int misses = 0, next_look = 0;   // failed steps; how many start arc-length continuation
+    bool turned = false;             // does the curve of equilibria turn back here
+    bool carries_full_load = false;  // does a shape after the turn carry about the whole load
 
     [[nodiscard]] WholePath whole() const { return {before, then.has_value()}; }
   };
@@ -113,7 +113,7 @@ class Continuation {
   Newton::Outcome step(const LoadState& here, const LoadState& there, double length, const Iterate& at, Iterate& trial);
   Newton::Outcome step_from_flat(const LoadState& there, const Iterate& at, Iterate& trial);
   Newton::Outcome fall_onto(const LoadState& here, const LoadState& there, const Iterate& at, Iterate& trial);
-  bool lead(const LoadState& here, const LoadState& there, Iterate& trial);
+  bool extrapolate(const LoadState& here, const LoadState& there, Iterate& trial);
   bool leads_too_far(const LoadState& here, const LoadState& there, const Iterate& at);
   SegmentCheck::Verdict check_segment(double length, bool changed, const Iterate& at, const Iterate& trial);
   void check_path(double length, bool changed, const Iterate& at, const Iterate& trial, StepEnd& end);

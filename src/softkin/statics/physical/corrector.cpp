@@ -55,7 +55,7 @@ Newton::Outcome Corrector::correct_softly(const LoadState& load_state, bool fall
                             : nearest;
   const std::vector<bool> before = active;
   const Iterate begun = at;
-  const auto loosely = newton_.loosely(tuning_.newton.convergence.coarse_tolerance);
+  const auto relaxed = newton_.with_relaxed_tolerance(tuning_.newton.convergence.coarse_tolerance);
   auto outcome = Newton::Outcome::stuck;
   const int iterations = record_.iterations;
   for (double first = nearest; outcome == Newton::Outcome::stuck && first <= most; first *= finer) {

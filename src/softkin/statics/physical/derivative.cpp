@@ -4,7 +4,7 @@
 #include <softkin/statics/physical/bordered.hpp>
 #include <softkin/statics/physical/contact_steps.hpp>
 #include <softkin/statics/physical/derivative.hpp>
-#include <softkin/statics/physical/lease.hpp>
+#include <softkin/statics/physical/workspace_handle.hpp>
 #include <utility>
 
 namespace softkin::physical {
@@ -129,14 +129,14 @@ Points Derivative::reactions(const Iterate& at, const LoadState& load_state, Ind
 bool Derivative::find(const Iterate& at, const LoadState& load_state) {
   using Precision = linear::MixedLdlt::Precision;
   bool solved = false;
-  if (work_.home.rows() > 0) {
+  if (work_.solved_shape.rows() > 0) {
     if (work_.saddle.active() != held_) system_.couple(at, active_, balance_, work_, team_);
     system_.assemble(at, load_state, balance_, System::Stiffness::exact, work_, team_);
     system_.gather(at, balance_, work_, team_);
     solved = solve(at, false);
   }
   const auto solve_anew = [&](Precision precision) {
-    work_.home.resize(0, 3);
+    work_.solved_shape.resize(0, 3);
     const Temporarily scope(work_.saddle.precision(), precision);
     (void)system_.factorise(at, load_state, active_, balance_, {}, work_, team_);
     if (system_.contact()) system_.gather(at, balance_, work_, team_);  // else multiply() uses the factorised matrix
@@ -144,7 +144,7 @@ bool Derivative::find(const Iterate& at, const LoadState& load_state) {
   };
   solved = solved || solve_anew(work_.saddle.precision()) ||
            (!work_.saddle.factor().in_double() && solve_anew(Precision::twice));
-  if (solved && work_.home.rows() == 0) work_.home = at.positions;
+  if (solved && work_.solved_shape.rows() == 0) work_.solved_shape = at.positions;
   return solved;
 }
 
@@ -335,10 +335,10 @@ Eigen::MatrixXd Derivative::of(const Iterate& at, const LoadState& load_state,
 
 Sensitivity Equilibria::sensitivity(const State& state, const Options& options, double accuracy, Team& team) const {
   const Inside at(*this, state, team);
-  Lease lease(*this, at->positions, options.reuse_factor, options.tuning);
-  system_.set_time(at->history, at->elapsed_s, lease.work(), team);
+  WorkspaceHandle handle(*this, at->positions, options.reuse_factor, options.tuning);
+  system_.set_time(at->history, at->elapsed_s, handle.work(), team);
   Sensitivity found =
-      Derivative(system_, lease.work(), accuracy, team).of(system_.iterate(*at), {at->actuation, at->load_factor});
+      Derivative(system_, handle.work(), accuracy, team).of(system_.iterate(*at), {at->actuation, at->load_factor});
   for (Points& moves : found.positions) drop_vertices(moves);
   return found;
 }
@@ -347,9 +347,9 @@ ParameterSensitivity Equilibria::sensitivity(const State& state, const std::vect
                                              const Options& options, double accuracy, bool reactions,
                                              Team& team) const {
   const Inside at(*this, state, team);
-  Lease lease(*this, at->positions, options.reuse_factor, options.tuning);
-  system_.set_time(at->history, at->elapsed_s, lease.work(), team);
-  ParameterSensitivity found = Derivative(system_, lease.work(), accuracy, team)
+  WorkspaceHandle handle(*this, at->positions, options.reuse_factor, options.tuning);
+  system_.set_time(at->history, at->elapsed_s, handle.work(), team);
+  ParameterSensitivity found = Derivative(system_, handle.work(), accuracy, team)
                                    .of(system_.iterate(*at), {at->actuation, at->load_factor}, changes, reactions);
   for (Points& moves : found.positions) drop_vertices(moves);
   for (Points& forces : found.reactions) drop_vertices(forces);
@@ -359,12 +359,12 @@ ParameterSensitivity Equilibria::sensitivity(const State& state, const std::vect
 std::vector<Points> Equilibria::moves_under(const State& state, const std::vector<Points>& forces,
                                             const Options& options, double accuracy, Team& team) const {
   const Inside at(*this, state, team);
-  Lease lease(*this, at->positions, options.reuse_factor, options.tuning);
-  system_.set_time(at->history, at->elapsed_s, lease.work(), team);
+  WorkspaceHandle handle(*this, at->positions, options.reuse_factor, options.tuning);
+  system_.set_time(at->history, at->elapsed_s, handle.work(), team);
   const Points none = Points::Zero(at->positions.rows() - state.positions.rows(), 3);  // of the pressures
   std::vector<Points> all;
   for (const Points& force : forces) (all.emplace_back(at->positions.rows(), 3)) << force, none;
-  std::vector<Points> found = Derivative(system_, lease.work(), accuracy, team)
+  std::vector<Points> found = Derivative(system_, handle.work(), accuracy, team)
                                   .under(system_.iterate(*at), {at->actuation, at->load_factor}, all);
   for (Points& moves : found) drop_vertices(moves);
   return found;
@@ -374,9 +374,9 @@ ParameterSensitivity Equilibria::sensitivity(const State& state, const std::vect
                                              const Options& options, double accuracy, bool reactions,
                                              Team& team) const {
   const Inside at(*this, state, team);
-  Lease lease(*this, at->positions, options.reuse_factor, options.tuning);
-  system_.set_time(at->history, at->elapsed_s, lease.work(), team);
-  ParameterSensitivity found = Derivative(system_, lease.work(), accuracy, team)
+  WorkspaceHandle handle(*this, at->positions, options.reuse_factor, options.tuning);
+  system_.set_time(at->history, at->elapsed_s, handle.work(), team);
+  ParameterSensitivity found = Derivative(system_, handle.work(), accuracy, team)
                                    .of(system_.iterate(*at), {at->actuation, at->load_factor}, perturbations,
                                        at->history, at->elapsed_s, reactions);
   for (Points& moves : found.positions) drop_vertices(moves);
@@ -388,8 +388,8 @@ Eigen::MatrixXd Equilibria::gradients(const State& state, const std::vector<Pert
                                       const std::vector<ShapeGradient>& reported, const Options& options,
                                       double accuracy, Team& team) const {
   const Inside at(*this, state, team);
-  Lease lease(*this, at->positions, options.reuse_factor, options.tuning);
-  system_.set_time(at->history, at->elapsed_s, lease.work(), team);
+  WorkspaceHandle handle(*this, at->positions, options.reuse_factor, options.tuning);
+  system_.set_time(at->history, at->elapsed_s, handle.work(), team);
   const Points none = Points::Zero(at->positions.rows() - state.positions.rows(), 3);  // of the pressures
   std::vector<ShapeGradient> all = reported;
   for (ShapeGradient& each : all) {
@@ -398,7 +398,7 @@ Eigen::MatrixXd Equilibria::gradients(const State& state, const std::vector<Pert
     places << each.by_places, none;
     each.by_places = std::move(places);
   }
-  return Derivative(system_, lease.work(), accuracy, team)
+  return Derivative(system_, handle.work(), accuracy, team)
       .of(system_.iterate(*at), {at->actuation, at->load_factor}, perturbations, at->history, at->elapsed_s, all);
 }
 

@@ -19,7 +19,7 @@ struct Perturbation {
 /// change of the measures' targets.
 class Derivative {
  public:
-  /// All must outlive the object. work.home: the shape near which the workspace factorised, or empty
+  /// All must outlive the object. work.solved_shape: the shape near which the workspace factorised, or empty
   Derivative(const System& system, Workspace& work, double accuracy, Team& team);
 
   /// at  multipliers in internal units

@@ -2,7 +2,7 @@
 #include <softkin/statics/physical/contact_at_rest.hpp>
 #include <softkin/statics/physical/contact_steps.hpp>
 #include <softkin/statics/physical/continuation.hpp>
-#include <softkin/statics/physical/lease.hpp>
+#include <softkin/statics/physical/workspace_handle.hpp>
 
 namespace softkin::physical {
 
@@ -74,11 +74,11 @@ LoadState load_state_of(const System& system, const Model& model, const State& s
 
 void Equilibria::measure(const State& state, ElementDeformation& out, Team& team) const {
   const Inside at(*this, state, team);
-  Lease lease(*this, at->positions, true, {});
-  system_.set_time(at->history, at->elapsed_s, lease.work(), team);
+  WorkspaceHandle handle(*this, at->positions, true, {});
+  system_.set_time(at->history, at->elapsed_s, handle.work(), team);
   const Iterate shape = system_.iterate(*at);
-  hold_friction(system_, shape, lease.work(), team);
-  system_.measure(shape, {at->actuation, at->load_factor}, lease.work(), out, team);
+  hold_friction(system_, shape, handle.work(), team);
+  system_.measure(shape, {at->actuation, at->load_factor}, handle.work(), out, team);
   out.multipliers = at->multipliers;
   drop_vertices(out.reactions);
 }
@@ -87,21 +87,21 @@ bool Equilibria::extrapolate(const Actuation& actuation, const State& state, con
                              Points& positions, Team& team) const {
   if (system_.contact()) return false;
   const Inside at(*this, state, team);
-  Lease lease(*this, at->positions, true, options);
-  system_.set_time(at->history, at->elapsed_s, lease.work(), team);
+  WorkspaceHandle handle(*this, at->positions, true, options);
+  system_.set_time(at->history, at->elapsed_s, handle.work(), team);
   const bool extrapolated =
-      physical::extrapolate(system_, {at->actuation, at->load_factor}, {actuation, at->load_factor}, lease.work(), team,
-                            system_.iterate(*at), positions);
+      physical::extrapolate(system_, {at->actuation, at->load_factor}, {actuation, at->load_factor}, handle.work(),
+                            team, system_.iterate(*at), positions);
   if (extrapolated) drop_vertices(positions);
   return extrapolated;
 }
 
 bool Equilibria::set_initial_guess(const State& at, State there) const {
   if (system_.contact() || system_.pressures()) return false;
-  Lease lease(*this, at.positions, true, {});
-  if (lease.work().home.rows() == 0) return false;
+  WorkspaceHandle handle(*this, at.positions, true, {});
+  if (handle.work().solved_shape.rows() == 0) return false;
   for (Index a = 0; a < system_.actuators(); ++a) there.multipliers[a] *= system_.measures().unit(a);
-  lease.work().initial_guess = std::move(there);
+  handle.work().initial_guess = std::move(there);
   return true;
 }
 
@@ -111,14 +111,14 @@ std::vector<std::vector<Vec3>> Equilibria::pressing_changes(const State& state, 
   std::vector<std::vector<Vec3>> changes(moves.size(), std::vector<Vec3>(contact.parts.size(), Vec3::Zero()));
   if (!system_.contact()) return changes;
   const Inside at(*this, state, team);
-  Lease lease(*this, at->positions, true, {});
+  WorkspaceHandle handle(*this, at->positions, true, {});
   const Iterate shape = system_.iterate(*at);
-  system_.contacts()->find(shape.positions, *lease.work().contacts, team);
-  hold_friction(system_, shape, lease.work(), team);
+  system_.contacts()->find(shape.positions, *handle.work().contacts, team);
+  hold_friction(system_, shape, handle.work(), team);
   Points own = Points::Zero(at->positions.rows(), 3);  // with the vertices of pressures, which have no contact
   for (std::size_t k = 0; k < moves.size(); ++k) {
     own.topRows(moves[k].rows()) = moves[k];
-    const Points change = system_.contacts()->change_along(shape.positions, *lease.work().contacts, own);
+    const Points change = system_.contacts()->change_along(shape.positions, *handle.work().contacts, own);
     for (std::size_t p = 0; p < contact.parts.size(); ++p) {
       if (contact.parts[p].rank == ContactRank::robot) continue;
       const auto [begin, end] = system_.model().vertices_of_part(p);
@@ -132,9 +132,9 @@ ViscousFlow Equilibria::flow(const State& state, Team& team) const {
   ViscousFlow flow;
   if (!system_.viscous()) return flow;
   const Inside at(*this, state, team);
-  Lease lease(*this, at->positions, true, {});
-  system_.set_time(at->history, at->elapsed_s, lease.work(), team);
-  flow.history = system_.flow(*at, lease.work(), flow.lost_mJ, team);
+  WorkspaceHandle handle(*this, at->positions, true, {});
+  system_.set_time(at->history, at->elapsed_s, handle.work(), team);
+  flow.history = system_.flow(*at, handle.work(), flow.lost_mJ, team);
   return flow;
 }
 
@@ -234,16 +234,16 @@ Equilibrium Equilibria::solve_inside(const Actuation& actuation, const State& st
   report.tolerance_mm = options.tolerance_mm;
   SolveRecord record;
   if (start.actuation.size() == 0 && start.positions != model.rest) check_contact_of_start(model, start.positions);
-  Lease lease(*this, start.positions, options.reuse_factor, options.tuning);
+  WorkspaceHandle handle(*this, start.positions, options.reuse_factor, options.tuning);
 
   LoadState from = load_state_of(system_, model, start, actuation);
   const LoadState to{actuation, 1};
   Iterate at = iterate_at(start, from);
-  from = load_state_now(start, from, at, options, lease.work(), team);
+  from = load_state_now(start, from, at, options, handle.work(), team);
   // if the supports of the start are elsewhere, there may be no free motion to their positions
   const bool clear = !system_.contact() || largest_move(start.positions, at.positions) == 0 ||
-                     comes_to(start.positions, at.positions, lease.work(), team);
-  Continuation continuation(system_, lease.work(), team, options, progress, record, report);
+                     comes_to(start.positions, at.positions, handle.work(), team);
+  Continuation continuation(system_, handle.work(), team, options, progress, record, report);
   if (clear)
     report.status = continuation.follow(from, to, at);
   else {
@@ -254,8 +254,8 @@ Equilibrium Equilibria::solve_inside(const Actuation& actuation, const State& st
   const bool remembers = (system_.friction() || system_.tendons().any()) && start.knows(system_.actuators());
   if (report.status == Status::limit && record.continuation_steps == 0 && start.positions != model.rest && !remembers &&
       !continuation.at_limit_point())
-    begin_again(to, options, progress, team, lease.work(), at, record, report);
-  if (report.status == Status::converged) lease.work().home = at.positions;
+    begin_again(to, options, progress, team, handle.work(), at, record, report);
+  if (report.status == Status::converged) handle.work().solved_shape = at.positions;
   record.write_to(report);
   report.estimated_error_mm = record.step_mm;
   const bool unknown = (start.actuation.size() == 0 && start.positions != model.rest && record.reached == 0) ||

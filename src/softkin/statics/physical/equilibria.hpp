@@ -13,7 +13,7 @@ namespace softkin::physical {
 /// requested one, in steps as long as it converges, each begun with a tangent predictor.
 class Equilibria {
  public:
-  class Lease;
+  class WorkspaceHandle;
   class Inside;
 
   /// model must outlive the object. throws InvalidInput where some part of the robot is not held

@@ -19,7 +19,7 @@ MeasureContinuation::MeasureContinuation(Corrector& corrector, StepTracer& trace
 /// beside    another equilibrium, for a prediction of second order
 Search<MeasureContinuation::Measured> MeasureContinuation::at_measure(double measure, const Measured& from,
                                                                       bool prepared, const Measured* beside) {
-  if (!prepared && !corrector_.newton().goes_on()) return {.interrupted = true};
+  if (!prepared && !corrector_.newton().may_continue()) return {.interrupted = true};
   LoadState here = route_.to, there = route_.to;
   here.actuation[load_] = from.measure;
   here.load_factor = from.load_factor;
@@ -62,7 +62,7 @@ Search<MeasureContinuation::Measured> MeasureContinuation::at_measure(double mea
 /// Does the same with the relaxed tolerance of intermediate equilibria.
 Search<MeasureContinuation::Measured> MeasureContinuation::nearly_at(double measure, const Measured& from,
                                                                      bool prepared, const Measured* beside) {
-  const auto loosely = corrector_.newton().loosely(tuning_.measure.coarse_tolerance);
+  const auto relaxed = corrector_.newton().with_relaxed_tolerance(tuning_.measure.coarse_tolerance);
   return at_measure(measure, from, prepared, beside);
 }
 

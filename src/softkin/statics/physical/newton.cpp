@@ -24,7 +24,7 @@ void Newton::note_iteration(double step_mm) {
   record_.note_iteration(entry, settings_.keep_history);
 }
 
-bool Newton::goes_on() const {
+bool Newton::may_continue() const {
   return !progress_ || progress_({record_.iterations, record_.step_mm, settings_.tolerance_mm, record_.reached});
 }
 
@@ -40,7 +40,7 @@ Newton::Advance Newton::factorise(const Iterate& at, Policy policy) {
   const bool guess = policy == Policy::descend && usual == Precision::enough;
   int negative = 0;
   const auto attempted = [&](Stiffness kind, double shift, Precision precision) {
-    if (!goes_on()) return Advance::interrupted;  // each factorisation of a large robot takes long
+    if (!may_continue()) return Advance::interrupted;  // each factorisation of a large robot takes long
     factor_.shape = at.positions;
     secants_.clear();
     factor_.looked_at = false;
@@ -130,7 +130,7 @@ Newton::Advance Newton::accept(double moved_mm, bool arrives, Iterate& at) {
   note_iteration(moved_mm);
   std::swap(at, trial_);
   std::swap(balance_, trial_balance_);
-  const bool on = goes_on();
+  const bool on = may_continue();
   return arrives ? Advance::arrived : on ? Advance::made : Advance::interrupted;
 }
 

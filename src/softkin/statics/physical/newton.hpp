@@ -37,12 +37,12 @@ class Newton {
 
   /// While the returned object exists, a solve uses few factorisations, and a failed one is not repeated in double
   /// precision; for steps that are better shortened.
-  [[nodiscard]] Temporarily<bool> briefly(bool brief) { return {ending_.brief, brief}; }
+  [[nodiscard]] Temporarily<bool> with_few_factorisations(bool brief) { return {ending_.brief, brief}; }
   /// While the returned object exists, the tolerances of a solve are multiplied by this factor; for solves that only
   /// prepare the next one.
-  [[nodiscard]] Temporarily<double> loosely(double times) { return {ending_.loose, times}; }
+  [[nodiscard]] Temporarily<double> with_relaxed_tolerance(double times) { return {ending_.loose, times}; }
   /// Does the caller let the solve continue? Polled before operations that take as long as many iterations.
-  [[nodiscard]] bool goes_on() const;
+  [[nodiscard]] bool may_continue() const;
 
   /// Moves `at` to equilibrium. Multipliers that are not active are given. The workspace is left with the last
   /// factorisation. A solve that fails, possibly by rounding of factorisations in single precision, is repeated in

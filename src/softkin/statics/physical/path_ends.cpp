@@ -69,7 +69,7 @@ ArcLength::End Continuation::follow_curve(Iterate& at) {
   path_.next_look = gone > 0 ? path_.misses + 1 : 2 * path_.misses;
   if (gone > 0) pass(between(path_.from, path_.to, curve.done()), curve.done());
   path_.turned = end == ArcLength::End::turned;
-  path_.bears_all = path_.turned && curve.largest() >= 1;
+  path_.carries_full_load = path_.turned && curve.largest() >= 1;
   if (const auto& jump = curve.jump()) record_.note_snap(jump->move_mm, whole(jump->load_factor));
   if (end == ArcLength::End::passed) path_.advance = std::max(path_.advance, gone);
   return end;
@@ -120,10 +120,8 @@ Status Continuation::limit(double done, const std::string& why, const Iterate& a
   report_.remark = why + pull_in_text(system_.model(), path_.from, between(path_.from, path_.to, done), at.positions);
   if (system_.has_wrinkling()) report_.remark += "; sheets that nothing keeps taut have no shape of their own";
   const double slipping = slipping_fraction(system_, at, work_, team_);
-  if (slipping >= tuning_.termination.min_slipping) {
-    report_.physical.slipping_fraction = slipping;
+  if (slipping >= tuning_.termination.min_slipping)
     report_.remark += "; there " + number(100 * slipping, 3) + " % of the friction contacts slip, or nearly";
-  }
   return Status::limit;
 }
 
@@ -184,8 +182,8 @@ Status Continuation::arrive(const LoadState& load_state, Iterate& at) {
     return Status::not_converged;
   }
   if (corrector_.last.balanced) {
-    if (record_.snapped_mm > 0) work_.trail.clear();
-    work_.trail.add(load_state, corrector_.active, at, tuning_.prediction);
+    if (record_.snapped_mm > 0) work_.predictor_history.clear();
+    work_.predictor_history.add(load_state, corrector_.active, at, tuning_.prediction);
     return Status::converged;
   }
   report_.remark = "the steps have become small, but " + number(corrector_.last.forces.residual, 2) +

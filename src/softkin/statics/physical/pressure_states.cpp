@@ -1,5 +1,5 @@
 #include <softkin/statics/physical/contact_steps.hpp>
-#include <softkin/statics/physical/lease.hpp>
+#include <softkin/statics/physical/workspace_handle.hpp>
 
 namespace softkin::physical {
 
@@ -34,8 +34,8 @@ void Equilibria::drop_vertices(Points& points) const {
 void Equilibria::find_pressures(State& at, Team& team) const {
   const Index actuators = system_.actuators();
   const bool known = at.knows(actuators) && at.multipliers.size() == actuators;
-  Lease lease(*this, at.positions, false, {});
-  Workspace& work = lease.work();
+  WorkspaceHandle handle(*this, at.positions, false, {});
+  Workspace& work = handle.work();
   State loaded = at;
   if (!known) loaded.multipliers = Eigen::VectorXd::Zero(actuators);
   const LoadState load_state{at.actuation.size() == actuators ? at.actuation : system_.model().rest_actuation(),

@@ -10,7 +10,7 @@ std::unique_ptr<const Pressures> pressures_of(const Model& model, const Pressure
   if (std::none_of(model.elements.materials.begin(), model.elements.materials.end(),
                    [](const Material& m) { return m.mixed; }))
     return nullptr;
-  constexpr double fraction = 30;  // a pressure of one shear modulus is the diagonal over this [mm]
+  constexpr double scale = 30;  // unit of pressures: this many shear moduli over the diagonal in mm
   auto pressures = std::make_unique<Pressures>();
   pressures->first = model.rest.rows();
   pressures->of.assign(model.elements.tetrahedra.size(), {-1, -1, -1, -1});
@@ -33,7 +33,7 @@ std::unique_ptr<const Pressures> pressures_of(const Model& model, const Pressure
   }
   if (pressures->corners.empty()) return nullptr;
   // a power of two, so that the conversion from and to MPa is exact
-  pressures->unit = like ? like->unit : std::exp2(std::round(std::log2(fraction * shear / model.diagonal_mm)));
+  pressures->unit = like ? like->unit : std::exp2(std::round(std::log2(scale * shear / model.diagonal_mm)));
   return pressures;
 }
 

@@ -15,7 +15,7 @@ LoadState Corrector::pressed(LoadState load_state, double times) const {
 /// requested  is this the requested shape, or an intermediate one
 Newton::Outcome Corrector::correct_wrinkled(const LoadState& load_state, double barrier, bool requested,
                                             Iterate& trial) {
-  const auto loosely = newton_.loosely(requested ? 1 : tuning_.newton.convergence.coarse_tolerance);
+  const auto relaxed = newton_.with_relaxed_tolerance(requested ? 1 : tuning_.newton.convergence.coarse_tolerance);
   const Temporarily smoothly(work_.layers->barrier, barrier);
   return correct(load_state, Newton::Policy::descend, trial);
 }

@@ -6,8 +6,8 @@
 #include <softkin/statics/physical/layers.hpp>
 #include <softkin/statics/physical/loads.hpp>
 #include <softkin/statics/physical/placement.hpp>
+#include <softkin/statics/physical/predictor_history.hpp>
 #include <softkin/statics/physical/saddle.hpp>
-#include <softkin/statics/physical/trail.hpp>
 #include <softkin/statics/solver_options.hpp>
 
 namespace softkin::physical {
@@ -54,10 +54,10 @@ struct Workspace {
   Saddle saddle;  // the last factorisation
   Factored factored;
 
-  Points home;                         // equilibrium at which the last solve ended, and near which it factorised
-  Trail trail;                         // last equilibria on the path to `home`
+  Points solved_shape;                 // equilibrium at which the last solve ended, and near which it factorised
+  PredictorHistory predictor_history;  // last equilibria on the path to `solved_shape`
   Slopes tangents;                     // of an equilibrium
-  std::optional<State> initial_guess;  // from the caller, for the next solve from home; multipliers in internal units
+  std::optional<State> initial_guess;  // from the caller, for the next solve from there; multipliers in internal units
 };
 
 }  // namespace softkin::physical

@@ -60,19 +60,20 @@ Sensitivity Newton::sensitivity(const State& at, bool reuse_factor, double accur
     }
     unknowns_.freedoms.reduce(workspace->work.residual, at.positions, rights.col(a));
   }
-  const bool near = reuse_factor && workspace->home.rows() == at.positions.rows() && workspace->home == at.positions;
+  const bool near =
+      reuse_factor && workspace->solved_shape.rows() == at.positions.rows() && workspace->solved_shape == at.positions;
   const auto solve = [&](int rounds, double apart) {
     return tangent.solve_exactly(local, at.positions, rights, {rounds, accuracy, apart}, team, steps);
   };
   result.regular = near && solve(tangent.symmetric() ? symmetric_rounds : max_rounds, unbounded);
   if (!result.regular) {
     SolveReport report;
-    workspace->home.resize(0, 3);
+    workspace->solved_shape.resize(0, 3);
     if (tangent.factorise(local, at.positions, false, team, report)) {
       const bool exact = tangent.symmetric() && report.projections == 0;
       result.regular = solve(max_rounds, exact ? singular : unbounded);
     }
-    if (result.regular) workspace->home = at.positions;
+    if (result.regular) workspace->solved_shape = at.positions;
   }
   for (Index a = 0; result.regular && a < actuators; ++a) {
     unknowns_.freedoms.expand(steps.col(a), at.positions, result.positions[a]);

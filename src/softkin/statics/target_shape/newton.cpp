@@ -213,8 +213,8 @@ NewtonSearch::Step NewtonSearch::newton_step(const Actuation& actuation, Points&
 
 NewtonSearch::End NewtonSearch::enter(const IterationRecord& record) {
   accept(record, options_.keep_history, report_);
-  const bool goes_on = !progress_ || progress_({report_.iterations, report_.step_mm, report_.tolerance_mm});
-  return goes_on ? End::stuck : End::interrupted;
+  const bool may_continue = !progress_ || progress_({report_.iterations, report_.step_mm, report_.tolerance_mm});
+  return may_continue ? End::stuck : End::interrupted;
 }
 
 /// stuck: the search continues
@@ -283,7 +283,7 @@ std::unique_ptr<Workspace> Newton::take_workspace(const Points* shape) const {
     const std::lock_guard lock(mutex_);
     if (!workspaces_.empty()) {
       const auto found = std::find_if(workspaces_.begin(), workspaces_.end(), [&](const auto& workspace) {
-        return shape != nullptr && workspace->home.rows() == shape->rows() && workspace->home == *shape;
+        return shape != nullptr && workspace->solved_shape.rows() == shape->rows() && workspace->solved_shape == *shape;
       });
       if (found != workspaces_.end()) std::swap(*found, workspaces_.back());
       std::unique_ptr<Workspace> workspace = std::move(workspaces_.back());
@@ -313,7 +313,7 @@ void Newton::solve(const Actuation& start, const StaticsOptions& options, const 
   Points& positions = result.state.positions;
   const Points begin = positions;
   std::unique_ptr<Workspace> workspace = take_workspace();
-  workspace->home.resize(0, 3);
+  workspace->solved_shape.resize(0, 3);
   NewtonSearch search(unknowns_, global_, *workspace, options, progress, team, report);
   End end = search.run(result.actuation, tuning.max_steps, tuning.first_patience, positions);
   if (end == End::stuck) {
@@ -326,7 +326,7 @@ void Newton::solve(const Actuation& start, const StaticsOptions& options, const 
     report.continuation_steps = 1;
     end = search.run(result.actuation, tuning.max_steps, tuning.patience, positions);
   }
-  if (end == End::converged && report.factorisations > 0) workspace->home = positions;
+  if (end == End::converged && report.factorisations > 0) workspace->solved_shape = positions;
   put_back(std::move(workspace));
   if (end == End::stuck) {
     positions = begin;

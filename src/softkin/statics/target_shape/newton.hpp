@@ -15,7 +15,7 @@ struct Workspace {
   System::Scratch local;  // of the last shape evaluated
   System::Scratch start;  // of the shape that a step starts from
   System::Scratch work;
-  Points home;  // equilibrium near which the tangent was factorised; empty: none
+  Points solved_shape;  // equilibrium near which the tangent was factorised; empty: none
 };
 
 /// Runs of Newton's method, one after another.

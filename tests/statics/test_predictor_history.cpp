@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <random>
-#include <softkin/statics/physical/trail.hpp>
+#include <softkin/statics/physical/predictor_history.hpp>
 #include <softkin/statics/statics.hpp>
 
 #include "statics/physical_samples.hpp"
@@ -39,55 +39,56 @@ struct Curve {
   }
 };
 
-Trail walked(const Curve& curve, const std::vector<double>& paths) {
-  Trail trail;
-  for (const double path : paths) trail.add(load_state_at(path), {true, true}, curve.at(path), {});
-  return trail;
+PredictorHistory walked(const Curve& curve, const std::vector<double>& paths) {
+  PredictorHistory predictor_history;
+  for (const double path : paths) predictor_history.add(load_state_at(path), {true, true}, curve.at(path), {});
+  return predictor_history;
 }
 
 }  // namespace
 
-TEST(Trail, PolynomialsAreFollowed) {
+TEST(PredictorHistory, ReproducesPolynomials) {
   const std::vector<double> even{0, 0.1, 0.2, 0.3, 0.4, 0.5, 0.6}, uneven{0, 0.1, 0.15, 0.22, 0.31, 0.47, 0.53};
   for (const int degree : {1, 3, 5})
     for (const auto& paths : {even, uneven})
       for (const double next : {0.6, 0.65, 0.4, 0.55}) {
         if (next == paths.back()) continue;
         const Curve curve(degree);
-        const Trail trail = walked(curve, paths);
+        const PredictorHistory predictor_history = walked(curve, paths);
         Iterate at = curve.at(paths.back());
-        ASSERT_TRUE(trail.lead(load_state_at(paths.back()), load_state_at(next), {true, true}, tolerance, {}, at))
+        ASSERT_TRUE(predictor_history.extrapolate(load_state_at(paths.back()), load_state_at(next), {true, true},
+                                                  tolerance, {}, at))
             << degree << " " << next;
         EXPECT_LT((at.positions - curve.at(next).positions).norm(), 1e-10) << degree << " " << next;
         EXPECT_LT((at.multipliers - curve.at(next).multipliers).norm(), 1e-10);
       }
 }
 
-TEST(Trail, NothingIsToldOfWhatCannotBeForetold) {
+TEST(PredictorHistory, RefusesToExtrapolateACornerOrAnotherActiveSet) {
   const Curve curve(9);
   const std::vector<double> paths{0, 0.4, 0.8, 1.2, 1.6, 2};
-  const Trail trail = walked(curve, paths);
+  const PredictorHistory predictor_history = walked(curve, paths);
   Iterate at = curve.at(2);
-  EXPECT_FALSE(trail.lead(load_state_at(2), load_state_at(2.4), {true, true}, tolerance, {}, at));
+  EXPECT_FALSE(predictor_history.extrapolate(load_state_at(2), load_state_at(2.4), {true, true}, tolerance, {}, at));
   EXPECT_EQ(at.positions, curve.at(2).positions);
   // a straight path is predicted, but not with other constraints, from another state, or to the current load state
   const Curve straight(1);
-  const Trail other = walked(straight, paths);
+  const PredictorHistory other = walked(straight, paths);
   at = straight.at(2);
-  EXPECT_FALSE(other.lead(load_state_at(2), load_state_at(2.4), {true, false}, tolerance, {}, at));
-  EXPECT_FALSE(other.lead(load_state_at(2), load_state_at(2), {true, true}, tolerance, {}, at));
-  EXPECT_FALSE(other.lead(load_state_at(1.9), load_state_at(2.4), {true, true}, tolerance, {}, at));
-  EXPECT_TRUE(other.lead(load_state_at(2), load_state_at(2.4), {true, true}, tolerance, {}, at));
+  EXPECT_FALSE(other.extrapolate(load_state_at(2), load_state_at(2.4), {true, false}, tolerance, {}, at));
+  EXPECT_FALSE(other.extrapolate(load_state_at(2), load_state_at(2), {true, true}, tolerance, {}, at));
+  EXPECT_FALSE(other.extrapolate(load_state_at(1.9), load_state_at(2.4), {true, true}, tolerance, {}, at));
+  EXPECT_TRUE(other.extrapolate(load_state_at(2), load_state_at(2.4), {true, true}, tolerance, {}, at));
   at = straight.at(2);
   at.positions(3, 1) += 1e-9;
-  EXPECT_FALSE(other.lead(load_state_at(2), load_state_at(2.4), {true, true}, tolerance, {}, at));
+  EXPECT_FALSE(other.extrapolate(load_state_at(2), load_state_at(2.4), {true, true}, tolerance, {}, at));
   at = straight.at(0.4);
   EXPECT_FALSE(
-      walked(straight, {0, 0.4}).lead(load_state_at(0.4), load_state_at(0.8), {true, true}, tolerance, {}, at));
+      walked(straight, {0, 0.4}).extrapolate(load_state_at(0.4), load_state_at(0.8), {true, true}, tolerance, {}, at));
 }
 
 /// Along a curved path of several loads each equilibrium has the requested loads, whatever the predictions.
-TEST(Trail, LoadsThatAreGivenAreThoseThatAreAskedFor) {
+TEST(PredictorHistory, SetsGivenLoadsToTheRequestedOnes) {
   RobotSpec spec = chambers_beam(3);
   for (ActuatorSpec& chamber : spec.actuators) chamber = by_load(chamber);
   spec.actuators.push_back(by_load(cable("rope", {{0, 1, 10}, {24, 1, 10}, {48, 1, 10}})));
@@ -113,23 +114,24 @@ TEST(Trail, LoadsThatAreGivenAreThoseThatAreAskedFor) {
 }
 
 /// Where tangents do better they are not given up.
-TEST(Trail, FirstOrderIsKeptWhereItIsBetter) {
+TEST(PredictorHistory, PrefersTheTangentWhereItWasCloser) {
   const Curve curve(9);
   const std::vector<double> paths{0, 0.01, 0.02, 0.03};
-  Trail trail = walked(curve, paths);
+  PredictorHistory predictor_history = walked(curve, paths);
   Iterate at = curve.at(0.03);
-  ASSERT_TRUE(trail.lead(load_state_at(0.03), load_state_at(0.04), {true, true}, tolerance, {}, at));
+  ASSERT_TRUE(predictor_history.extrapolate(load_state_at(0.03), load_state_at(0.04), {true, true}, tolerance, {}, at));
   const double missed = largest_move(at.positions, curve.at(0.04).positions);
   EXPECT_GT(missed, 0);
   at = curve.at(0.03);
-  trail.note_tangent(load_state_at(0.02), load_state_at(0.03), missed);
-  EXPECT_FALSE(trail.lead(load_state_at(0.03), load_state_at(0.04), {true, true}, tolerance, {}, at));
-  trail.note_tangent(load_state_at(0.02), load_state_at(0.03), 1e3 * missed);
-  EXPECT_TRUE(trail.lead(load_state_at(0.03), load_state_at(0.04), {true, true}, tolerance, {}, at));
+  predictor_history.note_tangent(load_state_at(0.02), load_state_at(0.03), missed);
+  EXPECT_FALSE(
+      predictor_history.extrapolate(load_state_at(0.03), load_state_at(0.04), {true, true}, tolerance, {}, at));
+  predictor_history.note_tangent(load_state_at(0.02), load_state_at(0.03), 1e3 * missed);
+  EXPECT_TRUE(predictor_history.extrapolate(load_state_at(0.03), load_state_at(0.04), {true, true}, tolerance, {}, at));
 }
 
 /// Steps of one length come to the same equilibria as each would alone, in two thirds of the iterations.
-TEST(Trail, PathsTakeFewerIterations) {
+TEST(PredictorHistory, SavesIterationsOnPaths) {
   const Model model = compile(bending_finger());
   const Statics together(model), apart(model);
   StaticsOptions alone;

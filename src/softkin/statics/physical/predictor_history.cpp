@@ -1,6 +1,6 @@
 #include <algorithm>
 #include <cmath>
-#include <softkin/statics/physical/trail.hpp>
+#include <softkin/statics/physical/predictor_history.hpp>
 
 namespace softkin::physical {
 
@@ -22,8 +22,8 @@ double length_of(const LoadState& from, const LoadState& to) {
 
 }  // namespace
 
-void Trail::add(const LoadState& load_state, const std::vector<bool>& active, const Iterate& at,
-                const PredictionOptions& options) {
+void PredictorHistory::add(const LoadState& load_state, const std::vector<bool>& active, const Iterate& at,
+                           const PredictionOptions& options) {
   if (!passed_.empty() && passed_.front().active != active) clear();
   if (!passed_.empty() && length_of(passed_.front().load_state, load_state) == 0) passed_.erase(passed_.begin());
   const std::size_t most = options.max_stored;
@@ -36,14 +36,14 @@ void Trail::add(const LoadState& load_state, const std::vector<bool>& active, co
   }
 }
 
-void Trail::note_tangent(const LoadState& from, const LoadState& to, double missed_mm) {
+void PredictorHistory::note_tangent(const LoadState& from, const LoadState& to, double missed_mm) {
   const double length = length_of(from, to);
   if (length > 0) curvature_ = missed_mm / (length * length);
 }
 
 /// Returns the parameters of the equilibria along the next step: 0 at the last one, 1 at the end of the step. The list
 /// ends at the first equilibrium that is too near to another one.
-std::vector<double> Trail::parameters(const LoadState& to, double min_spacing) const {
+std::vector<double> PredictorHistory::parameters(const LoadState& to, double min_spacing) const {
   const LoadState& here = passed_.front().load_state;
   const Eigen::VectorXd path = to.actuation - here.actuation;
   const double square = std::pow(length_of(here, to), 2);
@@ -58,8 +58,8 @@ std::vector<double> Trail::parameters(const LoadState& to, double min_spacing) c
   return result;
 }
 
-bool Trail::lead(const LoadState& here, const LoadState& to, const std::vector<bool>& active, double tolerance_mm,
-                 const PredictionOptions& options, Iterate& at) const {
+bool PredictorHistory::extrapolate(const LoadState& here, const LoadState& to, const std::vector<bool>& active,
+                                   double tolerance_mm, const PredictionOptions& options, Iterate& at) const {
   if (passed_.size() < 3 || passed_.front().active != active || passed_.front().at.positions != at.positions)
     return false;
   const double length = length_of(here, to);

@@ -7,7 +7,7 @@
 namespace softkin::physical {
 
 /// Predictor history: the last equilibria on a path, from which the next one is extrapolated.
-class Trail {
+class PredictorHistory {
  public:
   /// Adds an equilibrium at a load state, reached from the last one. An equilibrium that does not continue the history
   /// starts a new one.
@@ -26,8 +26,8 @@ class Trail {
   /// returns  false if they are less accurate than a first-order prediction; `at` is unchanged then
   /// source   Allgower, Georg 1990, Numerical continuation methods, 6.3: predictors by interpolation; steps of any
   ///          length, with the projection on the step as parameter
-  [[nodiscard]] bool lead(const LoadState& here, const LoadState& to, const std::vector<bool>& active,
-                          double tolerance_mm, const PredictionOptions& options, Iterate& at) const;
+  [[nodiscard]] bool extrapolate(const LoadState& here, const LoadState& to, const std::vector<bool>& active,
+                                 double tolerance_mm, const PredictionOptions& options, Iterate& at) const;
 
  private:
   struct Passed {

@@ -7,13 +7,14 @@
 namespace softkin::physical {
 
 /// A workspace, for the time of a solve.
-class Equilibria::Lease {
+class Equilibria::WorkspaceHandle {
  public:
   /// Takes a workspace that was left at the start, if there is one and it may be reused: its factor is as good as new.
-  /// Else the workspace has no home, and nothing in it is used.
+  /// Else the workspace has no solved shape, and nothing in it is used.
   ///
-  /// options  tuned constants for the time of the lease
-  Lease(const Equilibria& owner, const Points& start, bool reuse, const SolverOptions& options) : owner_(owner) {
+  /// options  tuned constants for the time of the handle
+  WorkspaceHandle(const Equilibria& owner, const Points& start, bool reuse, const SolverOptions& options)
+      : owner_(owner) {
     {
       const std::lock_guard lock(owner_.mutex_);
       auto& idle = owner_.idle_;
@@ -27,25 +28,25 @@ class Equilibria::Lease {
     if (!work_) work_ = std::make_unique<Workspace>(owner_.system_);
     work_->options = options;
     if (reuse && is_at(*work_, start)) return;
-    work_->home.resize(0, 3);
+    work_->solved_shape.resize(0, 3);
     work_->tangents.at.resize(0, 3);
     work_->initial_guess.reset();
     work_->saddle.factor().forget();
     if (work_->contacts) work_->contacts->around = work_->contacts->before = {};  // the pairs of other shapes
   }
   /// Gives the workspace back, unless an exception has interrupted its use.
-  ~Lease() {
+  ~WorkspaceHandle() {
     if (std::uncaught_exceptions() > exceptions_) return;
     const std::lock_guard lock(owner_.mutex_);
     owner_.idle_.push_back(std::move(work_));
   }
-  Lease(const Lease&) = delete;
-  Lease& operator=(const Lease&) = delete;
+  WorkspaceHandle(const WorkspaceHandle&) = delete;
+  WorkspaceHandle& operator=(const WorkspaceHandle&) = delete;
   [[nodiscard]] Workspace& work() { return *work_; }
 
  private:
   static bool is_at(const Workspace& work, const Points& shape) {
-    return work.home.rows() == shape.rows() && work.home == shape;
+    return work.solved_shape.rows() == shape.rows() && work.solved_shape == shape;
   }
 
   const Equilibria& owner_;
