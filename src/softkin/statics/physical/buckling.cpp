@@ -22,7 +22,7 @@ class Downhill {
  public:
   Downhill(Corrector& corrector, const LoadState& load_state)
       : corrector_(corrector),
-        demand_(load_state),
+        load_state_(load_state),
         system_(corrector.system()),
         work_(corrector.work()),
         team_(corrector.team()),
@@ -32,7 +32,7 @@ class Downhill {
   /// Moves to a stable equilibrium if one is found; false: interrupted.
   bool go(Iterate& at) {
     for (int i = 0; i < tuning_.max_buckles; ++i) {
-      const LowestMode mode = lowest_mode(system_, at, demand_, corrector_.active, work_, team_, record_);
+      const LowestMode mode = lowest_mode(system_, at, load_state_, corrector_.active, work_, team_, record_);
       corrector_.last.modes = mode.unstable;
       if (mode.unstable == 0 || mode.direction.size() == 0 || !mode.direction.allFinite()) return true;
       auto [best, interrupted] = lower(at, mode);
@@ -52,7 +52,7 @@ class Downhill {
   /// Returns the equilibrium of lower energy to which a perturbation leads: of both directions the lower one, and of
   /// two equal ones the first.
   Search<Pushed> lower(const Iterate& from, const LowestMode& mode) {
-    double energy = potential(system_, from, demand_, corrector_.active, work_, team_);
+    double energy = potential(system_, from, load_state_, corrector_.active, work_, team_);
     energy -= tuning_.energy_tie * std::abs(energy);
     const std::vector<bool> active = corrector_.active;
     std::optional<Pushed> best;
@@ -80,13 +80,13 @@ class Downhill {
     double shift = mode.steep_shift();
     bool was_corrected = false;
     for (int i = 0; i < tuning_.max_descent_steps && !was_corrected; ++i) {
-      const Descent down = step_down(system_, demand_, corrector_.active, shift, found.at, work_, team_);
+      const Descent down = step_down(system_, load_state_, corrector_.active, shift, found.at, work_, team_);
       record_.factorisations += down.factorisations;
       record_.factorisations_in_double += down.factorisations_in_double;
       if (!down.lower) return {};
-      if (corrector_.prepare(demand_, found.at) != 0) continue;
+      if (corrector_.prepare(load_state_, found.at) != 0) continue;
       Iterate there = found.at;
-      const auto outcome = corrector_.correct(demand_, Newton::Policy::descend, there);
+      const auto outcome = corrector_.correct(load_state_, Newton::Policy::descend, there);
       if (outcome == Newton::Outcome::interrupted) return {.interrupted = true};
       was_corrected = outcome == Newton::Outcome::converged;
       if (was_corrected) found.at = std::move(there);
@@ -94,14 +94,14 @@ class Downhill {
     if (!was_corrected ||
         system_.largest_move(found.at.positions, from.positions) < tuning_.min_departure * std::abs(reach))
       return {};
-    found.energy = potential(system_, found.at, demand_, corrector_.active, work_, team_);
+    found.energy = potential(system_, found.at, load_state_, corrector_.active, work_, team_);
     found.active = corrector_.active;
     found.last = corrector_.judged();
     return {std::move(found)};
   }
 
   Corrector& corrector_;
-  const LoadState& demand_;
+  const LoadState& load_state_;
   const System& system_;
   Workspace& work_;
   Team& team_;

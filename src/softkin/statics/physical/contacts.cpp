@@ -203,8 +203,8 @@ void Contacts::stiffness(const Iterate& at, const LoadState& /*load_state*/, boo
   stiffness(at.positions, projected, own, own.slotted, slots.data() + 9 * own.first_slot);
 }
 
-void Contacts::describe(const Iterate& at, const LoadState& /*demand*/, Term::Scratch& scratch, ElementDeformation& out,
-                        Team& /*team*/) const {
+void Contacts::describe(const Iterate& at, const LoadState& /*load_state*/, Term::Scratch& scratch,
+                        ElementDeformation& out, Team& /*team*/) const {
   const auto& own = static_cast<const Scratch&>(scratch);
   Points room;
   if (own.evaluated)

@@ -202,7 +202,7 @@ void FibreFamilies::evaluate(const Iterate& at, const LoadState& /*load_state*/,
   sum.forbidden = sum.forbidden || !known;
 }
 
-void FibreFamilies::stiffness(const Iterate& at, const LoadState& /*demand*/, bool projected,
+void FibreFamilies::stiffness(const Iterate& at, const LoadState& /*load_state*/, bool projected,
                               Term::Scratch& /*scratch*/, LargeVector<double>& slots, Team& team) const {
   using Block = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
   each([&]<int K, int Q>(const Elements<K, Q>& elements, std::size_t /*first*/) {

@@ -49,7 +49,7 @@ Fibres::Fibres(const Model& model) : fibres_(model.reinforcement.fibres) {
     }
 }
 
-void Fibres::evaluate(const Iterate& at, const LoadState& /*demand*/, Term::Scratch& /*scratch*/, Sum& sum,
+void Fibres::evaluate(const Iterate& at, const LoadState& /*load_state*/, Term::Scratch& /*scratch*/, Sum& sum,
                       Team& /*team*/) const {
   for (const Group& group : groups_)
     for (const Place& place : group.places) {
@@ -75,7 +75,7 @@ void Fibres::add_cliques(linear::Cliques& cliques) {
   }
 }
 
-void Fibres::stiffness(const Iterate& at, const LoadState& /*demand*/, bool projected, Term::Scratch& /*scratch*/,
+void Fibres::stiffness(const Iterate& at, const LoadState& /*load_state*/, bool projected, Term::Scratch& /*scratch*/,
                        LargeVector<double>& slots, Team& team) const {
   using Block = Eigen::Map<Eigen::Matrix<double, 3, 3, Eigen::RowMajor>>;
   team.pieces(groups_.size(), [&](Index begin, Index end) {
@@ -104,7 +104,7 @@ bool Fibres::kinked() const {
   return std::any_of(fibres_.begin(), fibres_.end(), [](const Fibre& fibre) { return fibre.tension_only; });
 }
 
-void Fibres::describe(const Iterate& at, const LoadState& /*demand*/, Term::Scratch& /*scratch*/,
+void Fibres::describe(const Iterate& at, const LoadState& /*load_state*/, Term::Scratch& /*scratch*/,
                       ElementDeformation& out, Team& /*team*/) const {
   for (const Fibre& fibre : fibres_) {
     FibreForces reported;

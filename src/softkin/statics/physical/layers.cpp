@@ -304,7 +304,7 @@ bool Layers::kinked() const {
   return std::any_of(faces_.begin(), faces_.end(), [](const Face& face) { return face.law->tension_only; });
 }
 
-void Layers::describe(const Iterate& at, const LoadState& /*demand*/, Term::Scratch& /*scratch*/,
+void Layers::describe(const Iterate& at, const LoadState& /*load_state*/, Term::Scratch& /*scratch*/,
                       ElementDeformation& out, Team& /*team*/) const {
   for (const auto& layer : model_.reinforcement.layers) {
     LayerForces reported;

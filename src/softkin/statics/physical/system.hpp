@@ -62,7 +62,7 @@ class System {
     double shift = 0;   // times the mean diagonal, added
     bool step = false;  // is Saddle::first_step() to follow: the balance's step is solved for with the responses
   };
-  /// Assembles and factorises the stiffness at an iterate. Without contact the assembled matrix is overwritten;
+  /// Assembles and factorises the tangent stiffness at an iterate. Without contact the assembled matrix is overwritten;
   /// multiply() is as ready as after gather() if nothing was shifted.
   ///
   /// balance  of its evaluation

@@ -50,10 +50,10 @@ class Term {
   virtual void add_cliques_of(const Iterate& /*at*/, Scratch& /*scratch*/, linear::Cliques& /*cliques*/,
                               Team& /*team*/) const {}
 
-  /// Writes second derivatives into the term's own slots, or adds them to those of earlier terms, 9 values each [N/mm],
+  /// Writes the tangent stiffness into the term's slots, or adds it to that of earlier terms, 9 values each [N/mm],
   /// at the shape evaluated last. projected: they are made positive semidefinite, part by part
-  virtual void stiffness(const Iterate& /*at*/, const LoadState& /*demand*/, bool /*projected*/, Scratch& /*scratch*/,
-                         LargeVector<double>& /*slots*/, Team& /*team*/) const {}
+  virtual void stiffness(const Iterate& /*at*/, const LoadState& /*load_state*/, bool /*projected*/,
+                         Scratch& /*scratch*/, LargeVector<double>& /*slots*/, Team& /*team*/) const {}
   /// Is stiffness() the whole derivative of the gradient? Otherwise add_response() adds the rest.
   [[nodiscard]] virtual bool symmetric() const { return true; }
   /// Adds the unsymmetric part of the change of the gradient under moves of the vertices, which stiffness() lacks [N].
@@ -81,7 +81,7 @@ class Term {
   [[nodiscard]] virtual bool kinked() const { return false; }
 
   /// Adds the term's part of the description of the equilibrium evaluated last.
-  virtual void describe(const Iterate& /*at*/, const LoadState& /*demand*/, Scratch& /*scratch*/,
+  virtual void describe(const Iterate& /*at*/, const LoadState& /*load_state*/, Scratch& /*scratch*/,
                         ElementDeformation& /*out*/, Team& /*team*/) const {}
 };
 

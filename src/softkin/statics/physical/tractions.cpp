@@ -160,7 +160,7 @@ bool Tractions::loads(Index command) const {
   return model_.actuators[command].is<PressureCommand>();
 }
 
-void Tractions::add_derivative(Index command, const LoadState& /*demand*/, const Points& positions,
+void Tractions::add_derivative(Index command, const LoadState& /*load_state*/, const Points& positions,
                                Term::Scratch& /*scratch*/, Points& force, Team& /*team*/) const {
   if (!loads(command)) return;
   each_place(positions, [&](const Face& face, const Place& place, const Load& load) {

@@ -8,7 +8,7 @@
 
 namespace softkin::supports {
 
-/// The unknowns of a robot [mm]: the free axes of its vertices, and up to three slides and three turns of every rigid
+/// The degrees of freedom of a robot [mm]: free axes of its vertices, up to three slides and three turns of every rigid
 /// region that is not held whole, turns by how far they move its farthest vertex (in rad their stiffness would differ
 /// from that of moves by a length squared). x moves by T u to first order.
 class Freedoms {
