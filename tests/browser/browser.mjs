@@ -60,7 +60,11 @@ export async function tipText(page) {
 export const tip = async (page) => (await tipText(page)).map(number);
 
 export async function moveSlider(page, actuator, value) {
-  await page.locator(`#actuator-${actuator}`).fill(String(value));
+  // not by fill(), which refuses a value that the browser rounds to the slider's steps in another last digit
+  await page.locator(`#actuator-${actuator}`).evaluate((slider, wanted) => {
+    slider.value = wanted;
+    for (const event of ['input', 'change']) slider.dispatchEvent(new Event(event, {bubbles: true}));
+  }, String(value));
 }
 
 /** Waits until this number of frames has been drawn. */
