@@ -11,7 +11,7 @@ from typing import Any, ClassVar, NamedTuple, ParamSpec, TypeVar
 
 from . import _core
 from ._core import InvalidInput
-from ._kinds import shown
+from ._kinds import number_of, shown
 from ._warning import warn
 
 __all__ = ["Progress", "Solver"]
@@ -32,10 +32,7 @@ def _pairs_of(options: Any) -> tuple[tuple[str, float], ...] | None:
         raise InvalidInput(
             f"options must be a map of groups, such as {{'step': {{'max_turn': 20}}}}, or a file, not {shown(options)}"
         ) from None
-    for name, value in pairs:
-        if isinstance(value, bool) or not isinstance(value, (int, float)):
-            raise InvalidInput(f"the option {name} must be a number, not {shown(value)}")
-    return tuple((str(name), float(value)) for name, value in pairs) or None
+    return tuple((str(name), number_of(f"the option {name}", value)) for name, value in pairs) or None
 
 
 @dataclass(frozen=True)
